@@ -1,0 +1,16 @@
+# Flags every target of the project shares. Determinism decides them: no contraction into fused
+# multiply-adds, no fast-math, no code for this machine's processor only.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug or Release" FORCE)
+endif()
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+
+add_library(argil_options INTERFACE)
+target_compile_features(argil_options INTERFACE cxx_std_20)
+target_compile_definitions(argil_options INTERFACE EIGEN_DONT_PARALLELIZE)
+target_compile_options(argil_options INTERFACE
+  -ffp-contract=off
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wold-style-cast
+  -Wnon-virtual-dtor -Woverloaded-virtual)
+target_include_directories(argil_options INTERFACE "${PROJECT_SOURCE_DIR}/src")

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "contact/parameters.h"
+#include "mesh/tet_mesh.h"
+
+namespace argil::contact {
+
+/// Position and orientation of the tool frame; the origin is the hand's point.
+struct Pose {
+  Vec3 position = Vec3::Zero();         ///< [m]
+  Quat orientation = Quat::Identity();  ///< tool to world
+};
+
+/// One pair in contact during the interval, seen from the body. Depth is ∫ nᵀ(p−q) dt over the penetration
+/// intervals with t normalised to [0, 1] (eqs. 7 and 8 with unit stiffness, unit normals).
+struct Contact {
+  std::array<int, 3> vertex = {-1, -1, -1};  ///< body vertices that carry the force; −1 beyond the last
+  std::array<double, 3> weight = {};         ///< their shares, sum 1 (weights at entry)
+  Vec3 normal = Vec3::Zero();  ///< mean direction in which a push tool moves the body, unit
+  Vec3 impulse = Vec3::Zero(); ///< ∫ depth·n dt over the tick on the body [m]; force on the body = k·impulse
+  double stiffness = 0.0;      ///< k [N/m] × share of the tick in penetration: curvature for the implicit solve
+  Vec3 point = Vec3::Zero();   ///< where the force acts at the end of the tick [m], for the torque and the picture
+};
+
+/// What one detection over [t₀, t₁] found, in an order that depends on the meshes alone.
+struct Contacts {
+  std::vector<Contact> contacts;
+  std::vector<int> touched_triangle;  ///< body triangles with an inside point, increasing
+  std::vector<double> touched_area;   ///< [m²] part of each that lies within the tool's reach
+  Vec3 force_on_tool = Vec3::Zero();  ///< [N], push sense: −Σ k·impulse
+  Vec3 torque_on_tool = Vec3::Zero(); ///< [N m] about the hand's point at t₁
+  void clear();
+};
+
+/// Detects contact between a deforming body surface and a rigidly moving tool, interval after interval, and
+/// carries each pair's inside state from one interval to the next.
+class ContactDetector {
+ public:
+  /// `surface`: 3×m triangles of body vertex numbers, outward; `tool`: closed surface in the tool frame [m].
+  ContactDetector(const Triangles& surface, int num_body_vertices, const mesh::TriangleMesh& tool,
+                  const ContactParams& params);
+  ~ContactDetector();
+  ContactDetector(ContactDetector&&) noexcept;
+  ContactDetector& operator=(ContactDetector&&) noexcept;
+
+  /// Contacts while the body's vertices go linearly from x_t0 to x_t1 and the tool's vertices linearly between
+  /// their places at the two poses. Successive calls must join: x_t0, pose_t0 equal the last x_t1, pose_t1.
+  void find_contacts(const Points& x_t0, const Points& x_t1, const Pose& pose_t0, const Pose& pose_t1,
+                     Contacts& contacts);
+
+  /// Tool vertices inside the body or body vertices inside the tool at one instant (a start must have none).
+  bool overlaps(const Points& x, const Pose& pose) const;
+
+  struct Impl;
+
+ private:
+  std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace argil::contact

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh/implicit.h"
+#include "mesh/tet_mesh.h"
+
+namespace argil::mesh {
+
+/// Bodies that argil makes itself.
+enum class ShapeKind { sphere, cylinder, box, dinosaur, figure };
+
+struct Shape {
+  ShapeKind kind = ShapeKind::sphere;
+  double size = 0.1;  ///< [m] sphere: diameter; cylinder: height (diameter = half); box: edge; dinosaur: length; figure: height
+};
+
+/// Signed distance-like function of a shape, z up, feet or bottom at z = 0, centred in x and y.
+ImplicitSurface make_implicit_shape(const Shape& shape);
+
+/// Tetrahedral body of a shape with about `target_tets` tets. Box and cylinder have sharp edges.
+TetMesh make_shape_mesh(const Shape& shape, int target_tets);
+
+/// Triangle skin of a shape with at least `min_triangles` triangles, closed and manifold.
+TriangleMesh make_shape_skin(const Shape& shape, int min_triangles);
+
+}  // namespace argil::mesh

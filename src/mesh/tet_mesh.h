@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "base/types.h"
+
+namespace argil::mesh {
+
+/// Triangle surface. Closed surfaces are oriented with the normal pointing out.
+struct TriangleMesh {
+  Points vertices;      ///< 3×n positions [m]
+  Triangles triangles;  ///< 3×m vertex numbers
+  int num_vertices() const { return static_cast<int>(vertices.cols()); }
+  int num_triangles() const { return static_cast<int>(triangles.cols()); }
+};
+
+/// Tetrahedral body at rest, with the fields its file carried.
+struct TetMesh {
+  Points vertices;  ///< 3×n rest positions [m]
+  Tets tets;        ///< 4×m vertex numbers; det(x1−x0, x2−x0, x3−x0) > 0
+  std::map<std::string, Field> cell_fields;  ///< scalar data per tet found in the file, by its name there
+  int num_vertices() const { return static_cast<int>(vertices.cols()); }
+  int num_tets() const { return static_cast<int>(tets.cols()); }
+};
+
+/// Signed volume [m³] of the tet with corners a, b, c, d; positive when d lies on the side of (b−a)×(c−a).
+inline double compute_tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return (b - a).cross(c - a).dot(d - a) / 6.0;
+}
+
+}  // namespace argil::mesh

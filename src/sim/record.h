@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+
+#include "base/types.h"
+#include "device/sample.h"
+
+namespace argil::sim {
+
+/// One haptic tick, as written to /haptic.
+struct HapticRecord {
+  Tick tick = 0;
+  double time = 0.0;                     ///< [s]
+  Vec3 tool_position = Vec3::Zero();     ///< [m]
+  Quat tool_orientation = Quat::Identity();
+  Vec3 force = Vec3::Zero();             ///< [N] on the hand, before the gate
+  Vec3 torque = Vec3::Zero();            ///< [N m] about the hand's point
+  Vec3 device_force = Vec3::Zero();      ///< [N] after the output gate
+  device::ToolMode mode = device::ToolMode::push;
+  int force_age = 0;                     ///< [ticks] since the force was computed
+  int num_contacts = 0;
+  std::uint8_t gate_events = 0;
+};
+
+/// One physics step, as written to /physics.
+struct PhysicsRecord {
+  Tick tick = 0;
+  double time = 0.0;
+  double kinetic_energy = 0.0;       ///< [J]
+  double elastic_energy = 0.0;       ///< [J]
+  double plastic_dissipation = 0.0;  ///< [J] since the start
+  double contact_work = 0.0;         ///< [J] done by contact forces on the body since the start
+  double water_mass = 0.0;           ///< [kg]
+  double water_added = 0.0;          ///< [kg] since the start
+  double water_removed = 0.0;        ///< [kg] since the start
+  int iterations = 0;                ///< of the linear solver
+  int factorisations = 0;            ///< since the start
+  double residual = 0.0;             ///< relative, of the linear solve
+  int active_nodes = 0;              ///< vertices that were solved for
+  double min_volume_ratio = 1.0;     ///< smallest det F
+  double max_plastic_strain = 0.0;   ///< largest ‖ε_p‖_F
+};
+
+/// One picture of the body, as written to /frames/NNNNNN.
+struct Frame {
+  Tick tick = 0;
+  double time = 0.0;
+  Points position;            ///< 3×n cage vertices [m]
+  Field saturation;           ///< per tet
+  TensorField plastic_strain; ///< per tet, Mandel
+  Points skin_position;       ///< 3×k, empty without a skin
+  Field skin_saturation;      ///< k
+  Field skin_influence;       ///< k, region of influence
+  std::string state_hash;     ///< SHA-256 of the whole state
+};
+
+}  // namespace argil::sim
