@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "contact/parameters.h"
+#include "device/gate.h"
+#include "material/parameters.h"
+#include "solid/parameters.h"
+#include "water/parameters.h"
+
+namespace argil::sim {
+
+/// How the hand's force is found between two physics steps.
+enum class BetweenFrames {
+  hold,         ///< the paper: one detection a physics step over the tool's whole motion, then the force is kept
+  re_evaluate,  ///< contact every tick against the last surface
+};
+
+/// Rates as whole numbers of haptic ticks.
+struct RateParams {
+  double haptic_period = 0.001;   ///< δ [s]
+  int physics_period_ticks = 1;   ///< solid and contact work once in so many ticks
+  int water_period_ticks = 10;    ///< uptake, diffusion and moduli; a multiple of physics_period_ticks
+  int frame_period_ticks = 100;   ///< pictures
+  BetweenFrames between_frames = BetweenFrames::hold;
+};
+
+/// Everything that stays the same during a run, in SI units.
+struct Params {
+  RateParams rates;
+  material::Elastic elastic;
+  material::Moisture moisture;
+  material::Plasticity plasticity;
+  material::ClayKernel kernel;
+  water::WaterParams water;
+  solid::SolidParams solid;
+  contact::ContactParams contact;
+  device::DeviceLimits device;
+  int threads = 1;
+};
+
+}  // namespace argil::sim
