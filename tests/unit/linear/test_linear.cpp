@@ -1,0 +1,149 @@
+// Solvers against the closed-form solution of a 1-D Laplacian and against Eigen's dense LDLᵀ, which shares no code with them.
+#include <Eigen/Cholesky>
+
+#include <gtest/gtest.h>
+
+#include "base/rng.h"
+#include "linear/cholesky.h"
+#include "linear/pcg.h"
+
+namespace argil::linear {
+namespace {
+
+BlockMatrix make_chain(int rows) {
+  std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(rows));
+  for (int r = 0; r < rows; ++r)
+    for (int c = std::max(0, r - 1); c <= std::min(rows - 1, r + 1); ++c)
+      neighbours[static_cast<std::size_t>(r)].push_back(c);
+  return make_block_matrix(neighbours);
+}
+
+/// −u'' = 1 on [0, 1] with u = 0 at both ends; the nodal values of u = x(1−x)/2 are exact.
+BlockMatrix make_laplacian(int rows) {
+  BlockMatrix a = make_chain(rows);
+  const double h = 1.0 / (rows + 1);
+  for (int r = 0; r < rows; ++r)
+    for (int b = a.row_begin[static_cast<std::size_t>(r)]; b < a.row_begin[static_cast<std::size_t>(r) + 1]; ++b)
+      a.block(b) = Mat3::Identity() * ((a.column[static_cast<std::size_t>(b)] == r ? 2.0 : -1.0) / (h * h));
+  return a;
+}
+
+/// Random symmetric diagonally dominant matrix, with every coupling between the three components present.
+BlockMatrix make_random_spd(int rows, std::uint64_t seed) {
+  BlockMatrix a = make_chain(rows);
+  Rng rng(seed);
+  for (int r = 0; r < rows; ++r) {
+    for (int c = r; c <= std::min(rows - 1, r + 1); ++c) {
+      Mat3 block;
+      for (int i = 0; i < 9; ++i) block(i) = rng.uniform(-1.0, 1.0);
+      if (c == r) block = Mat3(block + block.transpose()) + 12.0 * Mat3::Identity();
+      a.block(find_block(a, r, c)) = block;
+      a.block(find_block(a, c, r)) = block.transpose();
+    }
+  }
+  return a;
+}
+
+Eigen::MatrixXd to_dense(const BlockMatrix& a) {
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * a.num_rows(), 3 * a.num_rows());
+  for (int r = 0; r < a.num_rows(); ++r)
+    for (int b = a.row_begin[static_cast<std::size_t>(r)]; b < a.row_begin[static_cast<std::size_t>(r) + 1]; ++b)
+      dense.block<3, 3>(3 * r, 3 * a.column[static_cast<std::size_t>(b)]) = a.block(b);
+  return dense;
+}
+
+Points make_random_vector(int rows, std::uint64_t seed) {
+  Rng rng(seed);
+  Points b(3, rows);
+  for (Eigen::Index i = 0; i < b.size(); ++i) b(i) = rng.uniform(-1.0, 1.0);
+  return b;
+}
+
+TEST(CholeskyFactor, SolvesTheOneDimensionalLaplacianExactly) {
+  const int rows = 99;
+  const BlockMatrix a = make_laplacian(rows);
+  CholeskyFactor factor(a);
+  ASSERT_TRUE(factor.factorise(a));
+  Points u;
+  factor.solve(Points::Ones(3, rows), u);
+  for (int r = 0; r < rows; ++r) {
+    const double x = (r + 1.0) / (rows + 1);
+    EXPECT_NEAR(u(1, r), 0.5 * x * (1.0 - x), 1e-12) << r;  // rounding: condition number times ε
+  }
+}
+
+TEST(CholeskyFactor, AgreesWithADenseFactorisation) {
+  const BlockMatrix a = make_random_spd(40, 1);
+  const Points b = make_random_vector(40, 2);
+  const Eigen::VectorXd expected = to_dense(a).ldlt().solve(b.reshaped());
+  CholeskyFactor factor(a);
+  ASSERT_TRUE(factor.factorise(a));
+  Points x;
+  factor.solve(b, x);
+  EXPECT_LT((x.reshaped() - expected).norm(), 1e-13 * expected.norm());
+}
+
+TEST(CholeskyFactor, RefusesAnIndefiniteMatrix) {
+  BlockMatrix a = make_random_spd(10, 3);
+  a.block(find_block(a, 4, 4))(1, 1) = -20.0;
+  CholeskyFactor factor(a);
+  EXPECT_FALSE(factor.factorise(a));
+}
+
+TEST(ConjugateGradients, BlockJacobiReachesTheToleranceOfATrueResidual) {
+  const BlockMatrix a = make_random_spd(200, 4);
+  const Points b = make_random_vector(200, 5);
+  BlockJacobi jacobi;
+  jacobi.update(a);
+  ConjugateGradients cg;
+  Points x = Points::Zero(3, 200);
+  const SolveReport report = cg.solve(a, jacobi, b, 1e-10, 200, 1, x);
+  EXPECT_TRUE(report.converged);
+  EXPECT_LT((to_dense(a) * x.reshaped() - b.reshaped()).norm(), 1.01e-10 * b.norm());
+}
+
+TEST(ConjugateGradients, ExactFactorConvergesInOneIterationAndAStaleOneInFew) {
+  const BlockMatrix a = make_random_spd(100, 6);
+  BlockMatrix later = a;
+  later.values *= 1.0 + 1e-3;
+  for (int r = 0; r < 100; r += 7) later.block(later.diagonal[static_cast<std::size_t>(r)]) *= 1.05;
+  const Points b = make_random_vector(100, 7);
+  CholeskyFactor factor(a);
+  ASSERT_TRUE(factor.factorise(a));
+  StaleCholesky stale(factor);
+  ConjugateGradients cg;
+  Points x = Points::Zero(3, 100);
+  EXPECT_EQ(cg.solve(a, stale, b, 1e-10, 50, 1, x).iterations, 1);
+  x.setZero();
+  EXPECT_LE(cg.solve(later, stale, b, 1e-10, 50, 1, x).iterations, 8);
+  EXPECT_LT((to_dense(later) * x.reshaped() - b.reshaped()).norm(), 1.01e-10 * b.norm());
+}
+
+TEST(ConjugateGradients, ReportsWhenItDoesNotConverge) {
+  const BlockMatrix a = make_laplacian(300);
+  BlockJacobi jacobi;
+  jacobi.update(a);
+  ConjugateGradients cg;
+  Points x = Points::Zero(3, 300);
+  const SolveReport report = cg.solve(a, jacobi, Points::Ones(3, 300), 1e-12, 5, 1, x);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.iterations, 5);
+}
+
+TEST(ConjugateGradients, GivesEqualBitsOnAnyNumberOfThreads) {
+  const BlockMatrix a = make_laplacian(500);
+  BlockJacobi jacobi;
+  jacobi.update(a);
+  const Points b = make_random_vector(500, 8);
+  Points first = Points::Zero(3, 500);
+  ConjugateGradients cg;
+  static_cast<void>(cg.solve(a, jacobi, b, 1e-10, 700, 1, first));
+  for (const int threads : {2, 4, 7}) {
+    Points x = Points::Zero(3, 500);
+    static_cast<void>(cg.solve(a, jacobi, b, 1e-10, 700, threads, x));
+    EXPECT_TRUE((x.array() == first.array()).all()) << threads << " threads";
+  }
+}
+
+}  // namespace
+}  // namespace argil::linear
