@@ -21,7 +21,7 @@ struct Contact {
   std::array<int, 3> vertex = {-1, -1, -1};  ///< body vertices that carry the force; −1 beyond the last
   std::array<double, 3> weight = {};         ///< their shares, sum 1 (weights at entry)
   Vec3 normal = Vec3::Zero();  ///< mean direction in which a push tool moves the body, unit
-  Vec3 impulse = Vec3::Zero(); ///< ∫ depth·n dt over the tick on the body [m]; force on the body = k·impulse
+  Vec3 force = Vec3::Zero();   ///< k·∫ nᵀ(p−q) n dt: mean force of a push tool on the body over the interval [N]
   double stiffness = 0.0;      ///< k [N/m] × share of the tick in penetration: curvature for the implicit solve
   Vec3 point = Vec3::Zero();   ///< where the force acts at the end of the tick [m], for the torque and the picture
 };
@@ -31,7 +31,7 @@ struct Contacts {
   std::vector<Contact> contacts;
   std::vector<int> touched_triangle;  ///< body triangles with an inside point, increasing
   std::vector<double> touched_area;   ///< [m²] part of each that lies within the tool's reach
-  Vec3 force_on_tool = Vec3::Zero();  ///< [N], push sense: −Σ k·impulse
+  Vec3 force_on_tool = Vec3::Zero();  ///< [N], push sense: −Σ force
   Vec3 torque_on_tool = Vec3::Zero(); ///< [N m] about the hand's point at t₁
   void clear();
 };

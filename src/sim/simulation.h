@@ -1,0 +1,75 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "material/moisture.h"
+#include "sim/clock.h"
+#include "sim/params.h"
+#include "sim/record.h"
+#include "sim/stage.h"
+#include "sim/state.h"
+
+namespace argil::sim {
+
+/// One body, one tool, one loop. Feed it a device sample a tick; read records and frames between ticks.
+/// Same parameters and samples give the same bits on any number of threads.
+class Simulation {
+ public:
+  /// `tool`: closed surface in the tool frame; `start`: pose and mode before the first tick.
+  Simulation(Body body, const mesh::TriangleMesh& tool, const Params& params, const device::DeviceSample& start);
+
+  /// One haptic tick: the tool goes to `sample`, the paper's loop runs, the hand gets its force.
+  StepStatus tick(const device::DeviceSample& sample);
+
+  /// True when the tool touches or lies in the body now; a run must not start so.
+  bool tool_overlaps_body() const;
+
+  const State& state() const { return m_state; }
+  const Body& body() const { return m_body; }
+  const Clock& clock() const { return m_clock; }
+  const water::PoreWater& pore_water() const { return m_water; }
+  const solid::Solid& solid() const { return m_solid; }
+  const contact::Contacts& contacts() const { return m_contacts; }
+  const Params& params() const { return m_params; }
+  bool physics_due_last_tick() const { return m_clock.tick > 0 && m_clock.tick % m_params.rates.physics_period_ticks == 0; }
+  bool frame_due_last_tick() const { return m_clock.tick % m_params.rates.frame_period_ticks == 0; }
+
+  HapticRecord haptic_record() const;   ///< of the last tick
+  PhysicsRecord physics_record() const; ///< of the last physics step
+  Frame make_frame() const;             ///< the body as it is now
+  std::string state_hash() const;       ///< SHA-256 of everything a tick changes
+
+  void observe_stages(StageObserver* observer) { m_observer = observer; }
+
+ private:
+  // Stages of a tick, defined in step.cpp in the order in which they run.
+  void contact_step(int ticks);
+  void water_step();
+  StepStatus physics_step();
+  void apply_clay_kernel(double step_s);
+  void apply_plastic_flow(double step_s);
+
+  void spread_contact_force(int ticks);
+  void refresh_materials(double tolerance);
+
+  Params m_params;
+  Body m_body;
+  Clock m_clock;
+  State m_state;
+  material::MoistureTable m_moisture;
+  solid::Solid m_solid;
+  water::PoreWater m_water;
+  contact::ContactDetector m_detector;
+  contact::Contacts m_contacts;
+  device::OutputGate m_gate;
+  device::GatedForce m_gated;
+  std::vector<solid::PointStiffness> m_contact_stiffness;
+  std::vector<int> m_changed_tets;
+  Points m_external_force;
+  Points m_x_before;
+  Field m_dissipation;  // of each tet in the last physics step [J]
+  StageObserver* m_observer = nullptr;
+};
+
+}  // namespace argil::sim
