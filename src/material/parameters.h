@@ -46,6 +46,7 @@ struct Moisture {
   YieldLaw yield_law = YieldLaw::constant;
   double saturated_yield_ratio = 1.0;  ///< r [–], yield strain at S = 1 over dry, in (0, 1]
   double saturated_strength_ratio = 1.0 / 35.0;  ///< liquidity_index: strength and modulus at S = 1 over dry [Vardanega & Haigh 2014]
+  double refresh_tolerance = 1e-4;  ///< change of S [–] beyond which a tet's moduli are looked up again
   std::vector<double> table_saturation;     ///< table: increasing, from 0 to 1
   std::vector<double> table_youngs_modulus; ///< table: [Pa]
   std::vector<double> table_yield;          ///< table: yield strain [–]

@@ -1,0 +1,170 @@
+#include "sim/simulation.h"
+
+#include <utility>
+
+#include "base/check.h"
+#include "base/hash.h"
+#include "base/ordered_sum.h"
+#include "base/parallel.h"
+#include "material/plasticity.h"
+
+namespace argil::sim {
+
+Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& params,
+                       const device::DeviceSample& start)
+    : m_params(params),
+      m_body(std::move(body)),
+      m_moisture(params.elastic, params.plasticity.yield, params.moisture, params.water.porosity),
+      m_solid(m_body.mesh, m_body.topology, m_body.fixed, params.solid, params.threads),
+      m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation),
+      m_detector(m_body.topology.boundary, m_body.mesh.num_vertices(), tool, params.contact),
+      m_gate(params.device, params.rates.haptic_period) {
+  m_clock.period = params.rates.haptic_period;
+  const Eigen::Index n = m_body.mesh.num_vertices();
+  m_state.tool = {start.position, start.orientation};
+  m_state.mode = start.mode;
+  m_state.contact_tool = m_state.tool;
+  m_state.contact_x = m_body.mesh.vertices;
+  m_state.contact_force.setZero(3, n);
+  m_state.solid = {m_body.mesh.vertices, Points::Zero(3, n), TensorField::Zero(6, m_body.mesh.num_tets())};
+  m_external_force.setZero(3, n);
+  m_x_before = m_body.mesh.vertices;
+  m_dissipation.setZero(m_body.mesh.num_tets());
+  refresh_materials(-1.0);
+  const StepStatus rest = m_solid.update_kinematics(m_state.solid.x, 0);
+  ARGIL_ASSERT(rest.is_ok());
+}
+
+bool Simulation::tool_overlaps_body() const { return m_detector.overlaps(m_state.solid.x, m_state.tool); }
+
+/// Adds this detection's contact forces to the mean over the physics step, and keeps their stiffness for the solve.
+/// Wet and dry tools feel the body but do not deform it.
+void Simulation::spread_contact_force(int ticks) {
+  const bool acts = m_state.mode == device::ToolMode::push || m_state.mode == device::ToolMode::pull;
+  const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;
+  const double share = static_cast<double>(ticks) / m_params.rates.physics_period_ticks;
+  m_contact_stiffness.clear();
+  Vec3 weighted_centre = Vec3::Zero();
+  double weight = 0.0;
+  for (const contact::Contact& c : m_contacts.contacts) {
+    if (!acts) break;
+    for (std::size_t i = 0; i < 3 && c.vertex[i] >= 0; ++i)
+      m_state.contact_force.col(c.vertex[i]) += sign * share * c.weight[i] * c.force;
+    // A pulling contact has negative stiffness; left out, so that the system stays positive definite.
+    if (sign > 0.0) m_contact_stiffness.push_back({c.vertex, c.weight, c.normal, c.stiffness});
+    weighted_centre += c.force.norm() * c.point;
+    weight += c.force.norm();
+  }
+  m_state.is_pressed = weight > 0.0;
+  if (m_state.is_pressed) m_state.contact_centre = weighted_centre / weight;
+}
+
+/// v ← G_d^{h/h_ref}(r) v with r from the point of contact (eq. 9). A body that nothing presses is left free, else clay
+/// held in mid-air would freeze in whatever shape it has.
+void Simulation::apply_clay_kernel(double step_s) {
+  if (!m_state.is_pressed || m_params.kernel.form == material::KernelForm::off) return;
+  parallel_for(m_state.solid.v.cols(), m_params.threads, [&](std::ptrdiff_t v) {
+    const double r = (m_state.solid.x.col(v) - m_state.contact_centre).norm();
+    m_state.solid.v.col(v) *= material::compute_clay_factor(r, m_params.kernel, step_s);
+  });
+}
+
+void Simulation::apply_plastic_flow(double step_s) {
+  if (!m_params.plasticity.enabled) return;
+  TensorField& plastic = m_state.solid.plastic_strain;
+  parallel_for(plastic.cols(), m_params.threads, [&](std::ptrdiff_t t) {
+    const int tet = static_cast<int>(t);
+    const Vec6 before = plastic.col(t);
+    const Vec6 after = material::compute_plastic_strain(m_solid.strain().col(t), before, m_solid.material(tet).yield,
+                                                        m_params.plasticity, step_s);
+    m_dissipation(t) = 0.0;
+    if ((after.array() == before.array()).all()) return;
+    // At fixed strain, the elastic energy that flow releases is what it dissipates.
+    m_dissipation(t) = m_solid.compute_elastic_energy(tet, before) - m_solid.compute_elastic_energy(tet, after);
+    plastic.col(t) = after;
+  });
+  m_state.plastic_dissipation += ordered_sum(m_dissipation.size(), [&](std::ptrdiff_t t) { return m_dissipation(t); });
+}
+
+/// Gives the solid the moduli and yield of every tet whose saturation moved by more than `tolerance` since last time.
+void Simulation::refresh_materials(double tolerance) {
+  m_water.collect_changed(tolerance, m_changed_tets);
+  for (const int tet : m_changed_tets) {
+    const double S = m_water.saturation()(tet);
+    const double scale = m_body.modulus_scale.size() > 0 ? m_body.modulus_scale(tet) : 1.0;
+    const material::WetState wet = m_moisture.at(S);
+    m_solid.set_material(tet, {scale * wet.lambda, scale * wet.mu, wet.yield});
+    if (!m_moisture.is_isotropic()) m_solid.set_anisotropic_stiffness(tet, scale * m_moisture.stiffness_at(S));
+  }
+}
+
+HapticRecord Simulation::haptic_record() const {
+  HapticRecord record;
+  record.tick = m_clock.tick;
+  record.time = static_cast<double>(m_clock.tick) * m_clock.period;
+  record.tool_position = m_state.tool.position;
+  record.tool_orientation = m_state.tool.orientation;
+  record.force = m_state.hand_force;
+  record.torque = m_state.hand_torque;
+  record.device_force = m_gated.force;
+  record.mode = m_state.mode;
+  record.force_age = m_state.force_age;
+  record.num_contacts = static_cast<int>(m_contacts.contacts.size());
+  record.gate_events = m_gated.events;
+  return record;
+}
+
+PhysicsRecord Simulation::physics_record() const {
+  PhysicsRecord record;
+  record.tick = m_clock.tick;
+  record.time = static_cast<double>(m_clock.tick) * m_clock.period;
+  record.kinetic_energy = m_solid.compute_kinetic_energy(m_state.solid);
+  record.elastic_energy = m_solid.compute_elastic_energy(m_state.solid);
+  record.plastic_dissipation = m_state.plastic_dissipation;
+  record.contact_work = m_state.contact_work;
+  record.water_mass = m_water.mass();
+  record.water_added = m_water.ledger().added;
+  record.water_removed = m_water.ledger().removed;
+  record.iterations = m_solid.counters().iterations;
+  record.factorisations = m_solid.counters().factorisations;
+  record.residual = m_solid.counters().residual;
+  record.active_nodes = m_solid.num_free();
+  record.min_volume_ratio = m_solid.min_volume_ratio();
+  record.max_plastic_strain = m_state.solid.plastic_strain.colwise().norm().maxCoeff();
+  return record;
+}
+
+Frame Simulation::make_frame() const {
+  Frame frame;
+  frame.tick = m_clock.tick;
+  frame.time = static_cast<double>(m_clock.tick) * m_clock.period;
+  frame.position = m_state.solid.x;
+  frame.saturation = m_water.saturation();
+  frame.plastic_strain = m_state.solid.plastic_strain;
+  if (m_body.skin_embedding.num_points() > 0) {
+    embed::interpolate_positions(m_body.skin_embedding, m_body.mesh.tets, m_state.solid.x, frame.skin_position);
+    embed::interpolate_tet_field(m_body.skin_embedding, m_water.saturation(), frame.skin_saturation);
+    embed::compute_region_of_influence(frame.skin_position, m_state.tool.position, m_params.kernel.radius,
+                                       frame.skin_influence);
+  }
+  frame.state_hash = state_hash();
+  return frame;
+}
+
+std::string Simulation::state_hash() const {
+  Sha256 hash;
+  const auto add = [&hash](const auto& array) { hash.add(array.data(), static_cast<std::size_t>(array.size())); };
+  const double tick = static_cast<double>(m_clock.tick);
+  hash.add(&tick, 1);
+  add(m_state.tool.position);
+  add(m_state.tool.orientation.coeffs());
+  add(m_state.hand_force);
+  add(m_state.hand_torque);
+  add(m_state.solid.x);
+  add(m_state.solid.v);
+  add(m_state.solid.plastic_strain);
+  add(m_water.saturation());
+  return hash.hex_digest();
+}
+
+}  // namespace argil::sim

@@ -1,0 +1,84 @@
+// One haptic tick: the paper's loop. Equation numbers are the paper's, listed in src/README.md.
+
+#include "sim/simulation.h"
+
+namespace argil::sim {
+
+StepStatus Simulation::tick(const device::DeviceSample& sample) {
+  const RateParams& rates = m_params.rates;
+  const bool physics_due = m_clock.due(rates.physics_period_ticks);
+
+  // Device: the tool goes to where the hand is at the end of the tick.
+  m_state.tool = {sample.position, sample.orientation};
+  m_state.mode = sample.mode;
+
+  // Contact: eqs. 7 and 8 over the path since the last detection, reaction to the hand.
+  ++m_state.force_age;
+  if (rates.between_frames == BetweenFrames::re_evaluate)
+    contact_step(1);
+  else if (physics_due)
+    contact_step(rates.physics_period_ticks);
+
+  // Physics: what the water and the contact force do to the body.
+  if (m_clock.due(rates.water_period_ticks)) water_step();
+  if (physics_due) ARGIL_TRY(physics_step());
+
+  // Hand: the last force, old or new, through the device's limits.
+  m_gated = m_gate.apply(m_state.hand_force, m_state.hand_torque);
+  m_clock.advance();
+  return StepStatus::ok();
+}
+
+/// Detection over the last `ticks` ticks; both paths start where the last detection ended, so none has a gap.
+void Simulation::contact_step(int ticks) {
+  const StageScope scope(m_observer, Stage::contact);
+  m_detector.find_contacts(m_state.contact_x, m_state.solid.x, m_state.contact_tool, m_state.tool, m_contacts);
+  m_state.contact_x = m_state.solid.x;
+  m_state.contact_tool = m_state.tool;
+  const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;  // pull: force reversed
+  m_state.hand_force = sign * m_contacts.force_on_tool;
+  m_state.hand_torque = sign * m_contacts.torque_on_tool;
+  m_state.force_age = 0;
+  spread_contact_force(ticks);
+}
+
+/// Uptake from or to the tool, diffusion, then moduli and yield of the tets whose saturation moved (eq. 6).
+void Simulation::water_step() {
+  const StageScope scope(m_observer, Stage::water);
+  const double h = m_clock.seconds(m_params.rates.water_period_ticks);
+  const bool wet = m_state.mode == device::ToolMode::wet;
+  if (wet || m_state.mode == device::ToolMode::dry)
+    m_water.exchange(m_contacts.touched_triangle, m_contacts.touched_area, wet ? 1 : -1, h);
+  m_water.diffuse(h);
+  refresh_materials(m_params.moisture.refresh_tolerance);
+}
+
+/// Eq. 2 by one linearised backward Euler step: solve, scale the velocity (eq. 9), move, then plastic flow.
+StepStatus Simulation::physics_step() {
+  const double h = m_clock.seconds(m_params.rates.physics_period_ticks);
+  solid::SolidState& solid = m_state.solid;
+  {
+    const StageScope scope(m_observer, Stage::assemble);
+    m_external_force = m_state.contact_force;
+    if (m_body.nodal_force.size() > 0) m_external_force += m_body.nodal_force;
+    m_solid.assemble(solid, m_external_force, m_contact_stiffness, h);  // A, b from the kept F, R, ε
+  }
+  {
+    const StageScope scope(m_observer, Stage::solve);
+    ARGIL_TRY(m_solid.solve(solid, m_clock.tick));  // A v = b
+    apply_clay_kernel(h);                           // v ← G_d^{h/h_ref} v
+    m_x_before = solid.x;
+    solid.x += h * solid.v;
+    m_state.contact_work += m_state.contact_force.cwiseProduct(solid.x - m_x_before).sum();
+    m_state.contact_force.setZero();
+  }
+  {
+    const StageScope scope(m_observer, Stage::kinematics);
+    ARGIL_TRY(m_solid.update_kinematics(solid.x, m_clock.tick));  // F → R → ε
+  }
+  const StageScope scope(m_observer, Stage::plasticity);
+  apply_plastic_flow(h);  // trial ε_p of every tet, committed at once
+  return StepStatus::ok();
+}
+
+}  // namespace argil::sim
