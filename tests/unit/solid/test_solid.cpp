@@ -1,0 +1,227 @@
+// The implicit step on small meshes against closed forms: free fall, a damped oscillator, uniaxial tension, a rigid turn.
+#include "solid/solid.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "support/block_mesh.h"
+
+namespace argil::solid {
+namespace {
+
+struct Scene {
+  mesh::TetMesh mesh;
+  SolidParams params;
+  Solid solid;
+  SolidState state;
+  Points load;
+
+  Scene(mesh::TetMesh m, std::vector<int> fixed, const SolidParams& p, double E, double nu, int threads = 1)
+      : mesh(std::move(m)), params(p), solid(mesh, mesh::make_topology(mesh), std::move(fixed), p, threads) {
+    state = {mesh.vertices, Points::Zero(3, mesh.num_vertices()), TensorField::Zero(6, mesh.num_tets())};
+    load.setZero(3, mesh.num_vertices());
+    for (int t = 0; t < mesh.num_tets(); ++t)
+      solid.set_material(t, {E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu)), 1.0});
+    EXPECT_TRUE(solid.update_kinematics(state.x, 0).is_ok());
+  }
+  StepStatus step(double h) {
+    solid.assemble(state, load, {}, h);
+    ARGIL_TRY(solid.solve(state, 0));
+    state.x += h * state.v;
+    return solid.update_kinematics(state.x, 0);
+  }
+};
+
+SolidParams make_params(SolverKind solver) {
+  SolidParams params;
+  params.solver = solver;
+  params.solver_tolerance = 1e-13;
+  return params;
+}
+
+class EverySolver : public testing::TestWithParam<SolverKind> {};
+
+TEST_P(EverySolver, FreeFallFollowsBackwardEulerExactly) {
+  SolidParams params = make_params(GetParam());
+  params.gravity = {0.0, 0.0, -9.81};
+  Scene scene(test::make_block(2, 2, 2, Vec3(0.1, 0.1, 0.1)), {}, params, 1e5, 0.3);
+  const double h = 0.002;
+  for (int k = 0; k < 20; ++k) ASSERT_TRUE(scene.step(h).is_ok());
+  // v_n = n g h, x_n = g h² n(n+1)/2
+  const Points moved = scene.state.x - scene.mesh.vertices;
+  EXPECT_LT((moved.row(2).array() + 9.81 * h * h * 210.0).abs().maxCoeff(), 1e-12);
+  EXPECT_LT(moved.topRows<2>().norm(), 1e-12);
+}
+
+TEST_P(EverySolver, UniaxialTensionReachesHookesLaw) {
+  // Bar under end traction, held without lateral constraint: u = F L/(E A), contraction −ν u/L. P1 is exact for it.
+  const double E = 1e6;
+  const double nu = 0.35;
+  const Vec3 size(0.2, 0.05, 0.05);
+  mesh::TetMesh mesh = test::make_block(4, 2, 2, size);
+  SolidParams params = make_params(GetParam());
+  params.model = StrainModel::linear;
+  params.rayleigh_mass = 300.0;
+  // The face x = 0 may slide in its plane; with symmetric corner loads on both ends no support is needed at all.
+  Scene scene(std::move(mesh), {}, params, E, nu);
+  const double stress = 1e3;
+  const mesh::Topology topology = mesh::make_topology(scene.mesh);
+  for (Eigen::Index f = 0; f < topology.boundary.cols(); ++f) {
+    const Vec3 a = scene.mesh.vertices.col(topology.boundary(0, f));
+    const Vec3 b = scene.mesh.vertices.col(topology.boundary(1, f));
+    const Vec3 c = scene.mesh.vertices.col(topology.boundary(2, f));
+    const Vec3 area = 0.5 * (b - a).cross(c - a);
+    if (std::abs(area.x()) < 0.9 * area.norm()) continue;
+    for (int k = 0; k < 3; ++k) scene.load(0, topology.boundary(k, f)) += stress * area.x() / 3.0;
+  }
+  for (int k = 0; k < 3000; ++k) ASSERT_TRUE(scene.step(0.01).is_ok());
+  for (int t = 0; t < scene.mesh.num_tets(); ++t) {
+    EXPECT_NEAR(scene.solid.strain()(0, t), stress / E, 1e-9 * stress / E) << t;
+    EXPECT_NEAR(scene.solid.strain()(1, t), -nu * stress / E, 1e-9 * stress / E) << t;
+    EXPECT_NEAR(scene.solid.strain().col(t).tail<3>().norm(), 0.0, 1e-9 * stress / E) << t;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver,
+                         testing::Values(SolverKind::cholesky, SolverKind::pcg_cholesky, SolverKind::pcg_jacobi));
+
+TEST(Solid, OscillatorLosesAmplitudeAsBackwardEulerPredicts) {
+  // One free vertex is a linear oscillator in each eigendirection of its 3×3 stiffness: |z_{n+1}| = |z_n|/√(1+(hω)²),
+  // where z = ωu + iv.
+  mesh::TetMesh mesh = test::make_block(1, 1, 1, Vec3(1, 1, 1));
+  std::vector<int> fixed = {0, 1, 2, 3, 4, 5, 6};
+  SolidParams params = make_params(SolverKind::cholesky);
+  params.model = StrainModel::linear;
+  Scene scene(std::move(mesh), fixed, params, 1e5, 0.0);
+  // Stiffness of the free vertex from the force of unit displacements (linear model).
+  Mat3 K;
+  for (int k = 0; k < 3; ++k) {
+    SolidState moved = scene.state;
+    moved.x(k, 7) += 1.0;
+    ASSERT_TRUE(scene.solid.update_kinematics(moved.x, 0).is_ok());
+    scene.solid.assemble(moved, scene.load, {}, 1e-3);
+    K.col(k) = scene.solid.internal_force().col(7);
+  }
+  const double m = scene.solid.mass()(7);
+  const Eigen::SelfAdjointEigenSolver<Mat3> modes(K);
+  const Vec3 direction = modes.eigenvectors().col(1);
+  const double omega = std::sqrt(modes.eigenvalues()(1) / m);
+  const double h = 0.2 / omega;
+  scene.state.x.col(7) += 1e-3 * direction;
+  ASSERT_TRUE(scene.solid.update_kinematics(scene.state.x, 0).is_ok());
+  for (int k = 0; k < 25; ++k) ASSERT_TRUE(scene.step(h).is_ok());
+  const double u = direction.dot(scene.state.x.col(7) - scene.mesh.vertices.col(7));
+  const double v = direction.dot(scene.state.v.col(7));
+  const double expected = 1e-3 * omega * std::pow(1.0 + h * h * omega * omega, -12.5);
+  EXPECT_NEAR(std::hypot(omega * u, v), expected, 1e-10 * expected);
+}
+
+TEST(Solid, RigidTurnProducesNoForceInTheCorotationalModelAndTheKnownStrainInTheLinearOne) {
+  const double angle = 2.0;
+  const Mat3 Q = Eigen::AngleAxisd(angle, Vec3(1, 2, 2) / 3.0).toRotationMatrix();
+  for (const StrainModel model : {StrainModel::corotational, StrainModel::linear}) {
+    SolidParams params = make_params(SolverKind::cholesky);
+    params.model = model;
+    params.min_volume_ratio = -10.0;
+    Scene scene(test::make_block(2, 1, 1, Vec3(0.2, 0.1, 0.1)), {}, params, 1e5, 0.3);
+    const Points x = Q * scene.mesh.vertices;
+    ASSERT_TRUE(scene.solid.update_kinematics(x, 0).is_ok());
+    // sym(Q) − 1 = (cos θ − 1)(1 − a⊗a): norm √2 (1 − cos θ)
+    const double expected = model == StrainModel::linear ? std::numbers::sqrt2 * (1.0 - std::cos(angle)) : 0.0;
+    for (int t = 0; t < scene.mesh.num_tets(); ++t)
+      EXPECT_NEAR(scene.solid.strain().col(t).norm(), expected, 1e-13);
+  }
+}
+
+TEST(Solid, FreeBodyKeepsItsMomentum) {
+  Scene scene(test::make_block(3, 2, 2, Vec3(0.15, 0.1, 0.1)), {}, make_params(SolverKind::pcg_cholesky), 1e5, 0.3);
+  for (Eigen::Index v = 0; v < scene.state.v.cols(); ++v)
+    scene.state.v.col(v) = Vec3(0.3, -0.1, 0.2) + 0.2 * std::sin(7.0 * static_cast<double>(v)) * Vec3(1, 1, -1);
+  const Vec3 before = scene.state.v * scene.solid.mass();
+  for (int k = 0; k < 50; ++k) ASSERT_TRUE(scene.step(1e-3).is_ok());
+  const Vec3 after = scene.state.v * scene.solid.mass();
+  EXPECT_LT((after - before).norm(), 1e-11 * before.norm());
+}
+
+TEST(Solid, LumpedMassIsDensityTimesVolume) {
+  Scene scene(test::make_block(3, 2, 2, Vec3(0.3, 0.2, 0.1)), {}, make_params(SolverKind::cholesky), 1e5, 0.3);
+  EXPECT_NEAR(scene.solid.mass().sum(), 1500.0 * 0.3 * 0.2 * 0.1, 1e-12);
+}
+
+TEST(Solid, PlasticStrainIsTheStressFreeShape) {
+  // A body whose total strain equals its plastic strain is at rest in the deformed place.
+  Scene scene(test::make_block(2, 2, 2, Vec3(0.1, 0.1, 0.1)), {}, make_params(SolverKind::cholesky), 1e5, 0.3);
+  const Mat3 stretch = Vec3(1.1, 0.95, 1.0).asDiagonal();
+  scene.state.x = stretch * scene.mesh.vertices;
+  ASSERT_TRUE(scene.solid.update_kinematics(scene.state.x, 0).is_ok());
+  scene.state.plastic_strain = scene.solid.strain();
+  ASSERT_TRUE(scene.step(1e-3).is_ok());
+  EXPECT_LT(scene.state.v.norm(), 1e-12);
+}
+
+TEST(Solid, InvertedTetStopsTheStepAndIsNamed) {
+  Scene scene(test::make_block(1, 1, 1, Vec3(1, 1, 1)), {}, make_params(SolverKind::cholesky), 1e5, 0.3);
+  Points x = scene.mesh.vertices;
+  x.col(7) = Vec3(-1, -1, -1);
+  const StepStatus status = scene.solid.update_kinematics(x, 42);
+  ASSERT_FALSE(status.is_ok());
+  EXPECT_EQ(status.failure().tick, 42);
+  EXPECT_GE(status.failure().element, 0);
+  EXPECT_LE(status.failure().value, 0.0);
+}
+
+TEST(Solid, NanInThePositionsStopsTheStep) {
+  Scene scene(test::make_block(1, 1, 1, Vec3(1, 1, 1)), {}, make_params(SolverKind::cholesky), 1e5, 0.3);
+  Points x = scene.mesh.vertices;
+  x(1, 3) = std::nan("");
+  EXPECT_FALSE(scene.solid.update_kinematics(x, 0).is_ok());
+}
+
+TEST(Solid, ContactStiffnessActsAsASpringBetweenBodyAndTool) {
+  // One free vertex of mass m, spring k at velocity v along n: (m + h²k) v' = m v when nothing else acts (E tiny).
+  mesh::TetMesh mesh = test::make_block(1, 1, 1, Vec3(1, 1, 1));
+  Scene scene(std::move(mesh), {0, 1, 2, 3, 4, 5, 6}, make_params(SolverKind::cholesky), 1e-9, 0.0);
+  const double h = 0.01;
+  const double m = scene.solid.mass()(7);
+  const double k = 3.0 * m / (h * h);
+  scene.state.v.col(7) = Vec3(0, 0, -2);
+  const PointStiffness contact{{7, -1, -1}, {1.0, 0.0, 0.0}, Vec3::UnitZ(), k};
+  scene.solid.assemble(scene.state, scene.load, std::span(&contact, 1), h);
+  ASSERT_TRUE(scene.solid.solve(scene.state, 0).is_ok());
+  EXPECT_NEAR(scene.state.v(2, 7), -0.5, 1e-9);
+}
+
+TEST(Solid, EqualBitsOnAnyNumberOfThreads) {
+  Points first;
+  for (const int threads : {1, 2, 4, 7}) {
+    SolidParams params = make_params(SolverKind::pcg_cholesky);
+    params.solver_tolerance = 1e-6;
+    Scene scene(test::make_block(4, 3, 3, Vec3(0.2, 0.1, 0.1)), {0, 1, 2}, params, 1e5, 0.4, threads);
+    scene.load.col(60) = Vec3(0.2, -0.5, 1.0);
+    for (int k = 0; k < 30; ++k) ASSERT_TRUE(scene.step(1e-3).is_ok());
+    if (threads == 1) first = scene.state.x;
+    EXPECT_TRUE((scene.state.x.array() == first.array()).all()) << threads;
+  }
+}
+
+TEST(FindVertices, CollectsEveryRegionOnceInOrder) {
+  const mesh::TetMesh mesh = test::make_block(2, 2, 2, Vec3(1, 1, 1));
+  Region bottom;
+  bottom.kind = Region::Kind::half_space;
+  bottom.offset = 1e-9;
+  Region corner;
+  corner.kind = Region::Kind::sphere;
+  corner.radius = 0.1;
+  Region one;
+  one.kind = Region::Kind::nodes;
+  one.nodes = {26, 3};
+  const std::vector<Region> regions = {one, bottom, corner};
+  EXPECT_EQ(find_vertices(mesh.vertices, regions), (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 26}));
+}
+
+}  // namespace
+}  // namespace argil::solid
