@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "mesh/topology.h"
 #include "water/parameters.h"
@@ -30,16 +31,47 @@ class PoreWater {
   /// round-off. Only tets with water or a wet neighbour are touched. Returns the number of substeps.
   int diffuse(double step_s);
 
+  /// Replaces `tets` by those whose saturation moved by more than `tolerance` since they were last collected, in
+  /// increasing order; the first call collects all.
+  void collect_changed(double tolerance, std::vector<int>& tets);
+
   const Field& saturation() const { return m_saturation; }
-  double mass() const;                  ///< Σ ρ_w n V S [kg], compensated sum
-  const WaterLedger& ledger() const { return m_ledger; }
-  double ledger_error() const;          ///< (mass − initial − added + removed) / capacity [–]
-  double monotone_step() const;         ///< largest substep [s] that keeps the maximum principle
+  double capacity(int tet) const { return m_capacity(tet); }  ///< mass at S = 1 [kg]
+  double mass() const;                                        ///< Σ capacity·S [kg], compensated sum
+  WaterLedger ledger() const;
+  double ledger_error() const;                                ///< (mass − initial − added + removed) / Σ capacity [–]
+  double monotone_step() const { return m_monotone_step; }    ///< longest substep [s] that keeps the maximum principle
+  int num_active() const { return static_cast<int>(m_active.size()); }  ///< tets that are wet or next to a wet one
 
  private:
+  /// Sum that carries its rounding error along [Neumaier 1974].
+  struct CompensatedSum {
+    double sum = 0.0;
+    double error = 0.0;
+    void add(double x);
+    double value() const { return sum + error; }
+  };
+
+  void activate(int tet);
+  void activate_around(int tet);
+  void give(int tet, double mass);
+
   WaterParams m_params;
+  Tets m_neighbours;
+  std::vector<int> m_boundary_tet;
+  Eigen::Matrix4Xd m_conductance;  // D·A_f/d_f across the face opposite to each corner [m³/s]; 0 at the boundary
+  Field m_volume;                  // rest volume [m³]
+  Field m_capacity;
   Field m_saturation;
-  WaterLedger m_ledger;
+  Field m_flow;       // Σ of the flows into each active tet [m³/s of S]
+  Field m_collected;  // saturation when collect_changed last named the tet
+  std::vector<char> m_is_active;
+  std::vector<int> m_active;
+  std::vector<int> m_touched;
+  bool m_all_pending = true;
+  double m_monotone_step = 0.0;
+  double m_initial = 0.0;
+  CompensatedSum m_added, m_removed;
 };
 
 }  // namespace argil::water

@@ -1,0 +1,57 @@
+#include "material/plasticity.h"
+
+#include <cmath>
+
+#include "base/mandel.h"
+
+namespace argil::material {
+namespace {
+
+/// Norm of a symmetric tensor: Frobenius, or the Euclidean norm of its six components 11 22 33 23 13 12 with tensor
+/// shear, as [Mueller2004] print it. The latter changes when the axes are turned.
+double compute_norm(const Vec6& mandel, StrainNorm norm) {
+  if (norm == StrainNorm::frobenius) return mandel.norm();
+  return std::sqrt(mandel.head<3>().squaredNorm() + 0.5 * mandel.tail<3>().squaredNorm());
+}
+
+Vec6 deviator(Vec6 e) {
+  e.head<3>().array() -= e.head<3>().sum() / 3.0;
+  return e;
+}
+
+}  // namespace
+
+Vec6 compute_plastic_strain(const Vec6& strain, const Vec6& plastic_strain, double yield, const Plasticity& law,
+                            double step_s) {
+  Vec6 elastic = strain - plastic_strain;
+  if (law.deviatoric) elastic = deviator(elastic);
+  if (!(compute_norm(elastic, law.norm) > yield)) return plastic_strain;
+  const double rate_time = law.creep_per_s * step_s;
+  const double flow = law.form == FlowForm::literal ? rate_time : -std::expm1(-rate_time);
+  Vec6 after = plastic_strain + flow * elastic;
+  const double norm = compute_norm(after, law.norm);
+  if (norm > law.max) after *= law.max / norm;
+  return after;
+}
+
+double compute_clay_weight(double r, const ClayKernel& kernel) {
+  const double near = 1.0 + kernel.k1 * r;
+  if (r < kernel.radius) return 1.0 / near;
+  const double exponent = kernel.k2 * r;
+  constexpr double kLargestExponent = 700.0;  // e^709.8 is the last finite double
+  return exponent > kLargestExponent ? 0.0 : 1.0 / (near + std::exp(exponent));
+}
+
+double compute_clay_factor(double r, const ClayKernel& kernel, double step_s) {
+  switch (kernel.form) {
+    case KernelForm::off:
+      return 1.0;
+    case KernelForm::per_step:
+      return compute_clay_weight(r, kernel);
+    case KernelForm::rate:
+      return std::pow(compute_clay_weight(r, kernel), step_s / kernel.reference_step);
+  }
+  return 1.0;
+}
+
+}  // namespace argil::material
