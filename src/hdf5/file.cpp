@@ -1,0 +1,142 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "base/error.h"
+#include "hdf5/internal.h"
+
+namespace argil::hdf5 {
+
+using namespace internal;  // NOLINT: the folder's own helpers
+
+namespace {
+
+Handle file_handle(hid_t id) {
+  return {id, [](Id i) -> int { return H5Fclose(i); }};
+}
+
+const char* const kBusy =
+    "another process has this file open (a run that writes it, or a reader); wait for it or choose another "
+    "name";
+
+// Metadata leaves the cache at flush and close only, so that a process killed between two flushes leaves what
+// the first of them wrote.
+bool keep_metadata_until_flush(hid_t access) {
+  H5AC_cache_config_t cache;
+  cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+  if (H5Pget_mdc_config(access, &cache) < 0) return false;
+  cache.evictions_enabled = false;
+  cache.incr_mode = H5C_incr__off;
+  cache.flash_incr_mode = H5C_flash_incr__off;
+  cache.decr_mode = H5C_decr__off;
+  return H5Pset_mdc_config(access, &cache) >= 0;
+}
+
+Handle access_properties(const std::string& name) {
+  Handle access = property(H5Pcreate(H5P_FILE_ACCESS));
+  // Earliest formats: superblock 0 has no "open for writing" mark, so a killed run's file opens without
+  // repair.
+  bool ok = H5Pset_libver_bounds(access.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V110) >= 0 &&
+            keep_metadata_until_flush(access.id());
+#if H5_VERSION_GE(1, 10, 7)
+  ok = ok &&
+       H5Pset_file_locking(access.id(), true, true) >= 0;  // true, true: go on where the system has no locks
+#endif
+  if (!ok) throw IoError(name, "cannot set up HDF5: " + take_reason());
+  return access;
+}
+
+bool is_same_file(int descriptor, const std::string& name) {
+  struct stat opened {};
+  struct stat named {};
+  return fstat(descriptor, &opened) == 0 && stat(name.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+// H5Fcreate truncates before it takes its lock, which would destroy the file of a running writer. So the old
+// file is locked and removed first, and the new one is made with O_EXCL, which only one of two competitors
+// can.
+void remove_unless_busy(const std::string& name) {
+  const int descriptor = open(name.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) {
+    if (errno == ENOENT) return;
+    throw IoError(name, std::string("cannot be replaced: ") + std::strerror(errno));
+  }
+  struct stat status {};
+  std::string problem;
+  if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode))
+    problem = "is not a regular file";
+  else if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    problem = kBusy;
+  else if (is_same_file(descriptor, name) && unlink(name.c_str()) != 0)
+    problem = std::string("cannot be replaced: ") + std::strerror(errno);
+  ::close(descriptor);
+  if (!problem.empty()) throw IoError(name, problem);
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& action) {
+  const std::string reason = take_reason();
+  if (reason == std::strerror(EWOULDBLOCK)) throw IoError(name, kBusy);
+  throw IoError(name, action + ": " + reason);
+}
+
+}  // namespace
+
+File File::create(const std::string& name) {
+  start_library();
+  std::error_code ignored;  // a name that cannot be resolved fails below, with the system's reason
+  const std::filesystem::path target = std::filesystem::weakly_canonical(name, ignored);
+  const std::string real = ignored ? name : target.string();
+  remove_unless_busy(real);
+  const Handle access = access_properties(name);
+  const Handle creation = property(H5Pcreate(H5P_FILE_CREATE));
+  H5Pset_obj_track_times(creation.id(), false);
+  Handle made = file_handle(H5Fcreate(real.c_str(), H5F_ACC_EXCL, creation.id(), access.id()));
+  if (made.id() < 0) refuse(name, "cannot be written");
+  return {std::move(made), name};
+}
+
+File File::open_for_reading(const std::string& name) {
+  start_library();
+  const Handle access = access_properties(name);
+  Handle opened = file_handle(H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()));
+  if (opened.id() < 0) refuse(name, "cannot be read");
+  return {std::move(opened), name};
+}
+
+File File::open_for_writing(const std::string& name) {
+  start_library();
+  const Handle access = access_properties(name);
+  Handle opened = file_handle(H5Fopen(name.c_str(), H5F_ACC_RDWR, access.id()));
+  if (opened.id() < 0) refuse(name, "cannot be written");
+  return {std::move(opened), name};
+}
+
+Group File::root() const {
+  Handle opened = group(H5Gopen2(m_handle.id(), "/", H5P_DEFAULT));
+  if (opened.id() < 0) throw IoError(m_name, "cannot open /: " + take_reason());
+  return {std::move(opened), m_name, "/"};
+}
+
+void File::flush() {
+  if (H5Fflush(m_handle.id(), H5F_SCOPE_LOCAL) < 0)
+    throw IoError(m_name, "cannot be written: " + take_reason());
+}
+
+void File::close() {
+  if (m_handle.reset() < 0) throw IoError(m_name, "cannot be closed: " + take_reason());
+}
+
+bool is_hdf5(const std::string& file) {
+  start_library();
+  const bool yes = H5Fis_hdf5(file.c_str()) > 0;
+  H5Eclear2(H5E_DEFAULT);
+  return yes;
+}
+
+}  // namespace argil::hdf5
