@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string_view>
+
 #include "base/types.h"
 
 namespace argil::device {
@@ -12,10 +15,25 @@ enum class ToolMode : std::uint8_t {
   dry,   ///< takes water; feels a force but does not deform the body
 };
 
+inline constexpr int kNumToolModes = 4;
+
+/// "push", "pull", "wet" or "dry".
+constexpr std::string_view to_string(ToolMode mode) {
+  constexpr std::string_view kNames[kNumToolModes] = {"push", "pull", "wet", "dry"};
+  return kNames[static_cast<std::size_t>(mode)];
+}
+
+/// The mode of that name; nothing for any other text.
+constexpr std::optional<ToolMode> find_tool_mode(std::string_view name) {
+  for (int i = 0; i < kNumToolModes; ++i)
+    if (name == to_string(static_cast<ToolMode>(i))) return static_cast<ToolMode>(i);
+  return std::nullopt;
+}
+
 /// One reading of the haptic device, in world coordinates.
 struct DeviceSample {
-  Vec3 position = Vec3::Zero();        ///< hand's point [m]
-  Quat orientation = Quat::Identity(); ///< unit quaternion, tool frame to world
+  Vec3 position = Vec3::Zero();         ///< hand's point [m]
+  Quat orientation = Quat::Identity();  ///< unit quaternion, tool frame to world
   ToolMode mode = ToolMode::push;
 };
 

@@ -16,9 +16,13 @@ struct DeviceToWorld {
 
 /// How a trace file is read when its header does not say.
 struct TraceOptions {
-  DeviceToWorld device_to_world;      ///< applied after the header's own transform
+  DeviceToWorld device_to_world;           ///< applied after the header's own transform
   ToolMode default_mode = ToolMode::push;  ///< when the file has no mode column
-  double default_rate_hz = 0.0;       ///< > 0: sampling rate when the file has no time column
+  double default_rate_hz = 0.0;  ///< > 0: sampling rate when the file has neither a time column nor a rate
+  /// CSV only: names of the columns from the left, in place of the file's header row; "" or "-" leaves a
+  /// column out, as do columns past the list. For files without a header row, or whose names do not say what
+  /// they hold.
+  std::vector<std::string> columns;
 };
 
 /// A recorded motion in world coordinates, times increasing.
@@ -26,17 +30,28 @@ struct Trace {
   std::vector<double> time;  ///< [s]
   std::vector<DeviceSample> samples;
   std::string file;
-  std::string device;        ///< name from the header, may be empty
-  std::string sha256;        ///< of the file's bytes
+  std::string device;                        ///< name from the header, may be empty
+  std::string sha256;                        ///< of the file's bytes
+  std::vector<std::string> ignored_columns;  ///< columns that were not used (velocity, force, …)
   double duration() const { return time.back() - time.front(); }
 };
 
-/// Reads a CSV (header row names columns) or HDF5 trace. Throws InputError (file, line, value, remedy) for gaps,
-/// unsorted times, NaN, zero quaternions, unknown modes; IoError when the file cannot be read.
+/// Reads a CSV (header row names columns) or HDF5 trace; the formats are in this folder's README. Throws
+/// InputError (file, line, value, remedy) for gaps, unsorted times, NaN, zero quaternions, unknown modes;
+/// IoError when the file cannot be read.
 Trace read_trace(const std::string& file, const TraceOptions& options);
 
 /// The sample at `time` seconds after the trace's first: position linear, orientation slerp along the shorter
-/// arc, mode of the last sample at or before. Outside the trace the nearest end is held.
+/// arc, mode of the last sample at or before. Outside the trace the nearest end is held. A query at a
+/// sample's time (within 1e-6 of the interval) gives that sample's bits, so a recording replayed at its own
+/// rate is exact. O(log n), no allocation.
 DeviceSample interpolate(const Trace& trace, double time);
+
+/// q scaled to unit length; unchanged to the bit when its norm is 1 within rounding, so that a recorded unit
+/// quaternion is read back as it was. Requires a finite q that is not zero.
+Quat make_unit(const Quat& q);
+
+/// Rotation from `a` to `b` at the fraction s in [0, 1] of the shorter arc between them. Both of unit length.
+Quat slerp_shorter(const Quat& a, const Quat& b, double s);
 
 }  // namespace argil::device

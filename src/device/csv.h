@@ -1,0 +1,36 @@
+#pragma once
+
+// Text fields of one CSV record (RFC 4180, without line breaks inside quotes) and numbers without a locale.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace argil::device::internal {
+
+/// `text` without blanks at both ends.
+std::string_view trim(std::string_view text);
+
+/// Fields of one record into `fields` (its storage is reused), trimmed, quotes taken off. False when a quote
+/// is not closed or is followed by more text.
+bool split_record(std::string_view record, std::vector<std::string>& fields);
+
+/// The number that the whole text spells ("nan" and "inf" included); nothing for any other text.
+std::optional<double> find_number(std::string_view text);
+
+/// Lines of a text one after the other; "\n" and "\r\n" end a line.
+class LineReader {
+ public:
+  explicit LineReader(std::string_view text) : m_text(text) {}
+  bool next(std::string_view& line);
+  std::size_t line_number() const { return m_number; }  ///< of the last line given, from 1
+  std::size_t line_offset() const { return m_begin; }   ///< byte where the last line given begins
+ private:
+  std::string_view m_text;
+  std::size_t m_begin = 0;
+  std::size_t m_next = 0;
+  std::size_t m_number = 0;
+};
+
+}  // namespace argil::device::internal

@@ -1,0 +1,194 @@
+#include "device/trace.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <memory>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "device/trace_raw.h"
+
+namespace argil::device {
+
+using internal::RawTrace;
+
+namespace {
+
+constexpr double kMaxGapIntervals = 10.0;  // a longer pause than this many median intervals is a lost piece
+constexpr double kMaxUnitError =
+    1e-3;  // three printed digits of a quaternion; beyond, it is another quantity
+constexpr double kMaxRateError =
+    0.05;  // stated rate against the median interval; clocks jitter, units do not
+constexpr double kSnapFraction = 1e-6;  // of an interval: a query this near a sample is that sample
+constexpr double kSmallArc = 1e-6;      // [rad]; below, chord and arc weights differ by less than its square
+
+// C streams, because errno after theirs says why.
+std::string read_bytes(const std::string& file) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
+  std::string bytes;
+  std::array<char, 1 << 16> block;
+  std::size_t length = 0;
+  while (stream && (length = std::fread(block.data(), 1, block.size(), stream.get())) > 0)
+    bytes.append(block.data(), length);
+  if (!stream || std::ferror(stream.get()) != 0)
+    throw IoError(file, std::string("cannot be read: ") + std::strerror(errno));
+  return bytes;
+}
+
+std::string place(const RawTrace& raw, std::size_t i) {
+  return raw.line.empty() ? "row " + std::to_string(i) : "line " + std::to_string(raw.line[i]);
+}
+
+std::string print(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+void fill_times(const std::string& file, const TraceOptions& options, RawTrace& raw) {
+  if (raw.position.size() < 2)
+    throw InputError(file, "", std::to_string(raw.position.size()) + " samples", "a trace needs two or more");
+  if (!raw.time.empty()) return;
+  const double rate = raw.rate_hz > 0.0 ? raw.rate_hz : options.default_rate_hz;
+  if (!(rate > 0.0 && std::isfinite(rate)))
+    throw InputError(file, "", "no time column and no sampling rate",
+                     "name a column t [s] or give the rate in Hz");
+  for (std::size_t i = 0; i < raw.position.size(); ++i) raw.time.push_back(static_cast<double>(i) / rate);
+}
+
+double median_interval(const std::vector<double>& time) {
+  std::vector<double> interval;
+  for (std::size_t i = 1; i < time.size(); ++i) interval.push_back(time[i] - time[i - 1]);
+  const auto middle = interval.begin() + static_cast<std::ptrdiff_t>(interval.size() / 2);
+  std::nth_element(interval.begin(), middle, interval.end());
+  return *middle;
+}
+
+void check_times(const std::string& file, const RawTrace& raw) {
+  const std::vector<double>& t = raw.time;
+  for (std::size_t i = 0; i < t.size(); ++i)
+    if (!std::isfinite(t[i]))
+      throw InputError(file, place(raw, i), "time is " + print(t[i]), "give a finite number of seconds");
+  for (std::size_t i = 1; i < t.size(); ++i)
+    if (!(t[i] > t[i - 1]))
+      throw InputError(file, place(raw, i),
+                       "time " + print(t[i]) + " s does not come after " + print(t[i - 1]) + " s",
+                       "sort the samples and leave each time once");
+  const double median = median_interval(t);
+  for (std::size_t i = 1; i < t.size(); ++i)
+    if (!(t[i] - t[i - 1] <= kMaxGapIntervals * median))
+      throw InputError(file, place(raw, i),
+                       "gap of " + print(t[i] - t[i - 1]) + " s, more than " + print(kMaxGapIntervals) +
+                           " times the median interval " + print(median) + " s",
+                       "fill the gap or cut the trace there");
+  if (raw.rate_hz > 0.0 && !(std::abs(median * raw.rate_hz - 1.0) <= kMaxRateError))
+    throw InputError(file, "header",
+                     "rate_hz " + print(raw.rate_hz) + " but the median interval is " + print(median) + " s",
+                     "correct the rate, or the unit of the time column");
+}
+
+Quat checked_orientation(const std::string& file, const RawTrace& raw, std::size_t i) {
+  const Vec4& q = raw.orientation[i];
+  const double norm = q.stableNorm();
+  if (!std::isfinite(norm))
+    throw InputError(file, place(raw, i), "quaternion is not finite", "give four finite numbers");
+  if (norm == 0.0)
+    throw InputError(file, place(raw, i), "quaternion is zero", "no rotation is x y z w = 0 0 0 1");
+  if (!(std::abs(norm - 1.0) <= kMaxUnitError))
+    throw InputError(file, place(raw, i),
+                     "quaternion has norm " + print(norm) + ", not 1 within " + print(kMaxUnitError),
+                     "check the order of the columns, or normalise");
+  return make_unit(Quat(q[3], q[0], q[1], q[2]));
+}
+
+bool is_identity(const DeviceToWorld& map) {
+  return map.scale == 1.0 && map.translation == Vec3::Zero() &&
+         map.rotation.coeffs() == Quat::Identity().coeffs();
+}
+
+// The identity is skipped: multiplying by it would turn −0 into 0, and a replay must give the recorded bits.
+void move_to_world(const DeviceToWorld& map, DeviceSample& sample) {
+  if (is_identity(map)) return;
+  sample.position = map.rotation * (map.scale * sample.position) + map.translation;
+  sample.orientation = make_unit(map.rotation * sample.orientation);
+}
+
+}  // namespace
+
+Trace read_trace(const std::string& file, const TraceOptions& options) {
+  const std::string bytes = read_bytes(file);
+  const bool is_hdf5 = bytes.starts_with("\x89HDF\r\n\x1a\n");
+  RawTrace raw = is_hdf5 ? internal::read_hdf5(file, options) : internal::parse_csv(file, bytes, options);
+  fill_times(file, options, raw);
+  check_times(file, raw);
+  Trace trace;
+  trace.file = file;
+  trace.device = raw.device;
+  trace.sha256 = Sha256().add(bytes).hex_digest();
+  trace.ignored_columns = raw.ignored_columns;
+  trace.time = raw.time;
+  trace.samples.reserve(raw.position.size());
+  for (std::size_t i = 0; i < raw.position.size(); ++i) {
+    if (!raw.position[i].allFinite())
+      throw InputError(file, place(raw, i), "position is not finite", "give three finite numbers");
+    DeviceSample sample;
+    sample.position = raw.position[i];
+    if (raw.metres_per_unit != 1.0) sample.position *= raw.metres_per_unit;
+    if (!raw.orientation.empty()) sample.orientation = checked_orientation(file, raw, i);
+    sample.mode = raw.mode.empty() ? options.default_mode : raw.mode[i];
+    move_to_world(raw.device_to_world, sample);
+    move_to_world(options.device_to_world, sample);
+    trace.samples.push_back(sample);
+  }
+  return trace;
+}
+
+Quat make_unit(const Quat& q) {
+  constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
+  if (std::abs(q.squaredNorm() - 1.0) <= kRounding) return q;
+  return Quat(q.coeffs().stableNormalized());
+}
+
+// Half the rotation angle is the arc θ between a and b on the unit 3-sphere; tan(θ/2) = ‖a−b‖ / ‖a+b‖ keeps
+// its accuracy for θ → 0, where the arc cosine of a·b loses half the digits.
+Quat slerp_shorter(const Quat& a, const Quat& b, double s) {
+  const Vec4 from = a.coeffs();
+  const Vec4 to = from.dot(b.coeffs()) < 0.0 ? Vec4(-b.coeffs()) : Vec4(b.coeffs());
+  const double theta = 2.0 * std::atan2((from - to).norm(), (from + to).norm());
+  double weight_from = 1.0 - s;
+  double weight_to = s;
+  if (theta > kSmallArc) {
+    weight_from = std::sin((1.0 - s) * theta) / std::sin(theta);
+    weight_to = std::sin(s * theta) / std::sin(theta);
+  }
+  const Vec4 between = weight_from * from + weight_to * to;
+  return Quat(Vec4(between / between.norm()));
+}
+
+DeviceSample interpolate(const Trace& trace, double time) {
+  ARGIL_ASSERT(!trace.time.empty() && trace.time.size() == trace.samples.size(), trace.time.size());
+  ARGIL_ASSERT(!std::isnan(time));
+  const double t = trace.time.front() + time;
+  const auto after = std::upper_bound(trace.time.begin(), trace.time.end(), t);
+  if (after == trace.time.begin()) return trace.samples.front();
+  if (after == trace.time.end()) return trace.samples.back();
+  const auto i = static_cast<std::size_t>(after - trace.time.begin()) - 1;
+  const double s = (t - trace.time[i]) / (trace.time[i + 1] - trace.time[i]);
+  if (s <= kSnapFraction) return trace.samples[i];
+  if (s >= 1.0 - kSnapFraction) return trace.samples[i + 1];
+  const DeviceSample& a = trace.samples[i];
+  const DeviceSample& b = trace.samples[i + 1];
+  DeviceSample sample;
+  sample.position = (1.0 - s) * a.position + s * b.position;
+  sample.orientation = slerp_shorter(a.orientation, b.orientation, s);
+  sample.mode = a.mode;
+  return sample;
+}
+
+}  // namespace argil::device

@@ -1,0 +1,30 @@
+#pragma once
+
+// Between the readers of one file format and the checks that all traces share.
+
+#include <string>
+#include <vector>
+
+#include "device/trace.h"
+
+namespace argil::device::internal {
+
+/// A trace as its file spells it: device coordinates, nothing checked but the format itself.
+struct RawTrace {
+  DeviceToWorld device_to_world;  ///< from the header
+  double metres_per_unit = 1.0;   ///< of the position columns
+  double rate_hz = 0.0;           ///< from the header; 0: not stated
+  std::string device;
+  std::vector<double> time;  ///< [s]; empty without a time column
+  std::vector<Vec3> position;
+  std::vector<Vec4> orientation;  ///< x, y, z, w; empty without orientation columns
+  std::vector<ToolMode> mode;     ///< empty without a mode column
+  std::vector<std::string> ignored_columns;
+  std::vector<std::size_t>
+      line;  ///< line in the file of each sample; empty: samples are rows 0, 1, … of arrays
+};
+
+RawTrace parse_csv(const std::string& file, const std::string& text, const TraceOptions& options);
+RawTrace read_hdf5(const std::string& file, const TraceOptions& options);
+
+}  // namespace argil::device::internal
