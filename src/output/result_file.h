@@ -14,20 +14,34 @@ namespace argil::output {
 
 /// What does not change during a run.
 struct ResultHeader {
-  Points rest_position;         ///< 3×n [m]
+  Points rest_position;  ///< 3×n [m]
   Tets tets;
   Triangles surface_triangles;  ///< boundary of the tets, outward
   Triangles skin_triangles;     ///< 3×0 without a skin
   mesh::TriangleMesh tool;      ///< tool surface in its own frame
   double haptic_period = 0.0;   ///< [s]
-  std::vector<std::pair<std::string, std::string>> provenance;  ///< name → text: resolved scenario, hashes, numerics tag
+  std::vector<std::pair<std::string, std::string>>
+      provenance;  ///< name → text: resolved scenario, hashes, numerics tag
 };
 
-/// The result of one run in HDF5, appended as it goes: whole chunks, a flush per chunk, so a killed run keeps all
-/// but its last chunk. Written to FILE, with `complete` = 0 until finish(). Throws IoError.
+/// How a run ended; the root attribute `outcome` spells it.
+enum class Outcome {
+  running,      ///< being written, or killed
+  done,         ///< reached the scenario's end: the only one with `complete` = 1
+  interrupted,  ///< stopped by the user, whole up to the last record
+  failed,       ///< stopped by a failure, which is in /failure
+};
+
+/// The result of one run in HDF5, appended as it goes: whole chunks, a flush per chunk, so a killed run keeps
+/// all but its last chunk. Written to FILE, with `complete` = 0 until finish(). Throws IoError, also when
+/// another process is writing FILE. A destroyed object that was not finished leaves all its records and
+/// `complete` = 0.
 class ResultFile {
  public:
   ResultFile(const std::string& file, const ResultHeader& header);
+  /// Goes on with an unfinished file: keeps what was recorded up to and including `last_tick`, removes the
+  /// rest. Throws IoError when FILE is not a result file or lost records up to that tick.
+  ResultFile(const std::string& file, Tick last_tick);
   ~ResultFile();
   ResultFile(const ResultFile&) = delete;
   ResultFile& operator=(const ResultFile&) = delete;
@@ -35,17 +49,22 @@ class ResultFile {
   void append(const sim::HapticRecord& record);
   void append(const sim::PhysicsRecord& record);
   void append(const sim::Frame& frame);
-  /// Wall-clock seconds per stage, total and rate; goes to /timing, the only part that may differ between equal runs.
+  /// Wall-clock seconds per stage, total and rate; goes to /timing, the only part that may differ between
+  /// equal runs. A name that ends in _Hz has that unit, any other is in seconds.
   void append_timing(const std::vector<std::pair<std::string, double>>& stages);
-  /// Writes what is buffered, the failure if there was one, sets `complete` and closes.
-  void finish(const std::optional<Failure>& failure);
+  /// Writes everything that is buffered now, so that a reader or a resumed run finds it.
+  void flush();
+  /// Writes what is buffered, the failure if there was one, the outcome, and closes. No appends after it.
+  void finish(const std::optional<Failure>& failure, bool interrupted = false);
 
  private:
   struct Impl;
   std::unique_ptr<Impl> m_impl;
 };
 
-/// Writes the XDMF beside a result file so that ParaView opens it: cage with saturation and plastic strain, skin.
+/// Writes the XDMF beside a result file so that ParaView opens it: cage with saturation and plastic strain,
+/// skin with saturation and region of influence, one time step a frame. It names the result file relative to
+/// itself. Throws IoError.
 void write_xdmf(const std::string& result_file, const std::string& xdmf_file);
 
 }  // namespace argil::output

@@ -1,0 +1,274 @@
+#include "output/result_file.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "output/table.h"
+
+namespace argil::output {
+
+using hdf5::File;
+using hdf5::Group;
+using hdf5::Shape;
+
+namespace {
+
+// Arrays hold one entity a column, column after column; the same bytes are one entity a row on disk.
+template <class Array>
+void write_entities(const Group& group, const char* name, const Array& array, const hdf5::Label& label) {
+  const auto entities = static_cast<std::uint64_t>(array.cols());
+  group.write_array(name, array.data(), Shape{entities, static_cast<std::uint64_t>(array.rows())}, true,
+                    label);
+}
+
+void write_field(const Group& group, const char* name, const Field& field, const hdf5::Label& label) {
+  group.write_array(name, field.data(), Shape{static_cast<std::uint64_t>(field.size())}, true, label);
+}
+
+std::string frame_name(std::uint64_t number) {
+  char name[24];
+  std::snprintf(name, sizeof name, "%06llu", static_cast<unsigned long long>(number));
+  return name;
+}
+
+// Rows of a series whose tick is at most `last`; ticks increase.
+std::uint64_t count_rows_until(const Group& group, Tick last) {
+  const std::vector<std::int64_t> ticks = group.open_dataset("tick").read<std::int64_t>();
+  return static_cast<std::uint64_t>(std::upper_bound(ticks.begin(), ticks.end(), last) - ticks.begin());
+}
+
+const char* spell(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::running:
+      return "running";
+    case Outcome::done:
+      return "done";
+    case Outcome::interrupted:
+      return "interrupted";
+    case Outcome::failed:
+      return "failed";
+  }
+  return "";
+}
+
+void write_outcome(Group& root, Outcome outcome) {
+  root.write_attribute("outcome", spell(outcome));
+  root.write_attribute("complete", std::int64_t{outcome == Outcome::done});
+}
+
+void write_mesh(const Group& mesh, const ResultHeader& header) {
+  write_entities(mesh, "rest_position", header.rest_position, schema::kRestPosition);
+  write_entities(mesh, "tets", header.tets, schema::kTets);
+  write_entities(mesh, "surface_triangles", header.surface_triangles, schema::kSurfaceTriangles);
+  write_entities(mesh, "skin_triangles", header.skin_triangles, schema::kSkinTriangles);
+  write_entities(mesh, "tool_vertices", header.tool.vertices, schema::kToolVertices);
+  write_entities(mesh, "tool_triangles", header.tool.triangles, schema::kToolTriangles);
+}
+
+void write_provenance(const Group& provenance, const ResultHeader& header) {
+  for (const auto& [name, text] : header.provenance) {
+    ARGIL_ASSERT(!name.empty() && name.find('/') == std::string::npos, name);
+    provenance.write_string(name, text, {"-", "what the run was made from"});
+  }
+}
+
+void write_failure(const Group& root, const Failure& failure) {
+  Group group = root.create_group("failure");
+  group.write_attribute("about", "why the run stopped: quantity was value at element, past bound");
+  group.write_attribute("tick", failure.tick);
+  group.write_attribute("stage", failure.stage);
+  group.write_attribute("element", std::int64_t{failure.element});
+  group.write_attribute("quantity", failure.quantity);
+  group.write_attribute("value", failure.value);
+  group.write_attribute("bound", failure.bound);
+}
+
+bool ends_with_hz(const std::string& name) {
+  return name.ends_with("_Hz");
+}
+
+}  // namespace
+
+struct ResultFile::Impl {
+  File file;
+  Group root;
+  Group frames;
+  Group timing;
+  Table haptic;
+  Table physics;
+  std::uint64_t num_frames = 0;
+  bool is_broken = false;  // a write failed: what follows would have a hole
+
+  // Runs a write; after one that failed nothing more is tried.
+  template <class Write>
+  void guarded(Write write) {
+    ARGIL_ASSERT(!is_broken, "append after a failed write");
+    is_broken = true;
+    write();
+    is_broken = false;
+  }
+  void write_all() {
+    haptic.write();
+    physics.write();
+    file.flush();
+  }
+};
+
+ResultFile::ResultFile(const std::string& name, const ResultHeader& header) {
+  File file = File::create(name);
+  Group root = file.root();
+  root.write_attribute("format", schema::kFormat);
+  root.write_attribute("format_version", std::int64_t{schema::kFormatVersion});
+  root.write_attribute("haptic_period_s", header.haptic_period);
+  write_outcome(root, Outcome::running);
+  write_mesh(root.create_group("mesh"), header);
+  write_provenance(root.create_group("provenance"), header);
+  Table haptic = Table::create(root.create_group("haptic"), schema::kHaptic, schema::kHapticChunk);
+  Table physics = Table::create(root.create_group("physics"), schema::kPhysics, schema::kPhysicsChunk);
+  Group frames = root.create_group("frames");
+  Group timing = root.create_group("timing");
+  file.flush();
+  m_impl = std::make_unique<Impl>(Impl{std::move(file), std::move(root), std::move(frames), std::move(timing),
+                                       std::move(haptic), std::move(physics)});
+}
+
+ResultFile::ResultFile(const std::string& name, Tick last_tick) {
+  File file = File::open_for_writing(name);
+  Group root = file.root();
+  if (!root.has_attribute("format") || root.read_text("format") != schema::kFormat ||
+      root.read_integer("format_version") != schema::kFormatVersion)
+    throw IoError(name, "is not a result file of this version");
+  const Group haptic_group = root.open_group("haptic");
+  const Group physics_group = root.open_group("physics");
+  const std::vector<std::int64_t> ticks = haptic_group.open_dataset("tick").read<std::int64_t>();
+  if (ticks.empty() || ticks.back() < last_tick)
+    throw IoError(
+        name, "has no records up to tick " + std::to_string(last_tick) + "; it cannot be continued there");
+  Table haptic = Table::reopen(haptic_group, schema::kHaptic, schema::kHapticChunk,
+                               count_rows_until(haptic_group, last_tick));
+  Table physics = Table::reopen(physics_group, schema::kPhysics, schema::kPhysicsChunk,
+                                count_rows_until(physics_group, last_tick));
+  Group frames = root.open_group("frames");
+  std::uint64_t num_frames = 0;
+  for (const std::string& frame : frames.names()) {
+    if (frames.open_group(frame).read_integer("tick") <= last_tick)
+      ++num_frames;
+    else
+      frames.remove(frame);
+  }
+  if (root.has("failure")) root.remove("failure");
+  write_outcome(root, Outcome::running);
+  Group timing = root.open_group("timing");
+  file.flush();
+  m_impl = std::make_unique<Impl>(Impl{std::move(file), std::move(root), std::move(frames), std::move(timing),
+                                       std::move(haptic), std::move(physics), num_frames});
+}
+
+ResultFile::~ResultFile() {
+  if (!m_impl || m_impl->is_broken) return;
+  try {
+    m_impl->write_all();
+  } catch (const IoError&) {  // already on the way out; `complete` = 0 tells
+  }
+}
+
+void ResultFile::append(const sim::HapticRecord& record) {
+  ARGIL_ASSERT(m_impl, "append after finish");
+  const Vec4 orientation = record.tool_orientation.coeffs();  // x, y, z, w
+  Table& table = m_impl->haptic;
+  table.put(record.tick);
+  table.put(record.time);
+  table.put(record.tool_position.data(), 3);
+  table.put(orientation.data(), 4);
+  table.put(record.force.data(), 3);
+  table.put(record.torque.data(), 3);
+  table.put(record.device_force.data(), 3);
+  table.put(static_cast<std::uint8_t>(record.mode));
+  table.put(record.force_age);
+  table.put(record.num_contacts);
+  table.put(record.gate_events);
+  if (table.end_row()) m_impl->guarded([&] { table.write(), m_impl->file.flush(); });
+}
+
+void ResultFile::append(const sim::PhysicsRecord& record) {
+  ARGIL_ASSERT(m_impl, "append after finish");
+  Table& table = m_impl->physics;
+  table.put(record.tick);
+  table.put(record.time);
+  table.put(record.kinetic_energy);
+  table.put(record.elastic_energy);
+  table.put(record.plastic_dissipation);
+  table.put(record.contact_work);
+  table.put(record.water_mass);
+  table.put(record.water_added);
+  table.put(record.water_removed);
+  table.put(record.iterations);
+  table.put(record.factorisations);
+  table.put(record.residual);
+  table.put(record.active_nodes);
+  table.put(record.min_volume_ratio);
+  table.put(record.max_plastic_strain);
+  if (table.end_row()) m_impl->guarded([&] { table.write(), m_impl->file.flush(); });
+}
+
+void ResultFile::append(const sim::Frame& frame) {
+  ARGIL_ASSERT(m_impl, "append after finish");
+  m_impl->guarded([&] {
+    Group group = m_impl->frames.create_group(frame_name(m_impl->num_frames));
+    group.write_attribute("tick", frame.tick);
+    group.write_attribute("time", frame.time);
+    group.write_attribute("state_hash", frame.state_hash);
+    write_entities(group, "position", frame.position, schema::kPosition);
+    write_field(group, "saturation", frame.saturation, schema::kSaturation);
+    write_entities(group, "plastic_strain", frame.plastic_strain, schema::kPlasticStrain);
+    // In Mandel's notation the Euclidean norm of the six numbers is the tensor's Frobenius norm.
+    write_field(group, "plastic_strain_norm", frame.plastic_strain.colwise().norm(), schema::kPlasticNorm);
+    write_entities(group, "skin_position", frame.skin_position, schema::kSkinPosition);
+    write_field(group, "skin_saturation", frame.skin_saturation, schema::kSkinSaturation);
+    write_field(group, "skin_influence", frame.skin_influence, schema::kSkinInfluence);
+    ++m_impl->num_frames;
+    m_impl->file.flush();
+  });
+}
+
+void ResultFile::append_timing(const std::vector<std::pair<std::string, double>>& stages) {
+  ARGIL_ASSERT(m_impl, "append after finish");
+  m_impl->guarded([&] {
+    const Group& timing = m_impl->timing;
+    for (const auto& [name, value] : stages) {
+      constexpr std::uint64_t kChunk = 16;
+      if (!timing.has(name)) {
+        const hdf5::Label label{ends_with_hz(name) ? "Hz" : "s",
+                                "measured by the wall clock; differs from run to run"};
+        timing.create_series(name, hdf5::Element::real64, {}, kChunk, label);
+      }
+      timing.open_dataset(name).append(&value, 1);
+    }
+  });
+}
+
+void ResultFile::flush() {
+  ARGIL_ASSERT(m_impl, "flush after finish");
+  m_impl->guarded([&] { m_impl->write_all(); });
+}
+
+void ResultFile::finish(const std::optional<Failure>& failure, bool interrupted) {
+  ARGIL_ASSERT(m_impl, "finished twice");
+  m_impl->guarded([&] {
+    m_impl->write_all();
+    if (failure) write_failure(m_impl->root, *failure);
+    write_outcome(m_impl->root, failure       ? Outcome::failed
+                                : interrupted ? Outcome::interrupted
+                                              : Outcome::done);
+    m_impl->file.flush();
+  });
+  // The library closes a file when the last object in it is closed, and reports then what could not be
+  // written.
+  File file = std::move(m_impl->file);
+  m_impl.reset();
+  file.close();
+}
+
+}  // namespace argil::output

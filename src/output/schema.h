@@ -1,0 +1,83 @@
+#pragma once
+
+// What a result file contains: every name, type, unit and meaning once, for the writer, the reader and the
+// checks. The table in this folder's README follows it.
+
+#include <array>
+
+#include "hdf5/file.h"
+
+namespace argil::output::schema {
+
+inline constexpr const char* kFormat = "argil-result";
+inline constexpr int kFormatVersion = 1;
+
+/// Column of a series: one row a haptic tick or a physics step.
+struct Column {
+  const char* name;
+  hdf5::Element element;
+  unsigned width;  ///< numbers in a row
+  hdf5::Label label;
+};
+
+using enum hdf5::Element;
+
+inline constexpr std::array kHaptic = {
+    Column{"tick", int64, 1, {"1", "count of haptic periods since the start"}},
+    Column{"time", real64, 1, {"s", "time since the start, tick times period"}},
+    Column{"tool_position", real64, 3, {"m", "hand's point of the tool, world coordinates"}},
+    Column{"tool_orientation", real64, 4, {"1", "unit quaternion x, y, z, w, tool frame to world"}},
+    Column{"force", real64, 3, {"N", "force on the hand before the output gate"}},
+    Column{"torque", real64, 3, {"N m", "torque on the hand about the hand's point, before the output gate"}},
+    Column{"device_force", real64, 3, {"N", "force after the output gate, as the device renders it"}},
+    Column{"mode", uint8, 1, {"1", "what the tool does: 0 push, 1 pull, 2 wet, 3 dry"}},
+    Column{"force_age", int32, 1, {"1", "haptic periods since the force was computed"}},
+    Column{"num_contacts", int32, 1, {"1", "contacts that made the force"}},
+    Column{"gate_events",
+           uint8,
+           1,
+           {"1", "what the output gate did, sum of 1 not finite, 2 clamped, 4 slew, 8 ramp"}},
+};
+
+inline constexpr std::array kPhysics = {
+    Column{"tick", int64, 1, {"1", "haptic tick of the physics step"}},
+    Column{"time", real64, 1, {"s", "time since the start, tick times haptic period"}},
+    Column{"kinetic_energy", real64, 1, {"J", "kinetic energy of the body"}},
+    Column{"elastic_energy", real64, 1, {"J", "elastic energy of the body"}},
+    Column{"plastic_dissipation", real64, 1, {"J", "energy dissipated by plastic flow since the start"}},
+    Column{"contact_work", real64, 1, {"J", "work of the contact forces on the body since the start"}},
+    Column{"water_mass", real64, 1, {"kg", "water in the body"}},
+    Column{"water_added", real64, 1, {"kg", "water given by the tool since the start"}},
+    Column{"water_removed", real64, 1, {"kg", "water taken by the tool since the start"}},
+    Column{"iterations", int32, 1, {"1", "iterations of the linear solver in this step"}},
+    Column{"factorisations", int32, 1, {"1", "factorisations of the system matrix since the start"}},
+    Column{"residual", real64, 1, {"1", "relative residual of the linear solve"}},
+    Column{"active_nodes", int32, 1, {"1", "vertices that were solved for"}},
+    Column{"min_volume_ratio", real64, 1, {"1", "smallest det F over the tets"}},
+    Column{
+        "max_plastic_strain", real64, 1, {"1", "largest Frobenius norm of the plastic strain over the tets"}},
+};
+
+/// Haptic ticks and physics steps that are kept in memory before they are written: about a second and about
+/// two kB a column; a killed run loses at most these.
+inline constexpr std::uint64_t kHapticChunk = 1024;
+inline constexpr std::uint64_t kPhysicsChunk = 256;
+
+// Arrays of /mesh and of each frame.
+inline constexpr hdf5::Label kRestPosition{"m", "rest positions of the cage's vertices"};
+inline constexpr hdf5::Label kTets{"1", "vertex numbers of the tets, from 0, positive volume"};
+inline constexpr hdf5::Label kSurfaceTriangles{"1", "boundary of the tets, vertex numbers, outward"};
+inline constexpr hdf5::Label kSkinTriangles{"1", "triangles of the skin, numbers of skin vertices, outward"};
+inline constexpr hdf5::Label kToolVertices{"m", "vertices of the tool's surface in its own frame"};
+inline constexpr hdf5::Label kToolTriangles{"1", "triangles of the tool's surface, outward"};
+inline constexpr hdf5::Label kPosition{"m", "positions of the cage's vertices"};
+inline constexpr hdf5::Label kSaturation{"1", "water saturation of each tet, 0 to 1"};
+inline constexpr hdf5::Label kPlasticStrain{"1",
+                                            "plastic strain of each tet, Mandel: 11 22 33 √2·23 √2·13 √2·12"};
+inline constexpr hdf5::Label kPlasticNorm{"1", "Frobenius norm of the plastic strain of each tet"};
+inline constexpr hdf5::Label kSkinPosition{"m", "positions of the skin's vertices"};
+inline constexpr hdf5::Label kSkinSaturation{"1", "water saturation at the skin's vertices, 0 to 1"};
+inline constexpr hdf5::Label kSkinInfluence{"1",
+                                            "the tool's region of influence at the skin's vertices, 0 to 1"};
+
+}  // namespace argil::output::schema
