@@ -1,0 +1,126 @@
+#include "mesh/implicit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/check.h"
+#include "mesh/stuffing.h"
+
+namespace argil::mesh {
+namespace {
+
+// Where the surface is finer than the lattice, snapped nodes can join two sheets in a point or an edge. Such
+// nodes go back to their places; without any snapped node the boundary is manifold, so this ends.
+StuffedLattice stuff_without_pinches(CutLattice& cut_lattice, StuffingPart part, Triangles& boundary) {
+  while (true) {
+    StuffedLattice stuffed = stuff_lattice(cut_lattice, part);
+    boundary = find_surface_faces(stuffed);
+    std::vector<int> pinched;
+    for (const int vertex : find_non_manifold_vertices(boundary, stuffed.mesh.num_vertices()))
+      if (const int node = stuffed.node[static_cast<std::size_t>(vertex)]; node >= 0) pinched.push_back(node);
+    if (pinched.empty()) return stuffed;
+    cut_lattice.keep_in_place(pinched);
+  }
+}
+
+Vec3 compute_gradient(const ImplicitSurface& surface, const Vec3& x, double step) {
+  Vec3 gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 d = step * Vec3::Unit(axis);
+    gradient(axis) = (surface.value(x + d) - surface.value(x - d)) / (2.0 * step);
+  }
+  return gradient;
+}
+
+// Newton steps along the gradient onto value = 0. Keeps x where the function has no usable slope.
+Vec3 project(const ImplicitSurface& surface, Vec3 x, double cell_size) {
+  constexpr int kSteps = 4;
+  for (int i = 0; i < kSteps; ++i) {
+    const Vec3 gradient = compute_gradient(surface, x, 1e-4 * cell_size);
+    const double slope = gradient.squaredNorm();
+    if (!(slope > 0.01)) break;  // of a signed distance it is 1
+    const double distance = surface.value(x);
+    x -= (distance / slope) * gradient;
+    if (std::abs(distance) < 1e-12 * cell_size) break;
+  }
+  return x;
+}
+
+double smallest_quality(const TriangleMesh& mesh, const Points& x, const std::vector<int>& around) {
+  double smallest = 1.0;
+  for (const int t : around) {
+    const Vec3 a = x.col(mesh.triangles(0, t));
+    const Vec3 b = x.col(mesh.triangles(1, t));
+    const Vec3 c = x.col(mesh.triangles(2, t));
+    const double area = 0.5 * (b - a).cross(c - a).norm();
+    const double edges = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
+    smallest = std::min(smallest, 4.0 * std::sqrt(3.0) * area / edges);  // 1: equilateral
+  }
+  return smallest;
+}
+
+}  // namespace
+
+TetMesh stuff_isosurface(const ImplicitSurface& surface, double cell_size) {
+  CutLattice cut_lattice(surface, cell_size);
+  Triangles boundary;
+  return stuff_without_pinches(cut_lattice, StuffingPart::all, boundary).mesh;
+}
+
+namespace {
+
+TriangleMesh compact(const Points& vertices, const Triangles& triangles) {
+  std::vector<int> number(static_cast<std::size_t>(vertices.cols()), -1);
+  TriangleMesh mesh;
+  mesh.triangles.resize(3, triangles.cols());
+  mesh.vertices.resize(3, vertices.cols());
+  int num_used = 0;
+  for (Eigen::Index i = 0; i < triangles.size(); ++i) {
+    const int vertex = triangles.data()[i];
+    int& n = number[static_cast<std::size_t>(vertex)];
+    if (n < 0) {
+      n = num_used++;
+      mesh.vertices.col(n) = vertices.col(vertex);
+    }
+    mesh.triangles.data()[i] = n;
+  }
+  mesh.vertices.conservativeResize(3, num_used);
+  return mesh;
+}
+
+// Moves each vertex toward the mean of its neighbours and back onto the surface, where that makes the worst
+// of its triangles better.
+void relax(const ImplicitSurface& surface, double cell_size, TriangleMesh& mesh) {
+  constexpr int kSweeps = 4;
+  std::vector<std::vector<int>> around(static_cast<std::size_t>(mesh.num_vertices()));
+  for (int t = 0; t < mesh.num_triangles(); ++t)
+    for (int i = 0; i < 3; ++i) around[static_cast<std::size_t>(mesh.triangles(i, t))].push_back(t);
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (int v = 0; v < mesh.num_vertices(); ++v) {
+      const std::vector<int>& triangles = around[static_cast<std::size_t>(v)];
+      Vec3 mean = Vec3::Zero();  // each neighbour counts twice: a closed fan
+      for (const int t : triangles)
+        for (int i = 0; i < 3; ++i)
+          if (mesh.triangles(i, t) != v) mean += mesh.vertices.col(mesh.triangles(i, t));
+      mean /= 2.0 * static_cast<double>(triangles.size());
+      const Vec3 before = mesh.vertices.col(v);
+      const double quality = smallest_quality(mesh, mesh.vertices, triangles);
+      mesh.vertices.col(v) = project(surface, mean, cell_size);
+      if (!(smallest_quality(mesh, mesh.vertices, triangles) > quality)) mesh.vertices.col(v) = before;
+    }
+}
+
+}  // namespace
+
+TriangleMesh extract_isosurface(const ImplicitSurface& surface, double cell_size) {
+  CutLattice cut_lattice(surface, cell_size);
+  Triangles boundary;
+  const StuffedLattice stuffed = stuff_without_pinches(cut_lattice, StuffingPart::surface_layer, boundary);
+  TriangleMesh mesh = compact(stuffed.mesh.vertices, boundary);
+  relax(surface, cell_size, mesh);
+  return mesh;
+}
+
+}  // namespace argil::mesh
