@@ -20,19 +20,21 @@ struct Pose {
 struct Contact {
   std::array<int, 3> vertex = {-1, -1, -1};  ///< body vertices that carry the force; −1 beyond the last
   std::array<double, 3> weight = {};         ///< their shares, sum 1 (weights at entry)
-  Vec3 normal = Vec3::Zero();  ///< mean direction in which a push tool moves the body, unit
-  Vec3 force = Vec3::Zero();   ///< k·∫ nᵀ(p−q) n dt: mean force of a push tool on the body over the interval [N]
-  double stiffness = 0.0;      ///< k [N/m] × share of the tick in penetration: curvature for the implicit solve
-  Vec3 point = Vec3::Zero();   ///< where the force acts at the end of the tick [m], for the torque and the picture
+  Vec3 normal = Vec3::Zero();                ///< mean direction in which a push tool moves the body, unit
+  Vec3 force =
+      Vec3::Zero();  ///< k·∫ nᵀ(p−q) n dt: mean force of a push tool on the body over the interval [N]
+  double stiffness = 0.0;  ///< k [N/m] × share of the tick in penetration: curvature for the implicit solve
+  Vec3 point =
+      Vec3::Zero();  ///< where the force acts at the end of the tick [m], for the torque and the picture
 };
 
 /// What one detection over [t₀, t₁] found, in an order that depends on the meshes alone.
 struct Contacts {
   std::vector<Contact> contacts;
-  std::vector<int> touched_triangle;  ///< body triangles with an inside point, increasing
-  std::vector<double> touched_area;   ///< [m²] part of each that lies within the tool's reach
-  Vec3 force_on_tool = Vec3::Zero();  ///< [N], push sense: −Σ force
-  Vec3 torque_on_tool = Vec3::Zero(); ///< [N m] about the hand's point at t₁
+  std::vector<int> touched_triangle;   ///< body triangles with an inside point, increasing
+  std::vector<double> touched_area;    ///< [m²] part of each that lies within the tool's reach
+  Vec3 force_on_tool = Vec3::Zero();   ///< [N], push sense: −Σ force
+  Vec3 torque_on_tool = Vec3::Zero();  ///< [N m] about the hand's point at t₁
   void clear();
 };
 
@@ -47,8 +49,9 @@ class ContactDetector {
   ContactDetector(ContactDetector&&) noexcept;
   ContactDetector& operator=(ContactDetector&&) noexcept;
 
-  /// Contacts while the body's vertices go linearly from x_t0 to x_t1 and the tool's vertices linearly between
-  /// their places at the two poses. Successive calls must join: x_t0, pose_t0 equal the last x_t1, pose_t1.
+  /// Contacts while the body's vertices go linearly from x_t0 to x_t1 and the tool's vertices linearly
+  /// between their places at the two poses. Successive calls must join: x_t0, pose_t0 equal the last x_t1,
+  /// pose_t1.
   void find_contacts(const Points& x_t0, const Points& x_t1, const Pose& pose_t0, const Pose& pose_t1,
                      Contacts& contacts);
 

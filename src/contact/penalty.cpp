@@ -1,0 +1,206 @@
+#include "contact/penalty.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace argil::contact {
+namespace {
+
+using Cubic = std::array<double, 4>;  // Bernstein coefficients on [0, 1]
+
+double evaluate(const Cubic& c, double t) {
+  const double s = 1.0 - t;
+  return s * s * (s * c[0] + 3.0 * t * c[1]) + t * t * (3.0 * s * c[2] + t * c[3]);
+}
+
+struct Roots {
+  std::array<double, 5> t = {};
+  int count = 0;
+};
+
+/// Root of a monotone piece whose ends differ in sign, by bisection to the last bit of t.
+double bisect(const Cubic& c, double low, double high) {
+  const bool low_is_negative = evaluate(c, low) < 0.0;
+  for (int i = 0; i < 60 && low < high; ++i) {
+    const double middle = 0.5 * (low + high);
+    if (middle <= low || middle >= high) break;
+    ((evaluate(c, middle) < 0.0) == low_is_negative ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Ends of the pieces on which the cubic is monotone: 0, the roots of its derivative inside (0, 1), 1.
+Roots find_monotone_pieces(const Cubic& c) {
+  Roots pieces;
+  pieces.t[static_cast<std::size_t>(pieces.count++)] = 0.0;
+  // derivative/3 = d0 (1−t)² + 2 d1 t(1−t) + d2 t²
+  const double d0 = c[1] - c[0];
+  const double d1 = c[2] - c[1];
+  const double d2 = c[3] - c[2];
+  const double a = d0 - 2.0 * d1 + d2;
+  const double b = d1 - d0;
+  const double disc = b * b - a * d0;
+  if (disc > 0.0) {
+    const double q = -(b + std::copysign(std::sqrt(disc), b));
+    std::array<double, 2> r = {q != 0.0 ? d0 / q : -1.0, a != 0.0 ? q / a : -1.0};
+    if (r[0] > r[1]) std::swap(r[0], r[1]);
+    for (const double t : r)
+      if (t > 0.0 && t < 1.0) pieces.t[static_cast<std::size_t>(pieces.count++)] = t;
+  }
+  pieces.t[static_cast<std::size_t>(pieces.count++)] = 1.0;
+  return pieces;
+}
+
+struct Feature {
+  PairKind kind;
+  const PairPath& path;
+  double orientation;
+};
+
+/// n nᵀ(p−q) at time t. For edges nᵀ(p−q) = nᵀ(a0−b0): it does not depend on where along the edges p and q
+/// lie.
+Vec3 compute_depth_vector(const Feature& f, double t) {
+  const std::array<Vec3, 4> p = interpolate(f.path, t);
+  const bool face = f.kind == PairKind::vertex_face;
+  const Vec3 n = face ? (p[2] - p[1]).cross(p[3] - p[1]) : (p[1] - p[0]).cross(p[3] - p[2]);
+  const double squared = n.squaredNorm();
+  if (!(squared > 0.0)) return Vec3::Zero();
+  return (n.dot(face ? p[0] - p[1] : p[0] - p[2]) / squared) * n;
+}
+
+/// Five-point Gauss–Legendre rule on [a, b].
+Vec3 integrate_gauss(const Feature& f, double a, double b) {
+  constexpr std::array<double, 3> node = {0.0, 0.5384693101056831, 0.9061798459386640};
+  constexpr std::array<double, 3> weight = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+  const double middle = 0.5 * (a + b);
+  const double half = 0.5 * (b - a);
+  Vec3 sum = weight[0] * compute_depth_vector(f, middle);
+  for (std::size_t k = 1; k < 3; ++k)
+    sum += weight[k] * (compute_depth_vector(f, middle - half * node[k]) +
+                        compute_depth_vector(f, middle + half * node[k]));
+  return half * sum;
+}
+
+/// Halves the interval until the rule and its two halves agree to rounding. Normals that hardly turn need no
+/// halving.
+Vec3 integrate_adaptive(const Feature& f, double a, double b, int depth) {
+  constexpr double kAgreement = 1e-12;
+  const Vec3 whole = integrate_gauss(f, a, b);
+  const double middle = 0.5 * (a + b);
+  const Vec3 halves = integrate_gauss(f, a, middle) + integrate_gauss(f, middle, b);
+  if (depth == 0 || (halves - whole).norm() <= kAgreement * halves.norm()) return halves;
+  return integrate_adaptive(f, a, middle, depth - 1) + integrate_adaptive(f, middle, b, depth - 1);
+}
+
+std::array<double, 4> compute_weights(PairKind kind, const std::array<Vec3, 4>& p) {
+  if (kind == PairKind::vertex_face) {
+    Vec3 b = compute_barycentric(p[0], p[1], p[2], p[3]).cwiseMax(0.0);
+    b /= b.sum();
+    return {1.0, b(0), b(1), b(2)};
+  }
+  const Eigen::Vector2d s = compute_line_parameters(p).cwiseMax(0.0).cwiseMin(1.0);
+  return {1.0 - s(0), s(0), 1.0 - s(1), s(1)};
+}
+
+bool crosses_within(PairKind kind, const std::array<Vec3, 4>& p) {
+  if (kind == PairKind::vertex_face)
+    return compute_barycentric(p[0], p[1], p[2], p[3]).minCoeff() >= -kInsideMargin;
+  const Eigen::Vector2d s = compute_line_parameters(p);
+  return s.minCoeff() >= -kInsideMargin && s.maxCoeff() <= 1.0 + kInsideMargin;
+}
+
+/// The walk along t: `c` is the coplanarity with the sign that makes outside positive.
+Penalty compute_penalty(PairKind kind, const PairPath& path, Cubic c, bool inside_at_start,
+                        double orientation) {
+  // A start that touches within rounding counts as outside, so that a motion inwards from there is an entry
+  // at t = 0.
+  const double touching = coplanarity_error_bound(path);
+  const bool find_orientation = kind == PairKind::edge_edge && orientation == 0.0;
+  if (find_orientation) {
+    const double before = std::abs(c[0]) > touching ? c[0] : -evaluate(c, 1e-3);
+    orientation = (before > 0.0) == inside_at_start ? -1.0 : 1.0;
+  }
+  for (double& coefficient : c) coefficient *= orientation;
+
+  Penalty penalty;
+  penalty.orientation = orientation;
+  const Feature feature{kind, path, orientation};
+  const auto open = [&](double t) {
+    if (penalty.num_intervals == 0) penalty.weights = compute_weights(kind, interpolate(path, t));
+    penalty.intervals[static_cast<std::size_t>(penalty.num_intervals++)] = {t, 1.0};
+    penalty.inside_at_end = true;
+  };
+  const auto close = [&](double t) {
+    penalty.intervals[static_cast<std::size_t>(penalty.num_intervals - 1)].end = t;
+    penalty.inside_at_end = false;
+  };
+  const auto crosses_at = [&](double t) { return crosses_within(kind, interpolate(path, t)); };
+
+  if (inside_at_start) open(0.0);
+  const Roots pieces = find_monotone_pieces(c);
+  double previous = inside_at_start ? -1.0 : (std::abs(c[0]) <= touching ? 1.0 : c[0]);
+  for (int k = 1; k < pieces.count; ++k) {
+    const double begin = pieces.t[static_cast<std::size_t>(k) - 1];
+    const double end = pieces.t[static_cast<std::size_t>(k)];
+    const double next = evaluate(c, end);
+    if ((previous < 0.0) == (next < 0.0)) continue;
+    // Where rounding or touching decided the sign of the start, the crossing is the start itself.
+    const double start_value = evaluate(c, begin);
+    const double root = (start_value < 0.0) == (next < 0.0) ? begin : bisect(c, begin, end);
+    if (next < 0.0 && !penalty.inside_at_end && penalty.num_intervals < 2 && crosses_at(root)) open(root);
+    if (next >= 0.0 && penalty.inside_at_end) close(root);
+    previous = next;
+  }
+  constexpr int kMaxHalvings = 12;
+  for (int i = 0; i < penalty.num_intervals; ++i) {
+    const Interval& interval = penalty.intervals[static_cast<std::size_t>(i)];
+    penalty.duration += interval.end - interval.begin;
+    if (interval.end > interval.begin)
+      penalty.integral += integrate_adaptive(feature, interval.begin, interval.end, kMaxHalvings);
+  }
+  return penalty;
+}
+
+}  // namespace
+
+std::array<Vec3, 4> interpolate(const PairPath& path, double t) {
+  std::array<Vec3, 4> p;
+  for (std::size_t i = 0; i < 4; ++i) p[i] = path.t0[i] + t * (path.t1[i] - path.t0[i]);
+  return p;
+}
+
+Vec3 compute_barycentric(const Vec3& p, const Vec3& f0, const Vec3& f1, const Vec3& f2) {
+  const Vec3 n = (f1 - f0).cross(f2 - f0);
+  const double squared = n.squaredNorm();
+  if (!(squared > 0.0)) return Vec3::Constant(1.0 / 3.0);
+  const double b1 = n.dot((p - f0).cross(f2 - f0)) / squared;
+  const double b2 = n.dot((f1 - f0).cross(p - f0)) / squared;
+  return {1.0 - b1 - b2, b1, b2};
+}
+
+Eigen::Vector2d compute_line_parameters(const std::array<Vec3, 4>& p) {
+  const Vec3 a = p[1] - p[0];
+  const Vec3 b = p[3] - p[2];
+  const Vec3 w = p[2] - p[0];
+  const double aa = a.squaredNorm();
+  const double bb = b.squaredNorm();
+  const double ab = a.dot(b);
+  const double det = aa * bb - ab * ab;
+  constexpr double kParallel = 1e-14;
+  if (!(det > kParallel * aa * bb)) return {0.5, 0.5};
+  const double wa = w.dot(a);
+  const double wb = w.dot(b);
+  return {(wa * bb - wb * ab) / det, (wa * ab - wb * aa) / det};
+}
+
+Penalty compute_vertex_face_penalty(const PairPath& path, bool inside_at_start) {
+  return compute_penalty(PairKind::vertex_face, path, compute_coplanarity(PairKind::vertex_face, path),
+                         inside_at_start, 1.0);
+}
+
+Penalty compute_edge_edge_penalty(const PairPath& path, bool inside_at_start, double orientation) {
+  return compute_penalty(PairKind::edge_edge, path, compute_coplanarity(PairKind::edge_edge, path),
+                         inside_at_start, orientation);
+}
+
+}  // namespace argil::contact
