@@ -139,6 +139,8 @@ std::string join(const std::string& folder, const std::string& name) {
 constexpr unsigned kDeflateLevel = 1;
 // One chunk a dataset up to this many bytes; larger arrays are cut along their rows.
 constexpr std::uint64_t kMaxChunkBytes = 1U << 20;
+// Smaller arrays are stored as they are: the index of a compressed one takes 2 kB.
+constexpr std::uint64_t kMinCompressedBytes = 1U << 15;
 
 Handle creation_properties() {
   Handle properties = property(H5Pcreate(H5P_DATASET_CREATE));
@@ -205,10 +207,10 @@ void Group::write_raw(const std::string& name, const void* data, Element element
   const Handle space =
       dataspace(rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, lengths.data(), nullptr));
   const Handle properties = creation_properties();
-  if (compress && rank > 0 && count > 0 && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0) {
+  const std::uint64_t bytes = count * H5Tget_size(file_type(element));
+  if (compress && rank > 0 && bytes >= kMinCompressedBytes && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0) {
     std::vector<hsize_t> chunk = lengths;
-    const std::uint64_t row_bytes = count / lengths[0] * H5Tget_size(file_type(element));
-    chunk[0] = std::clamp<std::uint64_t>(kMaxChunkBytes / row_bytes, 1, lengths[0]);
+    chunk[0] = std::clamp<std::uint64_t>(kMaxChunkBytes / (bytes / lengths[0]), 1, lengths[0]);
     H5Pset_chunk(properties.id(), rank, chunk.data());
     H5Pset_shuffle(properties.id());
     H5Pset_deflate(properties.id(), kDeflateLevel);

@@ -1,0 +1,259 @@
+#include "output/compare.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <sstream>
+
+#include "base/error.h"
+#include "output/result_reader.h"
+
+namespace argil::output {
+namespace {
+
+using hdf5::Dataset;
+using hdf5::Element;
+using hdf5::Group;
+using hdf5::Object;
+using hdf5::Shape;
+
+// Does `text` fit `pattern`, where * stands for any text, also none?
+bool fits(std::string_view pattern, std::string_view text) {
+  if (pattern.empty()) return text.empty();
+  if (pattern.front() != '*')
+    return !text.empty() && pattern.front() == text.front() && fits(pattern.substr(1), text.substr(1));
+  for (std::size_t skip = 0; skip <= text.size(); ++skip)
+    if (fits(pattern.substr(1), text.substr(skip))) return true;
+  return false;
+}
+
+std::string print(double value) {
+  std::ostringstream text;
+  text.precision(17);
+  text << value;
+  return text.str();
+}
+
+std::string print(const Shape& shape) {
+  std::string text = "(";
+  for (const std::uint64_t length : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(length);
+  return text + ")";
+}
+
+// What a comparison of two arrays of numbers found.
+struct ValueDifference {
+  std::uint64_t count = 0;
+  std::uint64_t first = 0;  // index of the first
+  double largest = 0.0;     // |a − b|, NaN when one is
+};
+
+bool is_same(double a, double b, const Tolerance* tolerance) {
+  if (tolerance == nullptr)
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) && !std::isnan(a);
+  if (a == b) return true;  // also equal infinities, whose difference is NaN
+  return std::abs(a - b) <= tolerance->absolute + tolerance->relative * std::abs(a);
+}
+
+bool is_same(std::int64_t a, std::int64_t b, const Tolerance* tolerance) {
+  return a == b ||
+         (tolerance != nullptr && is_same(static_cast<double>(a), static_cast<double>(b), tolerance));
+}
+
+template <class T>
+ValueDifference compare_values(const std::vector<T>& a, const std::vector<T>& b, std::size_t count,
+                               const Tolerance* tolerance) {
+  ValueDifference found;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_same(a[i], b[i], tolerance)) continue;
+    if (found.count++ == 0) found.first = i;
+    const double error = std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
+    if (!(error <= found.largest)) found.largest = error;
+  }
+  return found;
+}
+
+class Comparison {
+ public:
+  Comparison(const ResultReader& a, const ResultReader& b, const CompareOptions& options)
+      : m_options(options), m_file_a(a.file()), m_file_b(b.file()) {
+    m_options.ignore.emplace_back("/timing");
+    compare_groups(a.root(), b.root(), std::nullopt);
+    std::stable_sort(
+        m_report.differences.begin(), m_report.differences.end(),
+        [](const Difference& x, const Difference& y) { return x.tick < y.tick; });  // no tick first
+  }
+  CompareReport take_report() { return std::move(m_report); }
+
+ private:
+  void add(const std::string& object, const std::string& what, std::optional<Tick> tick,
+           std::uint64_t count = 1) {
+    m_report.differences.push_back({object, what, tick, count});
+  }
+
+  bool is_ignored(const std::string& path) const {
+    return std::any_of(m_options.ignore.begin(), m_options.ignore.end(),
+                       [&](const std::string& pattern) { return fits(pattern, path); });
+  }
+
+  const Tolerance* find_tolerance(const std::string& path) const {
+    const auto found =
+        std::find_if(m_options.tolerances.begin(), m_options.tolerances.end(),
+                     [&](const Tolerance& tolerance) { return fits(tolerance.dataset, path); });
+    return found == m_options.tolerances.end() ? nullptr : &*found;
+  }
+
+  // Names that both have; those that one has alone are differences.
+  std::vector<std::string> common(const std::vector<std::string>& a, const std::vector<std::string>& b,
+                                  const std::string& prefix, std::optional<Tick> tick) {
+    std::vector<std::string> all;
+    std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(all));
+    std::vector<std::string> both;
+    for (const std::string& name : all) {
+      const bool in_a = std::binary_search(a.begin(), a.end(), name);
+      const bool in_b = std::binary_search(b.begin(), b.end(), name);
+      if (in_a && in_b)
+        both.push_back(name);
+      else if (!is_ignored(prefix + name))
+        add(prefix + name, "is missing in " + (in_a ? m_file_b : m_file_a), tick);
+    }
+    return both;
+  }
+
+  void compare_attributes(const Object& a, const Object& b, std::optional<Tick> tick) {
+    const std::string prefix = a.path() + " attribute ";
+    for (const std::string& name : common(a.attribute_names(), b.attribute_names(), prefix, tick)) {
+      if (name == "state_hash" && !m_options.tolerances.empty()) continue;
+      ++m_report.num_compared;
+      const bool is_text = a.attribute_element(name) == Element::text;
+      if (a.attribute_element(name) != b.attribute_element(name)) {
+        add(prefix + name, "has another type", tick);
+      } else if (is_text) {
+        const std::string text_a = a.read_text(name);
+        const std::string text_b = b.read_text(name);
+        if (text_a != text_b) add(prefix + name, "is '" + text_a + "' and '" + text_b + "'", tick);
+      } else {
+        const std::vector<double> values_a = a.read_reals(name);
+        const std::vector<double> values_b = b.read_reals(name);
+        const bool is_equal = values_a.size() == values_b.size() &&
+                              compare_values(values_a, values_b, values_a.size(), nullptr).count == 0;
+        if (!is_equal)
+          add(prefix + name,
+              values_a.size() == 1 && values_b.size() == 1
+                  ? "is " + print(values_a[0]) + " and " + print(values_b[0])
+                  : std::string("differs"),
+              tick);
+      }
+    }
+  }
+
+  template <class T>
+  void compare_numbers(const Dataset& a, const Dataset& b, std::uint64_t count, std::uint64_t row_width,
+                       const std::vector<std::int64_t>& ticks, std::optional<Tick> tick) {
+    const std::vector<T> values_a = a.read<T>();
+    const std::vector<T> values_b = b.read<T>();
+    const ValueDifference found = compare_values(values_a, values_b, count, find_tolerance(a.path()));
+    if (found.count == 0) return;
+    const std::uint64_t row = found.first / row_width;
+    std::string what = std::to_string(found.count) + " of " + std::to_string(count) +
+                       " values differ, first in row " + std::to_string(row);
+    if (row_width > 1) what += ", component " + std::to_string(found.first % row_width);
+    what += ": " + print(static_cast<double>(values_a[found.first])) + " and " +
+            print(static_cast<double>(values_b[found.first])) + "; largest difference " +
+            print(found.largest);
+    if (row < ticks.size()) tick = ticks[row];
+    add(a.path(), what, tick, found.count);
+  }
+
+  // `ticks`: tick of each row, empty when rows are not points in time.
+  void compare_datasets(const Dataset& a, const Dataset& b, const std::vector<std::int64_t>& ticks,
+                        std::optional<Tick> tick) {
+    ++m_report.num_compared;
+    compare_attributes(a, b, tick);
+    const Shape shape_a = a.shape();
+    const Shape shape_b = b.shape();
+    const Element element = a.element();
+    if (element != b.element()) return add(a.path(), "has another type", tick);
+    if (element == Element::text) {
+      if (a.read_string() != b.read_string()) add(a.path(), "the texts differ", tick);
+      return;
+    }
+    std::uint64_t count = hdf5::compute_count(shape_a);
+    std::uint64_t row_width = shape_a.empty() || shape_a[0] == 0 ? 1 : count / shape_a[0];
+    if (shape_a != shape_b) {
+      const bool rows_only = !shape_a.empty() && shape_a.size() == shape_b.size() &&
+                             std::equal(shape_a.begin() + 1, shape_a.end(), shape_b.begin() + 1);
+      const std::uint64_t rows = rows_only ? std::min(shape_a[0], shape_b[0]) : 0;
+      const std::optional<Tick> end = rows_only && rows < ticks.size() ? ticks[rows] : tick;
+      add(a.path(), "shape " + print(shape_a) + " and " + print(shape_b), end);
+      if (ticks.empty() || rows == 0) return;
+      row_width = hdf5::compute_count(shape_a) / shape_a[0];
+      count = rows * row_width;
+    }
+    if (element == Element::real64)
+      compare_numbers<double>(a, b, count, row_width, ticks, tick);
+    else
+      compare_numbers<std::int64_t>(a, b, count, row_width, ticks, tick);
+  }
+
+  void compare_groups(const Group& a, const Group& b, std::optional<Tick> tick) {
+    if (a.has_attribute("tick")) tick = a.read_integer("tick");
+    compare_attributes(a, b, tick);
+    std::vector<std::int64_t> ticks;  // of the longer file, so that missing rows have a tick, too
+    for (const Group* group : {&a, &b})
+      if (group->has("tick")) {
+        std::vector<std::int64_t> other = group->open_dataset("tick").read<std::int64_t>();
+        if (other.size() > ticks.size()) ticks = std::move(other);
+      }
+    const std::string prefix = a.path() == "/" ? "/" : a.path() + "/";
+    for (const std::string& name : common(a.names(), b.names(), prefix, tick)) {
+      if (is_ignored(prefix + name)) continue;
+      if (a.is_group(name) != b.is_group(name))
+        add(prefix + name, "is a group in one file and a dataset in the other", tick);
+      else if (a.is_group(name))
+        compare_groups(a.open_group(name), b.open_group(name), tick);
+      else
+        compare_datasets(a.open_dataset(name), b.open_dataset(name), ticks, tick);
+    }
+  }
+
+  CompareOptions m_options;
+  std::string m_file_a;
+  std::string m_file_b;
+  CompareReport m_report;
+};
+
+}  // namespace
+
+CompareReport compare_results(const std::string& file_a, const std::string& file_b,
+                              const CompareOptions& options) {
+  for (const Tolerance& tolerance : options.tolerances)
+    if (!(tolerance.relative >= 0.0 && tolerance.absolute >= 0.0))
+      throw InputError(
+          "", tolerance.dataset,
+          "tolerances " + print(tolerance.relative) + " relative, " + print(tolerance.absolute) + " absolute",
+          "give numbers that are not negative");
+  const ResultReader a(file_a);
+  const ResultReader b(file_b);
+  return Comparison(a, b, options).take_report();
+}
+
+std::string to_string(const CompareReport& report) {
+  if (report.is_equal())
+    return "equal: " + std::to_string(report.num_compared) + " datasets and attributes\n";
+  std::ostringstream text;
+  const auto timed = std::find_if(report.differences.begin(), report.differences.end(),
+                                  [](const Difference& difference) { return difference.tick.has_value(); });
+  const Difference& first = timed == report.differences.end() ? report.differences.front() : *timed;
+  text << "different: first ";
+  if (first.tick) text << "at tick " << *first.tick << " ";
+  text << "in " << first.object << "; " << report.differences.size() << " of " << report.num_compared
+       << " datasets and attributes differ\n";
+  for (const Difference& difference : report.differences) {
+    text << "  ";
+    if (difference.tick) text << "tick " << *difference.tick << "  ";
+    text << difference.object << ": " << difference.what << '\n';
+  }
+  return text.str();
+}
+
+}  // namespace argil::output

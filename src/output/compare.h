@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/types.h"
+
+namespace argil::output {
+
+/// How far two values a (of the first file) and b of a dataset may lie apart: |a − b| ≤ absolute +
+/// relative·|a|.
+struct Tolerance {
+  std::string dataset;    ///< path from the root; * stands for any text: "/frames/*/position"
+  double relative = 0.0;  ///< ≥ 0
+  double absolute = 0.0;  ///< ≥ 0, in the dataset's unit
+};
+
+struct CompareOptions {
+  /// The first that fits a dataset counts; without one, values must have the same bits. With any tolerance
+  /// the frames' state_hash is not compared, because it tells of every bit.
+  std::vector<Tolerance> tolerances;
+  /// Paths that are left out, * as above, with everything in them. /timing always is.
+  std::vector<std::string> ignore;
+};
+
+/// One dataset, attribute or group that is not the same in both files.
+struct Difference {
+  std::string object;        ///< "/haptic/force", "/frames/000003 attribute time"
+  std::string what;          ///< shapes, values, which file lacks it
+  std::optional<Tick> tick;  ///< first tick that differs, for what changes with time
+  std::uint64_t count = 0;   ///< values that differ
+};
+
+struct CompareReport {
+  std::vector<Difference> differences;  ///< what does not change with time first, then by tick, then by path
+  std::uint64_t num_compared = 0;       ///< datasets and attributes looked at
+  bool is_equal() const { return differences.empty(); }
+};
+
+/// Compares everything in two result files except /timing: names, shapes, types, attributes, values. NaN
+/// equals nothing, not even itself. Throws IoError or InputError when a file cannot be used.
+CompareReport compare_results(const std::string& file_a, const std::string& file_b,
+                              const CompareOptions& options);
+
+/// The report for a person; the first line names the first differing tick and dataset.
+std::string to_string(const CompareReport& report);
+
+}  // namespace argil::output

@@ -1,0 +1,213 @@
+#include "output/result_reader.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "output/schema.h"
+
+namespace argil::output {
+
+using hdf5::Dataset;
+using hdf5::Group;
+
+namespace {
+
+// One entity a row on disk, one a column in memory: the same bytes.
+template <class Array>
+Array read_entities(const Group& group, const char* name) {
+  using Scalar = typename Array::Scalar;
+  constexpr auto kRows = static_cast<std::uint64_t>(Array::RowsAtCompileTime);
+  const Dataset dataset = group.open_dataset(name);
+  const hdf5::Shape shape = dataset.shape();
+  if (shape.size() != 2 || shape[1] != kRows)
+    throw IoError(group.file(),
+                  dataset.path() + " does not have " + std::to_string(kRows) + " numbers a row");
+  const std::vector<Scalar> values = dataset.read<Scalar>();
+  return Eigen::Map<const Array>(values.data(), Array::RowsAtCompileTime,
+                                 static_cast<Eigen::Index>(shape[0]));
+}
+
+Field read_field(const Group& group, const char* name) {
+  const std::vector<double> values = group.open_dataset(name).read<double>();
+  return Eigen::Map<const Field>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+// One column of a table, checked to be as long as its ticks.
+template <class T>
+class ColumnReader {
+ public:
+  ColumnReader(const Group& group, const char* name, std::size_t rows, std::size_t width)
+      : m_values(group.open_dataset(name).read<T>()), m_width(width) {
+    if (m_values.size() != rows * width)
+      throw IoError(group.file(), group.path() + "/" + name + " has not as many rows as tick");
+  }
+  T operator()(std::size_t row) const { return m_values[row]; }
+  const T* row(std::size_t row) const { return m_values.data() + row * m_width; }
+
+ private:
+  std::vector<T> m_values;
+  std::size_t m_width;
+};
+
+hdf5::Group open_root(const hdf5::File& file) {
+  Group root = file.root();
+  if (!root.has_attribute("format") || root.read_text("format") != schema::kFormat)
+    throw InputError(file.name(), "", "is HDF5 but not a result file of argil",
+                     "give the file that a run wrote");
+  const std::int64_t version = root.read_integer("format_version");
+  if (version != schema::kFormatVersion)
+    throw InputError(file.name(), "format_version", std::to_string(version),
+                     "this program reads version " + std::to_string(schema::kFormatVersion));
+  return root;
+}
+
+hdf5::File open(const std::string& file) {
+  return hdf5::File::open_for_reading(file);
+}
+
+}  // namespace
+
+ResultReader::ResultReader(const std::string& file) : m_file(open(file)), m_root(open_root(m_file)) {}
+
+Outcome ResultReader::outcome() const {
+  const std::string text = m_root.read_text("outcome");
+  if (text == "done") return Outcome::done;
+  if (text == "interrupted") return Outcome::interrupted;
+  if (text == "failed") return Outcome::failed;
+  return Outcome::running;
+}
+
+std::optional<Failure> ResultReader::read_failure() const {
+  if (!m_root.has("failure")) return std::nullopt;
+  const Group group = m_root.open_group("failure");
+  return Failure{
+      group.read_integer("tick"),  group.read_text("stage"), static_cast<int>(group.read_integer("element")),
+      group.read_text("quantity"), group.read_real("value"), group.read_real("bound")};
+}
+
+ResultHeader ResultReader::read_header() const {
+  const Group mesh = m_root.open_group("mesh");
+  ResultHeader header;
+  header.rest_position = read_entities<Points>(mesh, "rest_position");
+  header.tets = read_entities<Tets>(mesh, "tets");
+  header.surface_triangles = read_entities<Triangles>(mesh, "surface_triangles");
+  header.skin_triangles = read_entities<Triangles>(mesh, "skin_triangles");
+  header.tool.vertices = read_entities<Points>(mesh, "tool_vertices");
+  header.tool.triangles = read_entities<Triangles>(mesh, "tool_triangles");
+  header.haptic_period = m_root.read_real("haptic_period_s");
+  const Group provenance = m_root.open_group("provenance");
+  for (const std::string& name : provenance.names())
+    header.provenance.emplace_back(name, provenance.open_dataset(name).read_string());
+  return header;
+}
+
+std::optional<std::string> ResultReader::find_provenance(const std::string& name) const {
+  const Group provenance = m_root.open_group("provenance");
+  if (!provenance.has(name)) return std::nullopt;
+  return provenance.open_dataset(name).read_string();
+}
+
+std::vector<sim::HapticRecord> ResultReader::read_haptic() const {
+  const Group group = m_root.open_group("haptic");
+  const std::vector<std::int64_t> tick = group.open_dataset("tick").read<std::int64_t>();
+  const std::size_t rows = tick.size();
+  const ColumnReader<double> time(group, "time", rows, 1);
+  const ColumnReader<double> tool_position(group, "tool_position", rows, 3);
+  const ColumnReader<double> tool_orientation(group, "tool_orientation", rows, 4);
+  const ColumnReader<double> force(group, "force", rows, 3);
+  const ColumnReader<double> torque(group, "torque", rows, 3);
+  const ColumnReader<double> device_force(group, "device_force", rows, 3);
+  const ColumnReader<std::uint8_t> mode(group, "mode", rows, 1);
+  const ColumnReader<std::int32_t> force_age(group, "force_age", rows, 1);
+  const ColumnReader<std::int32_t> num_contacts(group, "num_contacts", rows, 1);
+  const ColumnReader<std::uint8_t> gate_events(group, "gate_events", rows, 1);
+  std::vector<sim::HapticRecord> records(rows);
+  for (std::size_t i = 0; i < rows; ++i) {
+    sim::HapticRecord& record = records[i];
+    record.tick = tick[i];
+    record.time = time(i);
+    record.tool_position = Eigen::Map<const Vec3>(tool_position.row(i));
+    record.tool_orientation = Quat(Eigen::Map<const Vec4>(tool_orientation.row(i)));  // x, y, z, w
+    record.force = Eigen::Map<const Vec3>(force.row(i));
+    record.torque = Eigen::Map<const Vec3>(torque.row(i));
+    record.device_force = Eigen::Map<const Vec3>(device_force.row(i));
+    if (mode(i) >= device::kNumToolModes)
+      throw IoError(file(), "/haptic/mode has an unknown mode in row " + std::to_string(i));
+    record.mode = static_cast<device::ToolMode>(mode(i));
+    record.force_age = force_age(i);
+    record.num_contacts = num_contacts(i);
+    record.gate_events = gate_events(i);
+  }
+  return records;
+}
+
+std::vector<sim::PhysicsRecord> ResultReader::read_physics() const {
+  const Group group = m_root.open_group("physics");
+  const std::vector<std::int64_t> tick = group.open_dataset("tick").read<std::int64_t>();
+  std::vector<sim::PhysicsRecord> records(tick.size());
+  for (std::size_t i = 0; i < tick.size(); ++i) records[i].tick = tick[i];
+  const auto read_reals = [&](const char* name, double sim::PhysicsRecord::*member) {
+    const ColumnReader<double> column(group, name, records.size(), 1);
+    for (std::size_t i = 0; i < records.size(); ++i) records[i].*member = column(i);
+  };
+  const auto read_counts = [&](const char* name, int sim::PhysicsRecord::*member) {
+    const ColumnReader<std::int32_t> column(group, name, records.size(), 1);
+    for (std::size_t i = 0; i < records.size(); ++i) records[i].*member = column(i);
+  };
+  using Record = sim::PhysicsRecord;
+  read_reals("time", &Record::time);
+  read_reals("kinetic_energy", &Record::kinetic_energy);
+  read_reals("elastic_energy", &Record::elastic_energy);
+  read_reals("plastic_dissipation", &Record::plastic_dissipation);
+  read_reals("contact_work", &Record::contact_work);
+  read_reals("water_mass", &Record::water_mass);
+  read_reals("water_added", &Record::water_added);
+  read_reals("water_removed", &Record::water_removed);
+  read_counts("iterations", &Record::iterations);
+  read_counts("factorisations", &Record::factorisations);
+  read_reals("residual", &Record::residual);
+  read_counts("active_nodes", &Record::active_nodes);
+  read_reals("min_volume_ratio", &Record::min_volume_ratio);
+  read_reals("max_plastic_strain", &Record::max_plastic_strain);
+  return records;
+}
+
+std::vector<FrameInfo> ResultReader::read_frame_list() const {
+  const Group frames = m_root.open_group("frames");
+  std::vector<FrameInfo> list;
+  for (const std::string& name : frames.names()) {
+    const Group frame = frames.open_group(name);
+    list.push_back(
+        {name, frame.read_integer("tick"), frame.read_real("time"), frame.read_text("state_hash")});
+  }
+  std::stable_sort(list.begin(), list.end(),
+                   [](const FrameInfo& a, const FrameInfo& b) { return a.tick < b.tick; });
+  return list;
+}
+
+sim::Frame ResultReader::read_frame(const FrameInfo& info) const {
+  const Group group = m_root.open_group("frames").open_group(info.name);
+  sim::Frame frame;
+  frame.tick = info.tick;
+  frame.time = info.time;
+  frame.state_hash = info.state_hash;
+  frame.position = read_entities<Points>(group, "position");
+  frame.saturation = read_field(group, "saturation");
+  frame.plastic_strain = read_entities<TensorField>(group, "plastic_strain");
+  frame.skin_position = read_entities<Points>(group, "skin_position");
+  frame.skin_saturation = read_field(group, "skin_saturation");
+  frame.skin_influence = read_field(group, "skin_influence");
+  return frame;
+}
+
+std::vector<std::pair<std::string, double>> ResultReader::read_timing() const {
+  const Group timing = m_root.open_group("timing");
+  std::vector<std::pair<std::string, double>> last;
+  for (const std::string& name : timing.names()) {
+    const std::vector<double> values = timing.open_dataset(name).read<double>();
+    if (!values.empty()) last.emplace_back(name, values.back());
+  }
+  return last;
+}
+
+}  // namespace argil::output

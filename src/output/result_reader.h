@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hdf5/file.h"
+#include "output/result_file.h"
+
+namespace argil::output {
+
+/// What identifies a frame without its arrays.
+struct FrameInfo {
+  std::string name;  ///< in /frames, "000123"
+  Tick tick = 0;
+  double time = 0.0;       ///< [s]
+  std::string state_hash;  ///< SHA-256 of the whole state
+};
+
+/// A result file opened for reading, complete or not. Throws IoError when it cannot be read, InputError when
+/// it is no result file of this version.
+class ResultReader {
+ public:
+  explicit ResultReader(const std::string& file);
+  const std::string& file() const { return m_file.name(); }
+  const hdf5::Group& root() const { return m_root; }
+
+  Outcome outcome() const;
+  std::optional<Failure> read_failure() const;
+  ResultHeader read_header() const;
+  /// Text of /provenance by its name; nothing when it is not there.
+  std::optional<std::string> find_provenance(const std::string& name) const;
+  std::vector<sim::HapticRecord> read_haptic() const;
+  std::vector<sim::PhysicsRecord> read_physics() const;
+  std::vector<FrameInfo> read_frame_list() const;  ///< in the order of ticks
+  sim::Frame read_frame(const FrameInfo& info) const;
+  /// Last value of every entry of /timing, by name.
+  std::vector<std::pair<std::string, double>> read_timing() const;
+
+ private:
+  hdf5::File m_file;
+  hdf5::Group m_root;
+};
+
+}  // namespace argil::output
