@@ -48,15 +48,23 @@ Vec3 project(const ImplicitSurface& surface, Vec3 x, double cell_size) {
   return x;
 }
 
-double smallest_quality(const TriangleMesh& mesh, const Points& x, const std::vector<int>& around) {
+// Worst of the triangles `around` a vertex when it lies at `x`; 1: equilateral, negative: turned over.
+double smallest_quality(const TriangleMesh& mesh, const std::vector<int>& around, int vertex, const Vec3& x) {
   double smallest = 1.0;
   for (const int t : around) {
-    const Vec3 a = x.col(mesh.triangles(0, t));
-    const Vec3 b = x.col(mesh.triangles(1, t));
-    const Vec3 c = x.col(mesh.triangles(2, t));
-    const double area = 0.5 * (b - a).cross(c - a).norm();
-    const double edges = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
-    smallest = std::min(smallest, 4.0 * std::sqrt(3.0) * area / edges);  // 1: equilateral
+    std::array<Vec3, 3> before;
+    std::array<Vec3, 3> after;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int v = mesh.triangles(static_cast<int>(i), t);
+      before[i] = mesh.vertices.col(v);
+      after[i] = v == vertex ? x : before[i];
+    }
+    const Vec3 normal_before = (before[1] - before[0]).cross(before[2] - before[0]);
+    const Vec3 normal = (after[1] - after[0]).cross(after[2] - after[0]);
+    const double edges = (after[1] - after[0]).squaredNorm() + (after[2] - after[1]).squaredNorm() +
+                         (after[0] - after[2]).squaredNorm();
+    const double quality = 2.0 * std::sqrt(3.0) * normal.norm() / edges;
+    smallest = std::min(smallest, normal.dot(normal_before) > 0.0 ? quality : -quality);
   }
   return smallest;
 }
@@ -106,9 +114,9 @@ void relax(const ImplicitSurface& surface, double cell_size, TriangleMesh& mesh)
           if (mesh.triangles(i, t) != v) mean += mesh.vertices.col(mesh.triangles(i, t));
       mean /= 2.0 * static_cast<double>(triangles.size());
       const Vec3 before = mesh.vertices.col(v);
-      const double quality = smallest_quality(mesh, mesh.vertices, triangles);
-      mesh.vertices.col(v) = project(surface, mean, cell_size);
-      if (!(smallest_quality(mesh, mesh.vertices, triangles) > quality)) mesh.vertices.col(v) = before;
+      const Vec3 after = project(surface, mean, cell_size);
+      if (smallest_quality(mesh, triangles, v, after) > smallest_quality(mesh, triangles, v, before))
+        mesh.vertices.col(v) = after;
     }
 }
 
