@@ -7,7 +7,8 @@
 
 namespace argil::detail {
 
-[[noreturn]] void assertion_failed(const char* expression, const char* file, int line, const std::string& values);
+[[noreturn]] void assertion_failed(const char* expression, const char* file, int line,
+                                   const std::string& values);
 
 template <class... Values>
 std::string print_values(const Values&... values) {
@@ -20,11 +21,11 @@ std::string print_values(const Values&... values) {
 }  // namespace argil::detail
 
 /// Aborts with the expression and the given values when `condition` is not true. Armed in every build.
-#define ARGIL_ASSERT(condition, ...)                                                          \
-  do {                                                                                        \
-    if (!(condition)) [[unlikely]]                                                            \
-      ::argil::detail::assertion_failed(#condition, __FILE__, __LINE__,                       \
-                                        ::argil::detail::print_values(__VA_ARGS__));          \
+#define ARGIL_ASSERT(condition, ...)                                                 \
+  do {                                                                               \
+    if (!(condition)) [[unlikely]]                                                   \
+      ::argil::detail::assertion_failed(#condition, __FILE__, __LINE__,              \
+                                        ::argil::detail::print_values(__VA_ARGS__)); \
   } while (false)
 
 /// The same for checks whose cost grows with the mesh; armed in debug builds only.

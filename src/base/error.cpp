@@ -3,7 +3,8 @@
 namespace argil {
 namespace {
 
-std::string join(std::string_view file, std::string_view place, std::string_view problem, std::string_view remedy) {
+std::string join(std::string_view file, std::string_view place, std::string_view problem,
+                 std::string_view remedy) {
   std::string text(file);
   if (!place.empty()) text.append(text.empty() ? "" : ": ").append(place);
   text.append(text.empty() ? "" : ": ").append(problem);

@@ -11,7 +11,8 @@ namespace argil {
 /// number (may be empty), `problem` names the value and the allowed range, `remedy` says what to do.
 class InputError : public std::runtime_error {
  public:
-  InputError(std::string_view file, std::string_view place, std::string_view problem, std::string_view remedy);
+  InputError(std::string_view file, std::string_view place, std::string_view problem,
+             std::string_view remedy);
 };
 
 /// A file could not be read or written although its name and content were acceptable. Exit code 4.

@@ -62,9 +62,13 @@ Sha256& Sha256::add(std::span<const std::byte> bytes) {
   return *this;
 }
 
-Sha256& Sha256::add(const std::string& text) { return add(std::as_bytes(std::span(text.data(), text.size()))); }
+Sha256& Sha256::add(const std::string& text) {
+  return add(std::as_bytes(std::span(text.data(), text.size())));
+}
 
-Sha256& Sha256::add(const double* values, std::size_t count) { return add(std::as_bytes(std::span(values, count))); }
+Sha256& Sha256::add(const double* values, std::size_t count) {
+  return add(std::as_bytes(std::span(values, count)));
+}
 
 std::string Sha256::hex_digest() const {
   Sha256 end = *this;

@@ -8,7 +8,8 @@ inline constexpr double kSqrt2 = 1.4142135623730951;
 
 /// Mandel vector (11 22 33 √2·23 √2·13 √2·12) of a symmetric 3×3 tensor; keeps inner products: a:b = aᵀb.
 inline Vec6 to_mandel(const Mat3& a) {
-  return (Vec6() << a(0, 0), a(1, 1), a(2, 2), kSqrt2 * a(1, 2), kSqrt2 * a(0, 2), kSqrt2 * a(0, 1)).finished();
+  return (Vec6() << a(0, 0), a(1, 1), a(2, 2), kSqrt2 * a(1, 2), kSqrt2 * a(0, 2), kSqrt2 * a(0, 1))
+      .finished();
 }
 
 /// Symmetric 3×3 tensor of a Mandel vector.

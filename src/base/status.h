@@ -40,6 +40,5 @@ class [[nodiscard]] StepStatus {
 }  // namespace argil
 
 /// Hands a failed stage up to the caller.
-#define ARGIL_TRY(expression)                                             \
-  if (::argil::StepStatus argil_status = (expression); !argil_status.is_ok()) \
-  return argil_status
+#define ARGIL_TRY(expression) \
+  if (::argil::StepStatus argil_status = (expression); !argil_status.is_ok()) return argil_status

@@ -21,10 +21,10 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< symmetric tensor, Mandel: 11 22 
 using Mat6 = Eigen::Matrix<double, 6, 6>;  ///< fourth-order tensor with minor symmetry, Mandel
 using Quat = Eigen::Quaterniond;
 
-using Points = Eigen::Matrix3Xd;                          ///< 3×n, one point or vector a column
-using Triangles = Eigen::Matrix3Xi;                       ///< 3×m vertex numbers, counter-clockwise from outside
-using Tets = Eigen::Matrix<int, 4, Eigen::Dynamic>;       ///< 4×m vertex numbers, positive volume
-using Field = Eigen::VectorXd;                            ///< one scalar per entity
+using Points = Eigen::Matrix3Xd;                     ///< 3×n, one point or vector a column
+using Triangles = Eigen::Matrix3Xi;                  ///< 3×m vertex numbers, counter-clockwise from outside
+using Tets = Eigen::Matrix<int, 4, Eigen::Dynamic>;  ///< 4×m vertex numbers, positive volume
+using Field = Eigen::VectorXd;                       ///< one scalar per entity
 using TensorField = Eigen::Matrix<double, 6, Eigen::Dynamic>;  ///< one symmetric tensor per entity, Mandel
 
 using Tick = std::int64_t;  ///< count of haptic periods since the start of the run

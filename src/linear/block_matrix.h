@@ -6,8 +6,8 @@
 
 namespace argil::linear {
 
-/// Sparse symmetric matrix of 3×3 blocks in compressed rows, both triangles stored. A vector that goes with it
-/// has one 3-vector a column.
+/// Sparse symmetric matrix of 3×3 blocks in compressed rows, both triangles stored. A vector that goes with
+/// it has one 3-vector a column.
 struct BlockMatrix {
   std::vector<int> row_begin;  ///< rows + 1
   std::vector<int> column;     ///< block column of each stored block, increasing within a row

@@ -98,8 +98,8 @@ bool CholeskyFactor::factorise(const BlockMatrix& matrix) {
 void CholeskyFactor::solve(const Points& b, Points& x) {
   Impl& impl = *m_impl;
   std::copy_n(b.data(), b.size(), static_cast<double*>(impl.rhs->x));
-  const int solved = cholmod_solve2(CHOLMOD_A, impl.factor, impl.rhs, nullptr, &impl.solution, nullptr, &impl.work_y,
-                                    &impl.work_e, &impl.common);
+  const int solved = cholmod_solve2(CHOLMOD_A, impl.factor, impl.rhs, nullptr, &impl.solution, nullptr,
+                                    &impl.work_y, &impl.work_e, &impl.common);
   ARGIL_ASSERT(solved == 1, impl.common.status);
   x.resize(3, b.cols());
   std::copy_n(static_cast<const double*>(impl.solution->x), b.size(), x.data());

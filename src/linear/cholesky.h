@@ -15,7 +15,8 @@ class CholeskyFactor {
   CholeskyFactor(CholeskyFactor&&) noexcept;
   CholeskyFactor& operator=(CholeskyFactor&&) noexcept;
 
-  /// Factorises the values of `matrix`, which has the pattern's structure. False when it is not positive definite.
+  /// Factorises the values of `matrix`, which has the pattern's structure. False when it is not positive
+  /// definite.
   [[nodiscard]] bool factorise(const BlockMatrix& matrix);
 
   /// x = A⁻¹ b with the last factor. No allocation after the first call.

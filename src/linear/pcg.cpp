@@ -19,10 +19,10 @@ void BlockJacobi::update(const BlockMatrix& matrix) {
   m_inverse.resize(3, 3 * static_cast<Eigen::Index>(matrix.num_rows()));
   for (int row = 0; row < matrix.num_rows(); ++row) {
     const Mat3 block = matrix.block(matrix.diagonal[static_cast<std::size_t>(row)]);
-    const Mat3 cofactor_transposed = (Mat3() << block.col(1).cross(block.col(2)).transpose(),
-                                      block.col(2).cross(block.col(0)).transpose(),
-                                      block.col(0).cross(block.col(1)).transpose())
-                                         .finished();
+    const Mat3 cofactor_transposed =
+        (Mat3() << block.col(1).cross(block.col(2)).transpose(), block.col(2).cross(block.col(0)).transpose(),
+         block.col(0).cross(block.col(1)).transpose())
+            .finished();
     m_inverse.middleCols<3>(3 * static_cast<Eigen::Index>(row)) =
         cofactor_transposed / block.col(0).dot(block.col(1).cross(block.col(2)));
   }
@@ -32,8 +32,9 @@ void BlockJacobi::apply(const Points& r, Points& z) {
   for (Eigen::Index i = 0; i < r.cols(); ++i) z.col(i).noalias() = m_inverse.middleCols<3>(3 * i) * r.col(i);
 }
 
-SolveReport ConjugateGradients::solve(const BlockMatrix& matrix, Preconditioner& preconditioner, const Points& b,
-                                      double tolerance, int max_iterations, int threads, Points& x) {
+SolveReport ConjugateGradients::solve(const BlockMatrix& matrix, Preconditioner& preconditioner,
+                                      const Points& b, double tolerance, int max_iterations, int threads,
+                                      Points& x) {
   m_r.resize(3, b.cols());
   m_z.resize(3, b.cols());
   m_p.resize(3, b.cols());

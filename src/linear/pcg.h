@@ -44,8 +44,8 @@ class StaleCholesky final : public Preconditioner {
 /// ‖r‖ ≤ tolerance·‖b‖. Sums run in a fixed order; no allocation after the first call of one size.
 class ConjugateGradients {
  public:
-  SolveReport solve(const BlockMatrix& matrix, Preconditioner& preconditioner, const Points& b, double tolerance,
-                    int max_iterations, int threads, Points& x);
+  SolveReport solve(const BlockMatrix& matrix, Preconditioner& preconditioner, const Points& b,
+                    double tolerance, int max_iterations, int threads, Points& x);
 
  private:
   Points m_r, m_z, m_p, m_q;

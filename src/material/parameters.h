@@ -8,7 +8,17 @@ namespace argil::material {
 
 /// Estimate of the stiffness of solid with fluid inclusions. All but the last five are members of
 /// S(X) = [1 + φ(Q−X)⁻¹]S^M (eq. 6 generalised).
-enum class Scheme { dilute, dilute_strain, mori_tanaka, self_consistent, differential, voigt, reuss, hs_lower, hs_upper };
+enum class Scheme {
+  dilute,
+  dilute_strain,
+  mori_tanaka,
+  self_consistent,
+  differential,
+  voigt,
+  reuss,
+  hs_lower,
+  hs_upper
+};
 enum class Orientation { random, aligned };
 
 /// Isotropic elastic constants of the dry clay.
@@ -29,8 +39,9 @@ struct EffectiveMedium {
 /// How water changes stiffness and yield beyond or instead of the effective medium.
 enum class MoistureLaw {
   effective_medium,  ///< C from eq. 6, yield stress as `yield_law` says
-  liquidity_index,   ///< modulus and yield stress fall log-linearly between plastic and liquid limit
-  table,             ///< the user's E(S) and yield(S), monotone interpolation
+  liquidity_index,  ///< modulus and yield stress fall log-linearly from plastic limit (S = 0) to liquid limit
+                    ///< (S = 1)
+  table,            ///< the user's E(S) and yield(S), monotone interpolation
 };
 
 /// How the yield stress follows the saturation.
@@ -45,11 +56,12 @@ struct Moisture {
   bool softens_elasticity = true;  ///< false: the modulus stays dry (to split a result into its causes)
   YieldLaw yield_law = YieldLaw::constant;
   double saturated_yield_ratio = 1.0;  ///< r [–], yield strain at S = 1 over dry, in (0, 1]
-  double saturated_strength_ratio = 1.0 / 35.0;  ///< liquidity_index: strength and modulus at S = 1 over dry [Vardanega & Haigh 2014]
+  double saturated_strength_ratio =
+      1.0 / 35.0;  ///< liquidity_index: strength and modulus at S = 1 over dry [Vardanega & Haigh 2014]
   double refresh_tolerance = 1e-4;  ///< change of S [–] beyond which a tet's moduli are looked up again
-  std::vector<double> table_saturation;     ///< table: increasing, from 0 to 1
-  std::vector<double> table_youngs_modulus; ///< table: [Pa]
-  std::vector<double> table_yield;          ///< table: yield strain [–]
+  std::vector<double> table_saturation;      ///< table: increasing, from 0 to 1
+  std::vector<double> table_youngs_modulus;  ///< table: [Pa]
+  std::vector<double> table_yield;           ///< table: yield strain [–]
 };
 
 /// Plastic flow after Müller and Gross 2004 in additive strain, rate form by default.
@@ -58,10 +70,10 @@ enum class StrainNorm { frobenius, voigt6 };
 
 struct Plasticity {
   bool enabled = true;
-  double yield = 0.0;          ///< elastic strain norm at which flow starts [–]
-  double creep_per_s = 0.0;    ///< c [1/s]
-  double max = 0.0;            ///< cap on the plastic strain norm [–]
-  bool deviatoric = true;      ///< flow keeps the volume
+  double yield = 0.0;        ///< elastic strain norm at which flow starts [–]
+  double creep_per_s = 0.0;  ///< c [1/s]
+  double max = 0.0;          ///< cap on the plastic strain norm [–]
+  bool deviatoric = true;    ///< flow keeps the volume
   FlowForm form = FlowForm::rate;
   StrainNorm norm = StrainNorm::frobenius;
 };
@@ -71,10 +83,11 @@ enum class KernelForm { rate, per_step, off };
 
 struct ClayKernel {
   KernelForm form = KernelForm::rate;
-  double k1 = 0.0;                ///< [1/m]
-  double k2 = 0.0;                ///< [1/m]
-  double radius = 0.0;            ///< R_D [m]
-  double reference_step = 0.014;  ///< h_ref [s]: the step at which one factor G_d is applied (the paper's 71.4 Hz)
+  double k1 = 0.0;      ///< [1/m]
+  double k2 = 0.0;      ///< [1/m]
+  double radius = 0.0;  ///< R_D [m]
+  double reference_step =
+      0.014;  ///< h_ref [s]: the step at which one factor G_d is applied (the paper's 71.4 Hz)
 };
 
 }  // namespace argil::material

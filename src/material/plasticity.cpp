@@ -7,8 +7,8 @@
 namespace argil::material {
 namespace {
 
-/// Norm of a symmetric tensor: Frobenius, or the Euclidean norm of its six components 11 22 33 23 13 12 with tensor
-/// shear, as [Mueller2004] print it. The latter changes when the axes are turned.
+/// Norm of a symmetric tensor: Frobenius, or the Euclidean norm of its six components 11 22 33 23 13 12 with
+/// tensor shear, as [Mueller2004] print it. The latter changes when the axes are turned.
 double compute_norm(const Vec6& mandel, StrainNorm norm) {
   if (norm == StrainNorm::frobenius) return mandel.norm();
   return std::sqrt(mandel.head<3>().squaredNorm() + 0.5 * mandel.tail<3>().squaredNorm());
@@ -21,8 +21,8 @@ Vec6 deviator(Vec6 e) {
 
 }  // namespace
 
-Vec6 compute_plastic_strain(const Vec6& strain, const Vec6& plastic_strain, double yield, const Plasticity& law,
-                            double step_s) {
+Vec6 compute_plastic_strain(const Vec6& strain, const Vec6& plastic_strain, double yield,
+                            const Plasticity& law, double step_s) {
   Vec6 elastic = strain - plastic_strain;
   if (law.deviatoric) elastic = deviator(elastic);
   if (!(compute_norm(elastic, law.norm) > yield)) return plastic_strain;

@@ -12,16 +12,16 @@ namespace argil::sim {
 
 /// How the hand's force is found between two physics steps.
 enum class BetweenFrames {
-  hold,         ///< the paper: one detection a physics step over the tool's whole motion, then the force is kept
+  hold,  ///< the paper: one detection a physics step over the tool's whole motion, then the force is kept
   re_evaluate,  ///< contact every tick against the last surface
 };
 
 /// Rates as whole numbers of haptic ticks.
 struct RateParams {
-  double haptic_period = 0.001;   ///< δ [s]
-  int physics_period_ticks = 1;   ///< solid and contact work once in so many ticks
-  int water_period_ticks = 10;    ///< uptake, diffusion and moduli; a multiple of physics_period_ticks
-  int frame_period_ticks = 100;   ///< pictures
+  double haptic_period = 0.001;  ///< δ [s]
+  int physics_period_ticks = 1;  ///< solid and contact work once in so many ticks
+  int water_period_ticks = 10;   ///< uptake, diffusion and moduli; a multiple of physics_period_ticks
+  int frame_period_ticks = 100;  ///< pictures
   BetweenFrames between_frames = BetweenFrames::hold;
 };
 

@@ -10,14 +10,14 @@ namespace argil::sim {
 /// One haptic tick, as written to /haptic.
 struct HapticRecord {
   Tick tick = 0;
-  double time = 0.0;                     ///< [s]
-  Vec3 tool_position = Vec3::Zero();     ///< [m]
+  double time = 0.0;                  ///< [s]
+  Vec3 tool_position = Vec3::Zero();  ///< [m]
   Quat tool_orientation = Quat::Identity();
-  Vec3 force = Vec3::Zero();             ///< [N] on the hand, before the gate
-  Vec3 torque = Vec3::Zero();            ///< [N m] about the hand's point
-  Vec3 device_force = Vec3::Zero();      ///< [N] after the output gate
+  Vec3 force = Vec3::Zero();         ///< [N] on the hand, before the gate
+  Vec3 torque = Vec3::Zero();        ///< [N m] about the hand's point
+  Vec3 device_force = Vec3::Zero();  ///< [N] after the output gate
   device::ToolMode mode = device::ToolMode::push;
-  int force_age = 0;                     ///< [ticks] since the force was computed
+  int force_age = 0;  ///< [ticks] since the force was computed
   int num_contacts = 0;
   std::uint8_t gate_events = 0;
 };
@@ -45,13 +45,13 @@ struct PhysicsRecord {
 struct Frame {
   Tick tick = 0;
   double time = 0.0;
-  Points position;            ///< 3×n cage vertices [m]
-  Field saturation;           ///< per tet
-  TensorField plastic_strain; ///< per tet, Mandel
-  Points skin_position;       ///< 3×k, empty without a skin
-  Field skin_saturation;      ///< k
-  Field skin_influence;       ///< k, region of influence
-  std::string state_hash;     ///< SHA-256 of the whole state
+  Points position;             ///< 3×n cage vertices [m]
+  Field saturation;            ///< per tet
+  TensorField plastic_strain;  ///< per tet, Mandel
+  Points skin_position;        ///< 3×k, empty without a skin
+  Field skin_saturation;       ///< k
+  Field skin_influence;        ///< k, region of influence
+  std::string state_hash;      ///< SHA-256 of the whole state
 };
 
 }  // namespace argil::sim

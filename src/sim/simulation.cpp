@@ -35,10 +35,12 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
   ARGIL_ASSERT(rest.is_ok());
 }
 
-bool Simulation::tool_overlaps_body() const { return m_detector.overlaps(m_state.solid.x, m_state.tool); }
+bool Simulation::tool_overlaps_body() const {
+  return m_detector.overlaps(m_state.solid.x, m_state.tool);
+}
 
-/// Adds this detection's contact forces to the mean over the physics step, and keeps their stiffness for the solve.
-/// Wet and dry tools feel the body but do not deform it.
+/// Adds this detection's contact forces to the mean over the physics step, and keeps their stiffness for the
+/// solve. Wet and dry tools feel the body but do not deform it.
 void Simulation::spread_contact_force(int ticks) {
   const bool acts = m_state.mode == device::ToolMode::push || m_state.mode == device::ToolMode::pull;
   const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;
@@ -59,8 +61,8 @@ void Simulation::spread_contact_force(int ticks) {
   if (m_state.is_pressed) m_state.contact_centre = weighted_centre / weight;
 }
 
-/// v ← G_d^{h/h_ref}(r) v with r from the point of contact (eq. 9). A body that nothing presses is left free, else clay
-/// held in mid-air would freeze in whatever shape it has.
+/// v ← G_d^{h/h_ref}(r) v with r from the point of contact (eq. 9). A body that nothing presses is left free,
+/// else clay held in mid-air would freeze in whatever shape it has.
 void Simulation::apply_clay_kernel(double step_s) {
   if (!m_state.is_pressed || m_params.kernel.form == material::KernelForm::off) return;
   parallel_for(m_state.solid.v.cols(), m_params.threads, [&](std::ptrdiff_t v) {
@@ -75,18 +77,21 @@ void Simulation::apply_plastic_flow(double step_s) {
   parallel_for(plastic.cols(), m_params.threads, [&](std::ptrdiff_t t) {
     const int tet = static_cast<int>(t);
     const Vec6 before = plastic.col(t);
-    const Vec6 after = material::compute_plastic_strain(m_solid.strain().col(t), before, m_solid.material(tet).yield,
-                                                        m_params.plasticity, step_s);
+    const Vec6 after = material::compute_plastic_strain(
+        m_solid.strain().col(t), before, m_solid.material(tet).yield, m_params.plasticity, step_s);
     m_dissipation(t) = 0.0;
     if ((after.array() == before.array()).all()) return;
     // At fixed strain, the elastic energy that flow releases is what it dissipates.
-    m_dissipation(t) = m_solid.compute_elastic_energy(tet, before) - m_solid.compute_elastic_energy(tet, after);
+    m_dissipation(t) =
+        m_solid.compute_elastic_energy(tet, before) - m_solid.compute_elastic_energy(tet, after);
     plastic.col(t) = after;
   });
-  m_state.plastic_dissipation += ordered_sum(m_dissipation.size(), [&](std::ptrdiff_t t) { return m_dissipation(t); });
+  m_state.plastic_dissipation +=
+      ordered_sum(m_dissipation.size(), [&](std::ptrdiff_t t) { return m_dissipation(t); });
 }
 
-/// Gives the solid the moduli and yield of every tet whose saturation moved by more than `tolerance` since last time.
+/// Gives the solid the moduli and yield of every tet whose saturation moved by more than `tolerance` since
+/// last time.
 void Simulation::refresh_materials(double tolerance) {
   m_water.collect_changed(tolerance, m_changed_tets);
   for (const int tet : m_changed_tets) {
@@ -94,7 +99,8 @@ void Simulation::refresh_materials(double tolerance) {
     const double scale = m_body.modulus_scale.size() > 0 ? m_body.modulus_scale(tet) : 1.0;
     const material::WetState wet = m_moisture.at(S);
     m_solid.set_material(tet, {scale * wet.lambda, scale * wet.mu, wet.yield});
-    if (!m_moisture.is_isotropic()) m_solid.set_anisotropic_stiffness(tet, scale * m_moisture.stiffness_at(S));
+    if (!m_moisture.is_isotropic())
+      m_solid.set_anisotropic_stiffness(tet, scale * m_moisture.stiffness_at(S));
   }
 }
 
@@ -142,7 +148,8 @@ Frame Simulation::make_frame() const {
   frame.saturation = m_water.saturation();
   frame.plastic_strain = m_state.solid.plastic_strain;
   if (m_body.skin_embedding.num_points() > 0) {
-    embed::interpolate_positions(m_body.skin_embedding, m_body.mesh.tets, m_state.solid.x, frame.skin_position);
+    embed::interpolate_positions(m_body.skin_embedding, m_body.mesh.tets, m_state.solid.x,
+                                 frame.skin_position);
     embed::interpolate_tet_field(m_body.skin_embedding, m_water.saturation(), frame.skin_saturation);
     embed::compute_region_of_influence(frame.skin_position, m_state.tool.position, m_params.kernel.radius,
                                        frame.skin_influence);
@@ -153,7 +160,9 @@ Frame Simulation::make_frame() const {
 
 std::string Simulation::state_hash() const {
   Sha256 hash;
-  const auto add = [&hash](const auto& array) { hash.add(array.data(), static_cast<std::size_t>(array.size())); };
+  const auto add = [&hash](const auto& array) {
+    hash.add(array.data(), static_cast<std::size_t>(array.size()));
+  };
   const double tick = static_cast<double>(m_clock.tick);
   hash.add(&tick, 1);
   add(m_state.tool.position);

@@ -17,7 +17,8 @@ namespace argil::sim {
 class Simulation {
  public:
   /// `tool`: closed surface in the tool frame; `start`: pose and mode before the first tick.
-  Simulation(Body body, const mesh::TriangleMesh& tool, const Params& params, const device::DeviceSample& start);
+  Simulation(Body body, const mesh::TriangleMesh& tool, const Params& params,
+             const device::DeviceSample& start);
 
   /// One haptic tick: the tool goes to `sample`, the paper's loop runs, the hand gets its force.
   StepStatus tick(const device::DeviceSample& sample);
@@ -32,13 +33,15 @@ class Simulation {
   const solid::Solid& solid() const { return m_solid; }
   const contact::Contacts& contacts() const { return m_contacts; }
   const Params& params() const { return m_params; }
-  bool physics_due_last_tick() const { return m_clock.tick > 0 && m_clock.tick % m_params.rates.physics_period_ticks == 0; }
+  bool physics_due_last_tick() const {
+    return m_clock.tick > 0 && m_clock.tick % m_params.rates.physics_period_ticks == 0;
+  }
   bool frame_due_last_tick() const { return m_clock.tick % m_params.rates.frame_period_ticks == 0; }
 
-  HapticRecord haptic_record() const;   ///< of the last tick
-  PhysicsRecord physics_record() const; ///< of the last physics step
-  Frame make_frame() const;             ///< the body as it is now
-  std::string state_hash() const;       ///< SHA-256 of everything a tick changes
+  HapticRecord haptic_record() const;    ///< of the last tick
+  PhysicsRecord physics_record() const;  ///< of the last physics step
+  Frame make_frame() const;              ///< the body as it is now
+  std::string state_hash() const;        ///< SHA-256 of everything a tick changes
 
   void observe_stages(StageObserver* observer) { m_observer = observer; }
 

@@ -3,8 +3,8 @@
 #include "contact/contact.h"
 #include "device/gate.h"
 #include "device/sample.h"
-#include "mesh/topology.h"
 #include "embed/embedding.h"
+#include "mesh/topology.h"
 #include "solid/solid.h"
 #include "water/water.h"
 
@@ -14,28 +14,28 @@ namespace argil::sim {
 struct Body {
   mesh::TetMesh mesh;
   mesh::Topology topology;
-  std::vector<int> fixed;        ///< vertices that do not move
-  Field initial_saturation;      ///< per tet [–]
-  Field modulus_scale;           ///< per tet: modulus over the material's [–]; empty: 1 everywhere
-  Points nodal_force;            ///< 3×n constant loads [N]; empty: none
-  mesh::TriangleMesh skin;       ///< empty without a skin
+  std::vector<int> fixed;    ///< vertices that do not move
+  Field initial_saturation;  ///< per tet [–]
+  Field modulus_scale;       ///< per tet: modulus over the material's [–]; empty: 1 everywhere
+  Points nodal_force;        ///< 3×n constant loads [N]; empty: none
+  mesh::TriangleMesh skin;   ///< empty without a skin
   embed::Embedding skin_embedding;
 };
 
 /// All that a tick changes, grouped by the stage that writes it.
 struct State {
   // device
-  contact::Pose tool;                                ///< at the end of the last tick
+  contact::Pose tool;  ///< at the end of the last tick
   device::ToolMode mode = device::ToolMode::push;
   // contact
-  contact::Pose contact_tool;    ///< tool at the end of the last detection
-  Points contact_x;              ///< body at the end of the last detection [m]
-  Vec3 hand_force = Vec3::Zero();   ///< [N] that the hand feels
-  Vec3 hand_torque = Vec3::Zero();  ///< [N m] about the hand's point
-  int force_age = 0;             ///< [ticks] since it was computed
-  Points contact_force;          ///< 3×n on the body, mean over the physics step [N]
+  contact::Pose contact_tool;          ///< tool at the end of the last detection
+  Points contact_x;                    ///< body at the end of the last detection [m]
+  Vec3 hand_force = Vec3::Zero();      ///< [N] that the hand feels
+  Vec3 hand_torque = Vec3::Zero();     ///< [N m] about the hand's point
+  int force_age = 0;                   ///< [ticks] since it was computed
+  Points contact_force;                ///< 3×n on the body, mean over the physics step [N]
   Vec3 contact_centre = Vec3::Zero();  ///< where the body is touched [m], valid while is_pressed
-  bool is_pressed = false;       ///< a push or pull tool exerts a force on the body
+  bool is_pressed = false;             ///< a push or pull tool exerts a force on the body
   // solid
   solid::SolidState solid;
   // ledgers

@@ -32,7 +32,8 @@ StepStatus Simulation::tick(const device::DeviceSample& sample) {
 /// Detection over the last `ticks` ticks; both paths start where the last detection ended, so none has a gap.
 void Simulation::contact_step(int ticks) {
   const StageScope scope(m_observer, Stage::contact);
-  m_detector.find_contacts(m_state.contact_x, m_state.solid.x, m_state.contact_tool, m_state.tool, m_contacts);
+  m_detector.find_contacts(m_state.contact_x, m_state.solid.x, m_state.contact_tool, m_state.tool,
+                           m_contacts);
   m_state.contact_x = m_state.solid.x;
   m_state.contact_tool = m_state.tool;
   const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;  // pull: force reversed

@@ -1,5 +1,5 @@
-// Assembly in two passes, each writing one slot an item: tets compute their corner forces, then every free vertex gathers
-// its row of the matrix and its force from the tets around it, in the order of their numbers.
+// Assembly in two passes, each writing one slot an item: tets compute their corner forces, then every free
+// vertex gathers its row of the matrix and its force from the tets around it, in the order of their numbers.
 
 #include "base/parallel.h"
 #include "solid/solid.h"
@@ -16,8 +16,8 @@ Mat3 compute_isotropic_block(const Vec3& ci, const Vec3& cj, double lambda_scale
 
 }  // namespace
 
-void Solid::assemble(const SolidState& state, const Points& external_force, std::span<const PointStiffness> contacts,
-                     double step_s) {
+void Solid::assemble(const SolidState& state, const Points& external_force,
+                     std::span<const PointStiffness> contacts, double step_s) {
   assemble_tets(state);
   assemble_rows(state, external_force, step_s);
   if (m_params.implicit_contact) add_contacts(contacts, step_s);
@@ -32,7 +32,8 @@ void Solid::assemble_tets(const SolidState& state) {
   });
   parallel_for(m_internal_force.cols(), m_threads, [&](std::ptrdiff_t v) {
     Vec3 sum = Vec3::Zero();
-    for (int c = m_vertex_begin[static_cast<std::size_t>(v)]; c < m_vertex_begin[static_cast<std::size_t>(v) + 1]; ++c)
+    for (int c = m_vertex_begin[static_cast<std::size_t>(v)];
+         c < m_vertex_begin[static_cast<std::size_t>(v) + 1]; ++c)
       sum += m_corner_force.col(m_vertex_corners[static_cast<std::size_t>(c)]);
     m_internal_force.col(v) = sum;
   });
@@ -45,10 +46,13 @@ void Solid::assemble_rows(const SolidState& state, const Points& external_force,
   parallel_for(num_free(), m_threads, [&](std::ptrdiff_t row) {
     const auto r = static_cast<std::size_t>(row);
     const int begin = m_matrix.row_begin[r];
-    m_matrix.values.middleCols(3 * static_cast<Eigen::Index>(begin),
-                               3 * static_cast<Eigen::Index>(m_matrix.row_begin[r + 1] - begin)).setZero();
+    m_matrix.values
+        .middleCols(3 * static_cast<Eigen::Index>(begin),
+                    3 * static_cast<Eigen::Index>(m_matrix.row_begin[r + 1] - begin))
+        .setZero();
     const int v = m_vertex_of_row[r];
-    for (int c = m_vertex_begin[static_cast<std::size_t>(v)]; c < m_vertex_begin[static_cast<std::size_t>(v) + 1]; ++c) {
+    for (int c = m_vertex_begin[static_cast<std::size_t>(v)];
+         c < m_vertex_begin[static_cast<std::size_t>(v) + 1]; ++c) {
       const int corner = m_vertex_corners[static_cast<std::size_t>(c)];
       const int t = corner / 4;
       const int i = corner % 4;
@@ -59,12 +63,13 @@ void Solid::assemble_rows(const SolidState& state, const Points& external_force,
         const Vec3 ci = m_turned_gradient.col(corner);
         for (int j = 0; j < 4; ++j)
           if (blocks[j] >= 0)
-            m_matrix.block(blocks[j]) += compute_isotropic_block(ci, m_turned_gradient.col(4 * t + j),
-                                                                 scale * material.lambda, scale * material.mu);
+            m_matrix.block(blocks[j]) += compute_isotropic_block(
+                ci, m_turned_gradient.col(4 * t + j), scale * material.lambda, scale * material.mu);
       } else {
         const TetGeometry tet{m_gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t)), m_volume(t)};
-        const Mat12 K = compute_element_stiffness(tet, m_rotation.middleCols<3>(3 * static_cast<Eigen::Index>(t)),
-                                                  m_stiffness[static_cast<std::size_t>(t)]);
+        const Mat12 K =
+            compute_element_stiffness(tet, m_rotation.middleCols<3>(3 * static_cast<Eigen::Index>(t)),
+                                      m_stiffness[static_cast<std::size_t>(t)]);
         for (int j = 0; j < 4; ++j)
           if (blocks[j] >= 0) m_matrix.block(blocks[j]) += stiffness_factor * K.block<3, 3>(3 * i, 3 * j);
       }

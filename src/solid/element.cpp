@@ -12,9 +12,9 @@ namespace {
 Eigen::Matrix<double, 6, 3> make_strain_operator(const Vec3& g) {
   constexpr double s = 1.0 / kSqrt2;
   Eigen::Matrix<double, 6, 3> B;
-  B << g(0), 0, 0,         //
-      0, g(1), 0,          //
-      0, 0, g(2),          //
+  B << g(0), 0, 0,            //
+      0, g(1), 0,             //
+      0, 0, g(2),             //
       0, s * g(2), s * g(1),  //
       s * g(2), 0, s * g(0),  //
       s * g(1), s * g(0), 0;
@@ -49,7 +49,8 @@ TetGeometry make_tet_geometry(const Mat34& rest) {
 }
 
 Mat3 compute_rotation(const Mat3& F) {
-  // Newton is quadratically convergent; from a condition number of 1e3 the scaled iteration needs at most 9 steps.
+  // Newton is quadratically convergent; from a condition number of 1e3 the scaled iteration needs at most 9
+  // steps.
   constexpr int kMaxIterations = 12;
   constexpr double kSmallestRelativeDeterminant = 1e-8;
   const double norm = F.norm();
@@ -81,14 +82,16 @@ Mat6 make_isotropic_stiffness(double lambda, double mu) {
   return C;
 }
 
-Mat34 compute_element_force(const TetGeometry& tet, const Mat3& R, const Vec6& elastic_strain, const Mat6& C) {
+Mat34 compute_element_force(const TetGeometry& tet, const Mat3& R, const Vec6& elastic_strain,
+                            const Mat6& C) {
   const Mat3 sigma = from_mandel(C * elastic_strain);
   return tet.volume * (R * sigma) * tet.gradient;
 }
 
 Mat12 compute_element_stiffness(const TetGeometry& tet, const Mat3& R, const Mat6& C) {
   Eigen::Matrix<double, 6, 12> B;
-  for (int i = 0; i < 4; ++i) B.middleCols<3>(3 * i) = make_strain_operator(tet.gradient.col(i)) * R.transpose();
+  for (int i = 0; i < 4; ++i)
+    B.middleCols<3>(3 * i) = make_strain_operator(tet.gradient.col(i)) * R.transpose();
   return tet.volume * B.transpose() * C * B;
 }
 

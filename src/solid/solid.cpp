@@ -95,8 +95,7 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
     row = static_cast<int>(m_vertex_of_row.size());
     m_vertex_of_row.push_back(v);
   }
-  m_matrix =
-      linear::make_block_matrix(find_free_neighbours(m_tets, m_row_of_vertex, m_vertex_of_row.size()));
+  m_matrix = linear::make_block_matrix(find_free_neighbours(m_tets, m_row_of_vertex, m_vertex_of_row.size()));
   m_block_of_corner_pair.resize(static_cast<std::size_t>(16 * num_tets));
   for (int t = 0; t < num_tets; ++t)
     for (int i = 0; i < 4; ++i)
@@ -110,7 +109,9 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   m_velocity.setZero(3, num_free());
 }
 
-void Solid::set_material(int tet, const TetMaterial& material) { m_material[static_cast<std::size_t>(tet)] = material; }
+void Solid::set_material(int tet, const TetMaterial& material) {
+  m_material[static_cast<std::size_t>(tet)] = material;
+}
 
 void Solid::set_anisotropic_stiffness(int tet, const Mat6& C) {
   if (m_stiffness.empty()) {
@@ -164,7 +165,8 @@ double Solid::compute_elastic_energy(const SolidState& state) const {
 }
 
 double Solid::compute_kinetic_energy(const SolidState& state) const {
-  return ordered_sum(m_mass.size(), [&](std::ptrdiff_t v) { return 0.5 * m_mass(v) * state.v.col(v).squaredNorm(); });
+  return ordered_sum(m_mass.size(),
+                     [&](std::ptrdiff_t v) { return 0.5 * m_mass(v) * state.v.col(v).squaredNorm(); });
 }
 
 }  // namespace argil::solid

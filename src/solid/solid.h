@@ -37,21 +37,21 @@ struct TetMaterial {
 
 /// The linear solves of a run so far.
 struct SolverCounters {
-  int iterations = 0;       ///< of the last solve
-  int factorisations = 0;   ///< since the start
-  double residual = 0.0;    ///< relative, of the last solve
+  int iterations = 0;      ///< of the last solve
+  int factorisations = 0;  ///< since the start
+  double residual = 0.0;   ///< relative, of the last solve
 };
 
 /// Regions → fixed vertices, increasing, without repeats.
 std::vector<int> find_vertices(const Points& rest, std::span<const Region> regions);
 
 /// Corotational finite elements on 4-node tets with lumped mass and one linearised backward Euler step
-/// [Baraff & Witkin 1998; Müller & Gross 2004]: stages in the order in which sim/step.cpp calls them. Bits do not depend on `threads`; no
-/// allocation after the first step unless the solver factorises.
+/// [Baraff & Witkin 1998; Müller & Gross 2004]: stages in the order in which sim/step.cpp calls them. Bits do
+/// not depend on `threads`; no allocation after the first step unless the solver factorises.
 class Solid {
  public:
-  Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vector<int> fixed, const SolidParams& params,
-        int threads);
+  Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vector<int> fixed,
+        const SolidParams& params, int threads);
 
   /// Stiffness and yield of one tet; `C` (Mandel) only for anisotropic laws.
   void set_material(int tet, const TetMaterial& material);
@@ -61,15 +61,15 @@ class Solid {
   StepStatus update_kinematics(const Points& x, Tick tick);
 
   /// A = (1 + ha)M + (h² + hb)K + h²K_contact and b = M v + h(f_ext − f_int), eq. 2 by backward Euler.
-  void assemble(const SolidState& state, const Points& external_force, std::span<const PointStiffness> contacts,
-                double step_s);
+  void assemble(const SolidState& state, const Points& external_force,
+                std::span<const PointStiffness> contacts, double step_s);
 
   /// Solves A v = b on the free vertices; fixed ones get v = 0.
   StepStatus solve(SolidState& state, Tick tick);
 
-  const TensorField& strain() const { return m_strain; }   ///< ε (Mandel) of the last kinematics
-  const Field& volume() const { return m_volume; }         ///< rest volumes [m³]
-  const Field& mass() const { return m_mass; }             ///< lumped, per vertex [kg]
+  const TensorField& strain() const { return m_strain; }  ///< ε (Mandel) of the last kinematics
+  const Field& volume() const { return m_volume; }        ///< rest volumes [m³]
+  const Field& mass() const { return m_mass; }            ///< lumped, per vertex [kg]
   const TetMaterial& material(int tet) const { return m_material[static_cast<std::size_t>(tet)]; }
   const SolverCounters& counters() const { return m_counters; }
   double min_volume_ratio() const { return m_min_volume_ratio; }

@@ -27,8 +27,8 @@ StepStatus Solid::solve(SolidState& state, Tick tick) {
       break;
     case SolverKind::pcg_jacobi:
       m_jacobi.update(m_matrix);
-      report = m_cg.solve(m_matrix, m_jacobi, m_rhs, m_params.solver_tolerance, m_params.solver_max_iterations,
-                          m_threads, m_velocity);
+      report = m_cg.solve(m_matrix, m_jacobi, m_rhs, m_params.solver_tolerance,
+                          m_params.solver_max_iterations, m_threads, m_velocity);
       break;
     case SolverKind::pcg_cholesky: {
       // The kept factor is renewed when the last solve with it was slow: the matrix has moved away from it.
@@ -43,8 +43,8 @@ StepStatus Solid::solve(SolidState& state, Tick tick) {
   m_counters.iterations = report.iterations;
   m_counters.residual = report.relative_residual;
   if (!report.converged)
-    return StepStatus::failed({tick, "solid", -1, "relative residual of the linear solve", report.relative_residual,
-                               m_params.solver_tolerance});
+    return StepStatus::failed({tick, "solid", -1, "relative residual of the linear solve",
+                               report.relative_residual, m_params.solver_tolerance});
   for (int row = 0; row < num_free(); ++row)
     state.v.col(m_vertex_of_row[static_cast<std::size_t>(row)]) = m_velocity.col(row);
   return StepStatus::ok();

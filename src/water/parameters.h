@@ -8,14 +8,14 @@ enum class UptakeForm {
 };
 
 struct WaterParams {
-  double porosity = 0.4;             ///< n [–], in (0, 1): volume of water at S = 1 over rest volume
-  double density = 1000.0;           ///< ρ_w [kg/m³]
-  double diffusivity = 0.0;          ///< D [m²/s], of saturation
+  double porosity = 0.4;     ///< n [–], in (0, 1): volume of water at S = 1 over rest volume
+  double density = 1000.0;   ///< ρ_w [kg/m³]
+  double diffusivity = 0.0;  ///< D [m²/s], of saturation
   UptakeForm uptake = UptakeForm::flux;
-  double wetting_flux = 0.0;         ///< [kg/(m² s)], given by the wet tool
-  double drying_flux = 0.0;          ///< [kg/(m² s)], taken by the dry tool
-  double saturation_increment = 0.0; ///< [–] per water step, `increment` only
-  double initial_saturation = 0.0;   ///< S at the start [–]
+  double wetting_flux = 0.0;          ///< [kg/(m² s)], given by the wet tool
+  double drying_flux = 0.0;           ///< [kg/(m² s)], taken by the dry tool
+  double saturation_increment = 0.0;  ///< [–] per water step, `increment` only
+  double initial_saturation = 0.0;    ///< S at the start [–]
 };
 
 }  // namespace argil::water

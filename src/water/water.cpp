@@ -12,8 +12,8 @@ namespace {
 // The explicit substep stays this far below the monotone limit, so that rounding cannot cross it.
 constexpr double kLimitShare = 0.9;
 
-// Two centroids whose distance along the face normal is below this share of their distance lie beside each other
-// rather than across the face; the projected distance is then replaced by that share (slivers).
+// Two centroids whose distance along the face normal is below this share of their distance lie beside each
+// other rather than across the face; the projected distance is then replaced by that share (slivers).
 constexpr double kSmallestProjection = 0.1;
 
 constexpr int kOppositeFace[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
@@ -24,7 +24,8 @@ Vec3 compute_centroid(const mesh::TetMesh& mesh, int t) {
   return 0.25 * sum;
 }
 
-/// A_f / d_f [m] across the face opposite to `corner` of tet t: d_f is the centroids' distance along the normal.
+/// A_f / d_f [m] across the face opposite to `corner` of tet t: d_f is the centroids' distance along the
+/// normal.
 double compute_transmissibility(const mesh::TetMesh& mesh, int t, int corner, int neighbour) {
   const auto& face = kOppositeFace[corner];
   const Vec3 a = mesh.vertices.col(mesh.tets(face[0], t));
@@ -103,7 +104,8 @@ void PoreWater::give(int tet, double mass) {
   if (after > 0.0) activate_around(tet);
 }
 
-void PoreWater::exchange(std::span<const int> triangle, std::span<const double> area, int sign, double step_s) {
+void PoreWater::exchange(std::span<const int> triangle, std::span<const double> area, int sign,
+                         double step_s) {
   if (m_params.uptake == UptakeForm::flux) {
     const double flux = sign > 0 ? m_params.wetting_flux : -m_params.drying_flux;
     for (std::size_t i = 0; i < triangle.size(); ++i)
@@ -122,7 +124,8 @@ int PoreWater::diffuse(double step_s) {
   const int substeps = std::max(1, static_cast<int>(std::ceil(step_s / (kLimitShare * m_monotone_step))));
   const double h = step_s / substeps;
   for (int substep = 0; substep < substeps; ++substep) {
-    // A flow seen from its two sides differs in sign only, bit for bit; so the order of the tets does not matter.
+    // A flow seen from its two sides differs in sign only, bit for bit; so the order of the tets does not
+    // matter.
     for (const int t : m_active) {
       double flow = 0.0;
       for (int corner = 0; corner < 4; ++corner) {
@@ -161,7 +164,9 @@ double PoreWater::mass() const {
   return sum.value();
 }
 
-WaterLedger PoreWater::ledger() const { return {m_initial, m_added.value(), m_removed.value()}; }
+WaterLedger PoreWater::ledger() const {
+  return {m_initial, m_added.value(), m_removed.value()};
+}
 
 double PoreWater::ledger_error() const {
   return (mass() - m_initial - m_added.value() + m_removed.value()) / m_capacity.sum();

@@ -23,25 +23,29 @@ class PoreWater {
             const Field& initial_saturation);
 
   /// Takes up (sign > 0) or gives off (sign < 0) water through touched boundary triangles during `step_s`:
-  /// `triangle` are boundary faces of the topology, `area` [m²] what the tool touches of each. Fills up to S = 1,
-  /// empties down to 0; what the tet cannot take stays with the tool. Every gram is booked.
+  /// `triangle` are boundary faces of the topology, `area` [m²] what the tool touches of each. Fills up to S
+  /// = 1, empties down to 0; what the tet cannot take stays with the tool. Every gram is booked.
   void exchange(std::span<const int> triangle, std::span<const double> area, int sign, double step_s);
 
-  /// Diffuses for `step_s` by two-point fluxes in explicit substeps within the monotone limit; conservative to
-  /// round-off. Only tets with water or a wet neighbour are touched. Returns the number of substeps.
+  /// Diffuses for `step_s` by two-point fluxes in explicit substeps within the monotone limit; conservative
+  /// to round-off. Only tets with water or a wet neighbour are touched. Returns the number of substeps.
   int diffuse(double step_s);
 
-  /// Replaces `tets` by those whose saturation moved by more than `tolerance` since they were last collected, in
-  /// increasing order; the first call collects all.
+  /// Replaces `tets` by those whose saturation moved by more than `tolerance` since they were last collected,
+  /// in increasing order; the first call collects all.
   void collect_changed(double tolerance, std::vector<int>& tets);
 
   const Field& saturation() const { return m_saturation; }
   double capacity(int tet) const { return m_capacity(tet); }  ///< mass at S = 1 [kg]
   double mass() const;                                        ///< Σ capacity·S [kg], compensated sum
   WaterLedger ledger() const;
-  double ledger_error() const;                                ///< (mass − initial − added + removed) / Σ capacity [–]
-  double monotone_step() const { return m_monotone_step; }    ///< longest substep [s] that keeps the maximum principle
-  int num_active() const { return static_cast<int>(m_active.size()); }  ///< tets that are wet or next to a wet one
+  double ledger_error() const;  ///< (mass − initial − added + removed) / Σ capacity [–]
+  double monotone_step() const {
+    return m_monotone_step;
+  }  ///< longest substep [s] that keeps the maximum principle
+  int num_active() const {
+    return static_cast<int>(m_active.size());
+  }  ///< tets that are wet or next to a wet one
 
  private:
   /// Sum that carries its rounding error along [Neumaier 1974].
@@ -59,8 +63,9 @@ class PoreWater {
   WaterParams m_params;
   Tets m_neighbours;
   std::vector<int> m_boundary_tet;
-  Eigen::Matrix4Xd m_conductance;  // D·A_f/d_f across the face opposite to each corner [m³/s]; 0 at the boundary
-  Field m_volume;                  // rest volume [m³]
+  Eigen::Matrix4Xd
+      m_conductance;  // D·A_f/d_f across the face opposite to each corner [m³/s]; 0 at the boundary
+  Field m_volume;     // rest volume [m³]
   Field m_capacity;
   Field m_saturation;
   Field m_flow;       // Σ of the flows into each active tet [m³/s of S]
