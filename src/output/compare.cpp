@@ -67,7 +67,7 @@ ValueDifference compare_values(const std::vector<T>& a, const std::vector<T>& b,
     if (is_same(a[i], b[i], tolerance)) continue;
     if (found.count++ == 0) found.first = i;
     const double error = std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
-    if (!(error <= found.largest)) found.largest = error;
+    if (!(error <= found.largest) && !std::isnan(found.largest)) found.largest = error;
   }
   return found;
 }

@@ -53,6 +53,8 @@ def check_root(file):
     def labelled(name, item):
         if isinstance(item, h5py.Dataset):
             check(text(item.attrs["units"]) != "" and len(text(item.attrs["about"])) > 5, f"{name} has no label")
+        # A time in a file makes two equal runs differ.
+        check(h5py.h5g.get_objinfo(file.id, name.encode()).mtime == 0, f"{name} has a modification time")
 
     file.visititems(labelled)
 

@@ -110,6 +110,7 @@ TEST(CompareResults, NeverTakesNaNForEqual) {
   EXPECT_FALSE(pair.compare().is_equal());
   EXPECT_FALSE(pair.compare(loose).is_equal());
   EXPECT_EQ(pair.compare(loose).differences.at(0).tick, 3);
+  EXPECT_NE(pair.compare(loose).differences.at(0).what.find("largest difference nan"), std::string::npos);
   EXPECT_FALSE(compare_results(pair.b, pair.b, {}).is_equal());  // not even a file with itself
 }
 
