@@ -16,8 +16,10 @@ using hdf5::Shape;
 namespace {
 
 // Arrays hold one entity a column, column after column; the same bytes are one entity a row on disk.
+// Positions are not compressed: it takes ten times as long to save 15 % (measured); fields shrink to a tenth.
 template <class Array>
-void write_entities(const Group& group, const char* name, const Array& array, const hdf5::Label& label) {
+void write_entities(const Group& group, const char* name, const Array& array, const hdf5::Label& label,
+                    bool compress = false) {
   const auto entities = static_cast<std::uint64_t>(array.cols());
   group.write_array(name, array.data(), Shape{entities, static_cast<std::uint64_t>(array.rows())}, true,
                     label);
@@ -222,7 +224,7 @@ void ResultFile::append(const sim::Frame& frame) {
     group.write_attribute("state_hash", frame.state_hash);
     write_entities(group, "position", frame.position, schema::kPosition);
     write_field(group, "saturation", frame.saturation, schema::kSaturation);
-    write_entities(group, "plastic_strain", frame.plastic_strain, schema::kPlasticStrain);
+    write_entities(group, "plastic_strain", frame.plastic_strain, schema::kPlasticStrain, true);
     // In Mandel's notation the Euclidean norm of the six numbers is the tensor's Frobenius norm.
     write_field(group, "plastic_strain_norm", frame.plastic_strain.colwise().norm(), schema::kPlasticNorm);
     write_entities(group, "skin_position", frame.skin_position, schema::kSkinPosition);
