@@ -21,7 +21,7 @@ template <class Array>
 void write_entities(const Group& group, const char* name, const Array& array, const hdf5::Label& label,
                     bool compress = false) {
   const auto entities = static_cast<std::uint64_t>(array.cols());
-  group.write_array(name, array.data(), Shape{entities, static_cast<std::uint64_t>(array.rows())}, true,
+  group.write_array(name, array.data(), Shape{entities, static_cast<std::uint64_t>(array.rows())}, compress,
                     label);
 }
 
