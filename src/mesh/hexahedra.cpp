@@ -97,7 +97,7 @@ struct Disc {
 
 // The core's sides bulge by this much of the way to an arc, which opens its corners beyond a right angle.
 constexpr double kBulge = 0.35;
-constexpr double kCoreHalfSide = 0.42;  // of the radius: core cells and ring cells come out alike
+constexpr double kCoreHalfSide = 0.4;  // of the radius: core cells and ring cells come out alike
 
 Disc make_disc(int core, int rings) {
   Disc disc;

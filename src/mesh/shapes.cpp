@@ -75,7 +75,8 @@ Eigen::Vector3i choose_box_counts(double num_cubes) {
 // Counts whose cells are nearest to cubes and whose number is nearest to `num_cells`.
 CylinderCounts choose_cylinder_counts(double num_cells) {
   constexpr double kCountWeight = 4.0;  // a wrong number is worse than a stretched cell
-  constexpr double kCoreWidth = 0.93;   // mean width of the core, in radii
+  constexpr double kCoreWidth =
+      1.25;  // of `core` cells, mean between the core (0.9) and the rim (1.6), in radii
   constexpr double kRingsWidth = 0.53;  // what is left for the rings
   constexpr double kHeight = 4.0;       // of the cylinder, in radii
   const double cube = std::cbrt(std::acos(-1.0) * kHeight / num_cells);

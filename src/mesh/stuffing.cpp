@@ -237,7 +237,8 @@ StuffedLattice stuff_lattice(const CutLattice& cut_lattice, StuffingPart part) {
 
 Triangles find_surface_faces(const StuffedLattice& stuffed) {
   // Corners of the face opposite to corner i, counter-clockwise from outside.
-  static constexpr std::array<std::array<int, 3>, 4> kOppositeFace = {{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+  static constexpr std::array<std::array<int, 3>, 4> kOppositeFace = {
+      {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
   struct Face {
     std::array<int, 3> key;  // sorted vertex numbers
     int corner;              // 4·tet + opposite corner

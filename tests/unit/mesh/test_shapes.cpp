@@ -1,0 +1,117 @@
+// The bodies that argil makes: counts, closed-form volumes, symmetry, closed skins.
+#include "mesh/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "support/mesh_measures.h"
+
+namespace argil::mesh {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr std::array<ShapeKind, 5> kAllShapes = {ShapeKind::sphere, ShapeKind::cylinder, ShapeKind::box,
+                                                 ShapeKind::dinosaur, ShapeKind::figure};
+
+TEST(MakeShapeMesh, CountComesWithinFifteenPercentAndTetsAreSound) {
+  for (const ShapeKind kind : kAllShapes)
+    for (const int target : {600, 2000, 5000, 10000, 40000}) {
+      SCOPED_TRACE(testing::Message() << "shape " << static_cast<int>(kind) << ", target " << target);
+      const TetMesh mesh = make_shape_mesh({kind, 0.1}, target);
+      EXPECT_NEAR(mesh.num_tets(), target, 0.15 * target);
+      EXPECT_GT(compute_volumes(mesh.vertices, mesh.tets).minCoeff(), 0.0);
+      EXPECT_EQ(test::count_components(mesh), 1);
+      const test::SurfaceFacts facts =
+          test::compute_surface_facts(mesh.vertices, make_topology(mesh).boundary);
+      EXPECT_TRUE(facts.is_manifold);
+      const test::AngleRange range = test::compute_dihedral_range(mesh);
+      EXPECT_GT(range.smallest, 10.0);  // see test_implicit.cpp
+      EXPECT_LT(range.largest, 165.0);
+    }
+}
+
+TEST(MakeShapeMesh, BoxHasItsExactVolumeAndArea) {
+  const TetMesh mesh = make_shape_mesh({ShapeKind::box, 0.2}, 3000);
+  EXPECT_NEAR(compute_volumes(mesh.vertices, mesh.tets).sum(), 0.008, 1e-15);
+  EXPECT_NEAR(test::compute_area(mesh.vertices, make_topology(mesh).boundary), 6 * 0.04, 1e-14);
+}
+
+TEST(MakeShapeMesh, CylinderHoldsThePrismOverTheRegularPolygonOfItsRim) {
+  for (const int target : {2000, 16000}) {
+    const TetMesh mesh = make_shape_mesh({ShapeKind::cylinder, 1.0}, target);
+    int sides = 0;  // vertices on the rim of the bottom
+    for (int v = 0; v < mesh.num_vertices(); ++v)
+      if (mesh.vertices(2, v) == 0.0 && std::abs(mesh.vertices.col(v).head<2>().norm() - 0.25) < 1e-12)
+        ++sides;
+    EXPECT_GE(sides, target == 2000 ? 12 : 20);
+    const double area = 0.5 * sides * 0.0625 * std::sin(2.0 * kPi / sides);
+    EXPECT_NEAR(compute_volumes(mesh.vertices, mesh.tets).sum(), area, 1e-14);
+  }
+}
+
+TEST(MakeShapeMesh, CylinderBoundaryLiesOnTheTrueSurface) {
+  const Shape shape = {ShapeKind::cylinder, 0.1};
+  const ImplicitSurface surface = make_implicit_shape(shape);
+  const TetMesh mesh = make_shape_mesh(shape, 5000);
+  const Topology topology = make_topology(mesh);
+  for (Eigen::Index i = 0; i < topology.boundary.size(); ++i)
+    ASSERT_NEAR(surface.value(mesh.vertices.col(topology.boundary.data()[i])), 0.0, 1e-16);
+}
+
+TEST(MakeShapeMesh, EveryShapeStandsOnTheGroundCentredAndHasItsSize) {
+  for (const ShapeKind kind : kAllShapes) {
+    SCOPED_TRACE(static_cast<int>(kind));
+    const TetMesh mesh = make_shape_mesh({kind, 0.3}, 40000);
+    const Vec3 lower = mesh.vertices.rowwise().minCoeff();
+    const Vec3 upper = mesh.vertices.rowwise().maxCoeff();
+    const double h = std::cbrt(12.0 * compute_volumes(mesh.vertices, mesh.tets).sum() / mesh.num_tets());
+    EXPECT_NEAR(lower(2), 0.0, 0.1 * h);  // a curved bottom is cut flat by its facets
+    EXPECT_NEAR(lower(1) + upper(1), 0.0, 1e-9);
+    const Vec3 extent = upper - lower;
+    // The creatures' outermost tips are rounded off by the lattice.
+    EXPECT_NEAR(kind == ShapeKind::dinosaur ? extent(0) : extent(2), 0.3, 0.8 * h);
+  }
+}
+
+TEST(MakeShapeMesh, GivesTheSameBitsTwice) {
+  for (const ShapeKind kind : kAllShapes)
+    EXPECT_EQ(test::hash_mesh(make_shape_mesh({kind, 0.1}, 3000)),
+              test::hash_mesh(make_shape_mesh({kind, 0.1}, 3000)));
+}
+
+TEST(MakeShapeMesh, RefusesWhatItCannotMake) {
+  EXPECT_THROW(make_shape_mesh({ShapeKind::box, 0.0}, 1000), InputError);
+  EXPECT_THROW(make_shape_mesh({ShapeKind::sphere, std::nan("")}, 1000), InputError);
+  EXPECT_THROW(make_shape_mesh({ShapeKind::sphere, 0.1}, 50), InputError);
+  EXPECT_THROW(make_shape_mesh({ShapeKind::sphere, 0.1}, 2000000000), InputError);
+}
+
+TEST(MakeShapeSkin, HasTheTrianglesAskedForAndIsOneClosedManifold) {
+  for (const ShapeKind kind : kAllShapes) {
+    SCOPED_TRACE(static_cast<int>(kind));
+    const TriangleMesh skin = make_shape_skin({kind, 0.1}, 20000);
+    EXPECT_GE(skin.num_triangles(), 20000);
+    EXPECT_LE(skin.num_triangles(), 40000);
+    const test::SurfaceFacts facts = test::compute_surface_facts(skin.vertices, skin.triangles);
+    EXPECT_TRUE(facts.is_manifold);
+    EXPECT_EQ(facts.euler_characteristic, 2);
+    EXPECT_GT(facts.smallest_angle, 8.0);
+    EXPECT_GT(test::compute_enclosed_volume(skin.vertices, skin.triangles), 0.0);
+  }
+}
+
+TEST(MakeShapeSkin, CreaturesAreMirroredInY) {
+  for (const ShapeKind kind : {ShapeKind::dinosaur, ShapeKind::figure}) {
+    const ImplicitSurface surface = make_implicit_shape({kind, 0.1});
+    const TriangleMesh skin = make_shape_skin({kind, 0.1}, 5000);
+    for (int v = 0; v < skin.num_vertices(); ++v) {
+      const Vec3 mirrored = skin.vertices.col(v).cwiseProduct(Vec3(1, -1, 1));
+      ASSERT_NEAR(surface.value(mirrored), surface.value(skin.vertices.col(v)), 1e-16);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace argil::mesh
