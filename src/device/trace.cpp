@@ -158,7 +158,7 @@ Quat make_unit(const Quat& q) {
 // Half the rotation angle is the arc θ between a and b on the unit 3-sphere; tan(θ/2) = ‖a−b‖ / ‖a+b‖ keeps
 // its accuracy for θ → 0, where the arc cosine of a·b loses half the digits.
 Quat slerp_shorter(const Quat& a, const Quat& b, double s) {
-  const Vec4 from = a.coeffs();
+  const Vec4& from = a.coeffs();
   const Vec4 to = from.dot(b.coeffs()) < 0.0 ? Vec4(-b.coeffs()) : Vec4(b.coeffs());
   const double theta = 2.0 * std::atan2((from - to).norm(), (from + to).norm());
   double weight_from = 1.0 - s;

@@ -130,7 +130,9 @@ class Comparison {
       } else if (is_text) {
         const std::string text_a = a.read_text(name);
         const std::string text_b = b.read_text(name);
-        if (text_a != text_b) add(prefix + name, "is '" + text_a + "' and '" + text_b + "'", tick);
+        if (text_a != text_b)
+          add(prefix + name, std::string("is '").append(text_a).append("' and '").append(text_b).append("'"),
+              tick);
       } else {
         const std::vector<double> values_a = a.read_reals(name);
         const std::vector<double> values_b = b.read_reals(name);

@@ -17,7 +17,8 @@ using argil::test::TempFolder;
 
 template <class Array>
 bool same_bits(const Array& a, const Array& b) {
-  return a.rows() == b.rows() && a.cols() == b.cols() &&
+  if (a.rows() != b.rows() || a.cols() != b.cols()) return false;
+  return a.size() == 0 ||  // memcmp wants memory even for nothing
          std::memcmp(a.data(), b.data(),
                      static_cast<std::size_t>(a.size()) * sizeof(typename Array::Scalar)) == 0;
 }
