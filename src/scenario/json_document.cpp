@@ -1,0 +1,100 @@
+#include "scenario/json_document.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <set>
+#include <sstream>
+
+#include "base/error.h"
+
+namespace argil::scenario {
+namespace {
+
+constexpr int kMaxDepth = 64;
+constexpr std::uintmax_t kMaxBytes = 64u << 20;
+
+/// "line L, column C" of a byte offset.
+std::string describe_place(const std::string& text, std::size_t byte) {
+  const std::size_t end = std::min(byte == 0 ? 0 : byte - 1, text.size());
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
+  const std::size_t start = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
+  const std::size_t column = start == std::string::npos ? end + 1 : end - start;
+  return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
+std::size_t compute_edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replace = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replace, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+Json parse_json(const std::string& text, const std::string& file) {
+  std::vector<std::set<std::string>> keys;
+  const Json::parser_callback_t watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    if (depth > kMaxDepth)
+      throw InputError(file, "", "is nested deeper than " + std::to_string(kMaxDepth) + " levels",
+                       "flatten it");
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
+      throw InputError(file, "", "key \"" + parsed.get<std::string>() + "\" stands twice in one object",
+                       "keep one of the two");
+    return true;
+  };
+  try {
+    return Json::parse(text, watch);
+  } catch (const Json::parse_error& error) {
+    const std::string what = error.what();
+    const std::size_t detail = what.rfind(": ");
+    throw InputError(file, describe_place(text, error.byte),
+                     "is not JSON (" + what.substr(detail == std::string::npos ? 0 : detail + 2) + ")",
+                     "correct it there; comments are not allowed");
+  } catch (const Json::out_of_range& error) {
+    throw InputError(file, "", std::string("holds a number that is too large (") + error.what() + ")",
+                     "give a number within ±1.8e308");
+  }
+}
+
+Json read_json(const std::string& file) {
+  std::error_code missing;
+  const auto size = std::filesystem::file_size(file, missing);
+  if (missing) throw InputError(file, "", "cannot be read (" + missing.message() + ")", "check the path");
+  if (size > kMaxBytes)
+    throw InputError(file, "", "is larger than 64 MiB", "a scenario is small; is this the right file?");
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw IoError(file, "could not be read to its end");
+  return parse_json(text.str(), file);
+}
+
+std::string find_nearest(const std::string& key, const std::vector<std::string>& keys) {
+  std::string nearest;
+  std::size_t least = std::max<std::size_t>(3, key.size() / 2) + 1;
+  for (const std::string& candidate : keys) {
+    const std::size_t distance = compute_edit_distance(key, candidate);
+    // A key that only lacks its unit or its beginning is near, too.
+    const bool part = key.size() >= 4 && candidate.find(key) != std::string::npos;
+    const std::size_t rank = part ? std::min<std::size_t>(distance, 2) : distance;
+    if (rank < least) {
+      least = rank;
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+}  // namespace argil::scenario

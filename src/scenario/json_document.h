@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace argil::scenario {
+
+using Json = nlohmann::ordered_json;
+
+/// Parses text strictly: no comments, no duplicate keys, at most 64 levels. Throws InputError with line and
+/// column.
+Json parse_json(const std::string& text, const std::string& file);
+
+/// Reads and parses a file of at most 64 MiB. Throws InputError or IoError.
+Json read_json(const std::string& file);
+
+/// The entry of `keys` that is nearest to `key` by edit distance; empty when none is near.
+std::string find_nearest(const std::string& key, const std::vector<std::string>& keys);
+
+}  // namespace argil::scenario

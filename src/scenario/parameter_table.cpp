@@ -1,0 +1,315 @@
+// Every key of a scenario, once. Checks, schema, reference page and `show` all read this table.
+
+#include "scenario/parameter_table.h"
+
+#include <filesystem>
+
+#include "scenario/binding.h"
+
+namespace argil::scenario {
+namespace {
+
+using material::Scheme;
+
+void describe_region(Binder& b, solid::Region& r) {
+  using Kind = solid::Region::Kind;
+  b.choice<Kind>("/kind", r.kind,
+                 {{Kind::box, "box"},
+                  {Kind::sphere, "sphere"},
+                  {Kind::half_space, "half_space"},
+                  {Kind::nodes, "nodes"}},
+                 "Which vertices at rest are meant.")
+      .required = true;
+  const auto only = [&r](Kind kind) { return [&r, kind] { return r.kind == kind; }; };
+  b.vector("/lower_m", r.lower, "m", "box: lowest corner.").applies = only(Kind::box);
+  b.vector("/upper_m", r.upper, "m", "box: highest corner.").applies = only(Kind::box);
+  b.vector("/centre_m", r.centre, "m", "sphere: centre.").applies = only(Kind::sphere);
+  b.number("/radius_m", r.radius, not_negative(), "m", "sphere: radius.").applies = only(Kind::sphere);
+  b.vector("/normal", r.normal, "", "half_space: vertices with normal·x ≤ offset.").applies =
+      only(Kind::half_space);
+  b.number("/offset_m", r.offset, any_finite(), "m", "half_space: offset along the normal.").applies =
+      only(Kind::half_space);
+  b.integers("/nodes", r.nodes, not_negative(), "nodes: vertex numbers from 0.").applies = only(Kind::nodes);
+}
+
+void describe_load(Binder& b, NodalLoad& load) {
+  b.integers("/nodes", load.nodes, not_negative(), "Vertex numbers from 0.").required = true;
+  b.vector("/force_N", load.force, "N", "Force on each of them.").required = true;
+}
+
+void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& folder) {
+  const auto only = [&body](BodyKind kind) { return [&body, kind] { return body.kind == kind; }; };
+  b.path("/body/mesh/file", body.file, folder, "Tetrahedral mesh: Gmsh, Medit, TetGen, VTK, VTU or Vega.")
+      .applies = only(BodyKind::mesh);
+  b.number("/body/mesh/scale", body.scale, positive(), "", "Metres per unit of the file.").applies =
+      only(BodyKind::mesh);
+  b.text("/body/mesh/saturation_field", body.saturation_field,
+         "Cell data with the initial saturation; empty: uniform.")
+      .applies = only(BodyKind::mesh);
+  b.text("/body/mesh/youngs_modulus_field", body.modulus_field,
+         "Cell data with Young's modulus [Pa]; empty: the material's.")
+      .applies = only(BodyKind::mesh);
+  b.choice<mesh::ShapeKind>("/body/shape/kind", body.shape.kind,
+                            {{mesh::ShapeKind::sphere, "sphere"},
+                             {mesh::ShapeKind::cylinder, "cylinder"},
+                             {mesh::ShapeKind::box, "box"},
+                             {mesh::ShapeKind::dinosaur, "dinosaur"},
+                             {mesh::ShapeKind::figure, "figure"}},
+                            "Body that argil makes itself.")
+      .applies = only(BodyKind::shape);
+  b.number("/body/shape/size_m", body.shape.size, positive(), "m",
+           "Diameter, height, edge or length of the shape.")
+      .applies = only(BodyKind::shape);
+  b.integer("/body/shape/target_tets", body.target_tets, between(50, 5e6),
+            "Wanted number of tets, reached within 15 %.")
+      .applies = only(BodyKind::shape);
+  b.integer("/body/shape/skin_triangles", body.skin_triangles, between(0, 5e6),
+            "Skin with at least so many triangles; 0: none.")
+      .applies = only(BodyKind::shape);
+  b.path("/body/surface/file", body.file, folder,
+         "Triangle surface (OBJ, STL, PLY); it becomes the skin in a cage.")
+      .applies = only(BodyKind::surface);
+  b.number("/body/surface/scale", body.scale, positive(), "", "Metres per unit of the file.").applies =
+      only(BodyKind::surface);
+  b.path("/body/surface/cage", body.cage_file, folder, "Cage made before by `argil cage`; empty: made now.")
+      .applies = only(BodyKind::surface);
+  b.integer("/body/surface/target_tets", body.target_tets, between(50, 5e6),
+            "Wanted number of tets of a cage made now.")
+      .applies = only(BodyKind::surface);
+  b.number("/body/initial_saturation", p.water.initial_saturation, between(0, 1), "",
+           "Saturation of every tet at the start.");
+  b.objects("/body/fixed", body.fixed, describe_region, "Vertices that do not move.");
+  b.vector("/body/loads/gravity_m_per_s2", p.solid.gravity, "m/s²", "Acceleration of gravity.");
+  b.objects("/body/loads/nodal", body.nodal_loads, describe_load, "Constant forces on vertices.");
+}
+
+void bind_material(Binder& b, sim::Params& p) {
+  b.number("/material/youngs_modulus_Pa", p.elastic.youngs_modulus, positive(), "Pa",
+           "Young's modulus E of the dry clay.")
+      .required = true;
+  b.number("/material/poissons_ratio", p.elastic.poissons_ratio, inside(-1, 0.5), "",
+           "Poisson's ratio ν of the dry clay.")
+      .required = true;
+  b.number("/material/density_kg_per_m3", p.solid.density, positive(), "kg/m³", "Density of the dry clay.");
+  material::Moisture& m = p.moisture;
+  b.choice<Scheme>("/material/effective_medium/scheme", m.medium.scheme,
+                   {{Scheme::mori_tanaka, "mori_tanaka"},
+                    {Scheme::dilute, "dilute"},
+                    {Scheme::dilute_strain, "dilute_strain"},
+                    {Scheme::self_consistent, "self_consistent"},
+                    {Scheme::differential, "differential"},
+                    {Scheme::voigt, "voigt"},
+                    {Scheme::reuss, "reuss"},
+                    {Scheme::hs_lower, "hs_lower"},
+                    {Scheme::hs_upper, "hs_upper"}},
+                   "Effective stiffness of clay with water (eq. 6 and relatives); `dilute` is the paper's.");
+  b.number("/material/effective_medium/fluid_bulk_modulus_Pa", m.medium.fluid_bulk_modulus, not_negative(),
+           "Pa", "K_I of the water; 0: drained, 2.2e9: undrained.");
+  b.number("/material/effective_medium/fluid_shear_modulus_Pa", m.medium.fluid_shear_modulus, not_negative(),
+           "Pa", "G_I of the water.");
+  b.number("/material/effective_medium/aspect", m.medium.aspect, between(1e-4, 1e4), "",
+           "Pores' length along their axis over their width; 1: spheres.");
+  b.choice<material::Orientation>(
+      "/material/effective_medium/orientation", m.medium.orientation,
+      {{material::Orientation::random, "random"}, {material::Orientation::aligned, "aligned"}},
+      "Pores' axes: random, or all along z.");
+  b.choice<material::MoistureLaw>("/material/moisture/law", m.law,
+                                  {{material::MoistureLaw::effective_medium, "effective_medium"},
+                                   {material::MoistureLaw::liquidity_index, "liquidity_index"},
+                                   {material::MoistureLaw::table, "table"}},
+                                  "How water changes stiffness and yield.");
+  b.boolean("/material/moisture/softens_elasticity", m.softens_elasticity,
+            "false: moduli stay dry, to tell causes apart.");
+  b.choice<material::YieldLaw>(
+      "/material/moisture/yield_law", m.yield_law,
+      {{material::YieldLaw::constant, "constant"}, {material::YieldLaw::log_linear, "log_linear"}},
+      "Yield strain against saturation: constant (the paper), or times saturated_yield_ratio^S.");
+  b.number("/material/moisture/saturated_yield_ratio", m.saturated_yield_ratio, {0, 1, true, false}, "",
+           "Yield strain at S = 1 over dry.");
+  b.number("/material/moisture/saturated_strength_ratio", m.saturated_strength_ratio, {0, 1, true, false}, "",
+           "liquidity_index: modulus and strength at S = 1 over dry [Vardanega2014].");
+  b.number("/material/moisture/refresh_tolerance", m.refresh_tolerance, between(0, 1), "",
+           "Change of S beyond which a tet's moduli are looked up again.");
+  const auto table_only = [&m] { return m.law == material::MoistureLaw::table; };
+  b.numbers("/material/moisture/table_saturation", m.table_saturation, between(0, 1), "",
+            "table: increasing, from 0 to 1.")
+      .applies = table_only;
+  b.numbers("/material/moisture/table_youngs_modulus_Pa", m.table_youngs_modulus, positive(), "Pa",
+            "table: Young's modulus at each.")
+      .applies = table_only;
+  b.numbers("/material/moisture/table_yield", m.table_yield, not_negative(), "",
+            "table: yield strain at each.")
+      .applies = table_only;
+  material::Plasticity& y = p.plasticity;
+  b.boolean("/material/plasticity/enabled", y.enabled, "Plastic flow after Müller and Gross.");
+  b.number("/material/plasticity/yield", y.yield, not_negative(), "",
+           "Elastic strain norm at which flow starts.");
+  b.number("/material/plasticity/creep_per_s", y.creep_per_s, not_negative(), "1/s",
+           "Rate at which the elastic strain flows away.");
+  b.number("/material/plasticity/max", y.max, not_negative(), "", "Largest plastic strain norm.");
+  b.boolean("/material/plasticity/deviatoric", y.deviatoric,
+            "Flow keeps the volume, and only the deviator yields.");
+  b.choice<material::FlowForm>("/material/plasticity/form", y.form,
+                               {{material::FlowForm::rate, "rate"}, {material::FlowForm::literal, "literal"}},
+                               "1 − e^{−c h}, or the literal c h.");
+  b.choice<material::StrainNorm>(
+      "/material/plasticity/norm", y.norm,
+      {{material::StrainNorm::frobenius, "frobenius"}, {material::StrainNorm::voigt6, "voigt6"}},
+      "Norm of strain; voigt6 depends on the axes.");
+  material::ClayKernel& k = p.kernel;
+  b.choice<material::KernelForm>("/material/clay_kernel/form", k.form,
+                                 {{material::KernelForm::rate, "rate"},
+                                  {material::KernelForm::per_step, "per_step"},
+                                  {material::KernelForm::off, "off"}},
+                                 "G_d^{h/h_ref} (step independent), G_d a step (the paper), or none; eq. 9.");
+  b.number("/material/clay_kernel/k1_per_m", k.k1, not_negative(), "1/m", "k₁ of eq. 9.");
+  b.number("/material/clay_kernel/k2_per_m", k.k2, not_negative(), "1/m", "k₂ of eq. 9.");
+  b.number("/material/clay_kernel/radius_m", k.radius, not_negative(), "m",
+           "R_D of eq. 9: radius of influence.");
+  b.number("/material/clay_kernel/reference_step_s", k.reference_step, positive(), "s",
+           "h_ref: step at which one G_d is applied.");
+}
+
+void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
+  water::WaterParams& w = s.params.water;
+  b.number("/water/porosity", w.porosity, inside(0, 1), "",
+           "n: volume of water at S = 1 over rest volume; φ = n S.");
+  b.number("/water/density_kg_per_m3", w.density, positive(), "kg/m³", "ρ_w.");
+  b.number("/water/diffusivity_m2_per_s", w.diffusivity, not_negative(), "m²/s", "D of the saturation.");
+  b.choice<water::UptakeForm>(
+      "/water/uptake", w.uptake,
+      {{water::UptakeForm::flux, "flux"}, {water::UptakeForm::increment, "increment"}},
+      "Through the touched area, or the paper's fixed step for every touched tet.");
+  b.number("/water/wetting_flux_kg_per_m2_s", w.wetting_flux, not_negative(), "kg/(m² s)",
+           "flux: given by the wet tool.");
+  b.number("/water/drying_flux_kg_per_m2_s", w.drying_flux, not_negative(), "kg/(m² s)",
+           "flux: taken by the dry tool.");
+  b.number("/water/saturation_increment", w.saturation_increment, between(0, 1), "",
+           "increment: of S a water step.");
+  ToolSpec& t = s.tool;
+  const auto only = [&t](ToolKind kind) { return [&t, kind] { return t.kind == kind; }; };
+  b.choice<ToolKind>("/tool/shape/kind", t.kind,
+                     {{ToolKind::sphere, "sphere"},
+                      {ToolKind::capsule, "capsule"},
+                      {ToolKind::stylus, "stylus"},
+                      {ToolKind::mesh, "mesh"}},
+                     "Tool's surface; the hand's point is its origin, its tip points to −z.");
+  b.number("/tool/shape/radius_m", t.radius, positive(), "m",
+           "sphere, capsule: radius; stylus: at its upper end.")
+      .applies = [&t] { return t.kind != ToolKind::mesh; };
+  b.number("/tool/shape/tip_radius_m", t.tip_radius, positive(), "m", "stylus: radius of the tip.").applies =
+      only(ToolKind::stylus);
+  b.number("/tool/shape/length_m", t.length, positive(), "m", "capsule, stylus: length of the straight part.")
+      .applies = [&t] { return t.kind == ToolKind::capsule || t.kind == ToolKind::stylus; };
+  b.integer("/tool/shape/subdivisions", t.subdivisions, between(0, 6),
+            "sphere: times an icosahedron is split.")
+      .applies = only(ToolKind::sphere);
+  b.integer("/tool/shape/segments", t.segments, between(6, 256), "capsule, stylus: around the axis.")
+      .applies = [&t] { return t.kind == ToolKind::capsule || t.kind == ToolKind::stylus; };
+  b.path("/tool/shape/file", t.file, folder, "mesh: closed triangle surface.").applies = only(ToolKind::mesh);
+  b.number("/tool/shape/scale", t.scale, positive(), "", "mesh: metres per unit of the file.").applies =
+      only(ToolKind::mesh);
+  b.choice<ModeChoice>("/tool/mode", t.mode,
+                       {{ModeChoice::trace, "trace"},
+                        {ModeChoice::push, "push"},
+                        {ModeChoice::pull, "pull"},
+                        {ModeChoice::wet, "wet"},
+                        {ModeChoice::dry, "dry"}},
+                       "What the tool does; trace: as recorded.");
+  contact::ContactParams& c = s.params.contact;
+  b.number("/contact/vertex_face_stiffness_N_per_m", c.vertex_face_stiffness, positive(), "N/m",
+           "k_vf of eq. 7, per pair.")
+      .required = true;
+  b.number("/contact/edge_edge_stiffness_N_per_m", c.edge_edge_stiffness, not_negative(), "N/m",
+           "k_ee of eq. 8, per pair.")
+      .required = true;
+}
+
+void bind_dynamics(Binder& b, Scenario& s) {
+  solid::SolidParams& d = s.params.solid;
+  b.choice<solid::StrainModel>(
+      "/dynamics/model", d.model,
+      {{solid::StrainModel::corotational, "corotational"}, {solid::StrainModel::linear, "linear"}},
+      "Strain; linear is the paper's.");
+  b.choice<solid::SolverKind>(
+      "/dynamics/solver/kind", d.solver,
+      {{solid::SolverKind::pcg_cholesky, "pcg_cholesky"},
+       {solid::SolverKind::pcg_jacobi, "pcg_jacobi"},
+       {solid::SolverKind::cholesky, "cholesky"}},
+      "Conjugate gradients over a kept factor, over diagonal blocks, or a factorisation every step.");
+  b.number("/dynamics/solver/tolerance", d.solver_tolerance, inside(0, 1), "",
+           "Relative residual of the linear solve.");
+  b.integer("/dynamics/solver/max_iterations", d.solver_max_iterations, between(1, 1e6),
+            "Iterations after which the run stops.");
+  b.integer("/dynamics/solver/refactor_iterations", d.refactor_iterations, between(1, 1e6),
+            "pcg_cholesky: a solve with more iterations has the factor renewed.");
+  b.number("/dynamics/rayleigh_mass_per_s", d.rayleigh_mass, not_negative(), "1/s", "a in D = a M + b K.");
+  b.number("/dynamics/rayleigh_stiffness_s", d.rayleigh_stiffness, not_negative(), "s",
+           "b in D = a M + b K.");
+  b.boolean("/dynamics/implicit_contact", d.implicit_contact, "Contact stiffness enters the implicit solve.");
+  b.number("/dynamics/min_volume_ratio", d.min_volume_ratio, {-1e300, 1, true, true}, "",
+           "det F of a tet at or below which the run stops.");
+  b.boolean("/dynamics/allow_locking", s.allow_locking,
+            "Run nearly incompressible 4-node tets although they lock.");
+}
+
+void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
+  sim::RateParams& r = s.params.rates;
+  b.number("/haptics/period_s", r.haptic_period, inside(0, 1), "s", "δ: one haptic tick.");
+  b.integer("/haptics/physics_period_ticks", r.physics_period_ticks, between(1, 100000),
+            "Physics once in so many ticks; 14 is the paper's 71 Hz.");
+  b.integer("/haptics/water_period_ticks", r.water_period_ticks, between(1, 1e6),
+            "Water once in so many ticks; a multiple of the physics.");
+  b.integer("/haptics/frame_period_ticks", r.frame_period_ticks, between(1, 1e9),
+            "A picture of the body once in so many ticks.");
+  b.choice<sim::BetweenFrames>(
+      "/haptics/between_frames", r.between_frames,
+      {{sim::BetweenFrames::hold, "hold"}, {sim::BetweenFrames::re_evaluate, "re_evaluate"}},
+      "Keep the force between physics steps (the paper), or find contact every tick.");
+  device::DeviceLimits& l = s.params.device;
+  b.number("/haptics/device/max_force_N", l.max_force, positive(), "N", "Largest force the device is sent.");
+  b.number("/haptics/device/max_torque_Nm", l.max_torque, not_negative(), "N m",
+           "Largest torque; 0: no limit.");
+  b.number("/haptics/device/max_force_rate_N_per_s", l.max_force_rate, positive(), "N/s",
+           "Fastest change of the force sent.");
+  b.number("/haptics/device/ramp_s", l.ramp_s, not_negative(), "s", "Start-up ramp from zero.");
+  TraceSpec& t = s.trace;
+  b.path("/trace/file", t.file, folder, "Recorded motion (CSV or HDF5).").required = true;
+  b.choice<device::ToolMode>("/trace/default_mode", t.options.default_mode,
+                             {{device::ToolMode::push, "push"},
+                              {device::ToolMode::pull, "pull"},
+                              {device::ToolMode::wet, "wet"},
+                              {device::ToolMode::dry, "dry"}},
+                             "Mode when the file has no column for it.");
+  b.number("/trace/default_rate_hz", t.options.default_rate_hz, not_negative(), "Hz",
+           "Rate when the file has no time; 0: it must.");
+  b.strings("/trace/columns", t.options.columns,
+            "CSV: names of the columns from the left, in place of a header row.");
+  b.number("/trace/start_s", t.start, not_negative(), "s", "Where in the trace the run starts.");
+  b.number("/trace/duration_s", t.duration, not_negative(), "s", "How long it runs; 0: to the trace's end.");
+  device::DeviceToWorld& w = t.options.device_to_world;
+  b.number("/trace/device_to_world/scale", w.scale, positive(), "", "World metres per device metre.");
+  b.quaternion("/trace/device_to_world/rotation_xyzw", w.rotation, "Unit quaternion, device to world.");
+  b.vector("/trace/device_to_world/translation_m", w.translation, "m",
+           "World position of the device's origin.");
+}
+
+}  // namespace
+
+std::vector<Parameter> make_parameter_table(Scenario& s, const std::string& file) {
+  Binder b(file);
+  const std::string folder = std::filesystem::path(file).parent_path().string();
+  b.text("/about", s.about, "Purpose, source and expected outcome.").required = true;
+  Parameter& preset =
+      b.choice<Preset>("/preset", s.preset, {{Preset::none, "none"}, {Preset::paper, "paper"}},
+                       "Settings below the scenario's own keys; paper: the paper to the letter.");
+  preset.applies = [] { return false; };  // a resolved scenario has the preset's settings written out
+  bind_body(b, s.body, s.params, folder);
+  bind_material(b, s.params);
+  bind_water_and_tool(b, s, folder);
+  bind_dynamics(b, s);
+  bind_haptics(b, s, folder);
+  return b.take();
+}
+
+}  // namespace argil::scenario

@@ -1,0 +1,184 @@
+#include "scenario/scenario.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "base/error.h"
+#include "material/effective_medium.h"
+#include "scenario/parameter_table.h"
+
+namespace argil::scenario {
+namespace {
+
+// The paper to the letter, where it is silent the nearest reading (see README.md of this folder).
+constexpr const char* kPaperPreset = R"({
+  "material": {
+    "effective_medium": {"scheme": "dilute"},
+    "plasticity": {"form": "literal", "norm": "voigt6", "deviatoric": false},
+    "clay_kernel": {"form": "per_step"}
+  },
+  "water": {"uptake": "increment"},
+  "dynamics": {"model": "linear", "implicit_contact": false},
+  "haptics": {"physics_period_ticks": 14, "water_period_ticks": 14, "between_frames": "hold"}
+})";
+
+constexpr double kLockingPoissonsRatio = 0.45;  // a bar of 4-node tets bends a third of the truth there
+
+void apply_setting(Json& document, const Setting& setting, const std::string& file) {
+  Json value;
+  try {
+    value = Json::parse(setting.value);
+  } catch (const Json::exception&) {
+    value = setting.value;  // not JSON: a word
+  }
+  try {
+    document[Json::json_pointer(setting.pointer)] = value;
+  } catch (const Json::exception& error) {
+    throw InputError(file, setting.pointer, std::string("cannot be set (") + error.what() + ")",
+                     "give a pointer such as /material/youngs_modulus_Pa");
+  }
+}
+
+void choose_body(Scenario& s, const Json& document) {
+  if (!document.contains("body") || !document["body"].is_object())
+    throw InputError(s.file, "/body", "is missing", "add one of /body/mesh, /body/shape, /body/surface");
+  const Json& body = document["body"];
+  const int count =
+      static_cast<int>(body.contains("mesh") + body.contains("shape") + body.contains("surface"));
+  if (count != 1)
+    throw InputError(s.file, "/body", "has " + std::to_string(count) + " of mesh, shape and surface",
+                     "give exactly one of them");
+  s.body.kind = body.contains("mesh")    ? BodyKind::mesh
+                : body.contains("shape") ? BodyKind::shape
+                                         : BodyKind::surface;
+  const char* key = s.body.kind == BodyKind::mesh ? "mesh" : "surface";
+  if (s.body.kind != BodyKind::shape && (!body[key].is_object() || !body[key].contains("file")))
+    throw InputError(s.file, std::string("/body/") + key + "/file", "is missing",
+                     "name the file of the body");
+}
+
+void check_rates(const Scenario& s) {
+  const sim::RateParams& r = s.params.rates;
+  const auto require_multiple = [&](const char* pointer, int value) {
+    if (value % r.physics_period_ticks != 0)
+      throw InputError(s.file, pointer,
+                       std::to_string(value) + " is no multiple of physics_period_ticks (" +
+                           std::to_string(r.physics_period_ticks) + ")",
+                       "give a multiple of it");
+  };
+  require_multiple("/haptics/water_period_ticks", r.water_period_ticks);
+  require_multiple("/haptics/frame_period_ticks", r.frame_period_ticks);
+}
+
+void check_tables(const Scenario& s) {
+  const material::Moisture& m = s.params.moisture;
+  if (m.law != material::MoistureLaw::table) return;
+  const std::vector<double>& S = m.table_saturation;
+  const char* place = "/material/moisture/table_saturation";
+  if (S.size() < 2 || S.front() != 0.0 || S.back() != 1.0 ||
+      !std::is_sorted(S.begin(), S.end(), std::less_equal<>()))
+    throw InputError(s.file, place, "does not increase from 0 to 1", "give at least [0, 1]");
+  if (m.table_youngs_modulus.size() != S.size() || m.table_yield.size() != S.size())
+    throw InputError(s.file, place,
+                     "has " + std::to_string(S.size()) + " values, table_youngs_modulus_Pa " +
+                         std::to_string(m.table_youngs_modulus.size()) + ", table_yield " +
+                         std::to_string(m.table_yield.size()),
+                     "give the three lists the same length");
+}
+
+double compute_poissons_ratio(const material::MediumResult& medium) {
+  const double K = medium.bulk_modulus;
+  const double G = medium.shear_modulus;
+  return (3.0 * K - 2.0 * G) / (2.0 * (3.0 * K + G));
+}
+
+/// Eq. 6 over every φ the run can reach: refused where C is not positive definite or where 4-node tets would
+/// lock.
+void check_effective_medium(Scenario& s) {
+  const material::Moisture& m = s.params.moisture;
+  const double phi_max = s.params.water.porosity;
+  const char* place = "/material/effective_medium/scheme";
+  double nu = s.params.elastic.poissons_ratio;
+  if (m.law == material::MoistureLaw::effective_medium && m.softens_elasticity) {
+    if (!material::is_supported(m.medium))
+      throw InputError(s.file, place, "needs an isotropic medium, but the pores are aligned spheroids",
+                       "choose mori_tanaka, or orientation random");
+    const material::MediumRange range = material::compute_medium_range(s.params.elastic, m.medium, phi_max);
+    std::ostringstream text;
+    if (range.worst == material::MediumStatus::not_positive_definite) {
+      text << "gives a stiffness that is not positive definite (" << range.mode
+           << ") from phi = " << range.phi_not_positive_definite
+           << ", and saturated clay reaches phi = porosity = " << phi_max;
+      throw InputError(s.file, place, text.str(), "choose mori_tanaka, or a smaller porosity");
+    }
+    if (range.worst == material::MediumStatus::above_voigt) {
+      text << s.file << ": " << place << ": the stiffness leaves the Voigt bound (" << range.mode
+           << ") from phi = " << range.phi_above_voigt << "; mori_tanaka stays within the bounds";
+      s.warnings.push_back(text.str());
+    }
+    nu = std::max(
+        nu, compute_poissons_ratio(material::compute_effective_medium(s.params.elastic, m.medium, phi_max)));
+  }
+  if (nu > kLockingPoissonsRatio && !s.allow_locking) {
+    std::ostringstream text;
+    text << "Poisson's ratio reaches " << nu << ", and 4-node tets lock above " << kLockingPoissonsRatio
+         << ": the body would feel too stiff";
+    throw InputError(s.file,
+                     m.medium.fluid_bulk_modulus > 0.0 ? "/material/effective_medium/fluid_bulk_modulus_Pa"
+                                                       : "/material/poissons_ratio",
+                     text.str(),
+                     "use drained water (0 Pa), a smaller ratio, or set /dynamics/allow_locking to true");
+  }
+}
+
+void check_combinations(Scenario& s) {
+  check_rates(s);
+  check_tables(s);
+  check_effective_medium(s);
+  if (s.tool.kind == ToolKind::mesh && s.tool.file.empty())
+    throw InputError(s.file, "/tool/shape/file", "is missing", "name the tool's surface");
+  if (s.tool.kind == ToolKind::stylus && !(s.tool.tip_radius < s.tool.radius))
+    throw InputError(s.file, "/tool/shape/tip_radius_m", "is not smaller than radius_m",
+                     "give a sharper tip");
+  const sim::Params& p = s.params;
+  if (p.kernel.form != material::KernelForm::off && !(p.kernel.radius > 0.0))
+    throw InputError(s.file, "/material/clay_kernel/radius_m", "is 0", "give R_D in metres, or form \"off\"");
+}
+
+}  // namespace
+
+Setting parse_setting(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (text.empty() || text[0] != '/' || equals == std::string::npos)
+    throw InputError("--set", text, "is not of the form /json/pointer=value",
+                     "write for instance --set /material/youngs_modulus_Pa=2e5");
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings) {
+  Json document = read_json(file);
+  if (!document.is_object())
+    throw InputError(file, "", "is not a JSON object", "a scenario is {\"about\": …}");
+  for (const Setting& setting : settings) apply_setting(document, setting, file);
+  const Json preset = document.value("preset", Json("none"));
+  if (preset == "paper") {
+    Json below = Json::parse(kPaperPreset);
+    below.merge_patch(document);
+    document = below;
+  }
+  Scenario s;
+  s.file = file;
+  choose_body(s, document);
+  read_parameters(make_parameter_table(s, file), document, file, "");
+  check_combinations(s);
+  return s;
+}
+
+std::string print_resolved(const Scenario& scenario) {
+  Scenario copy = scenario;
+  return write_parameters(make_parameter_table(copy, scenario.file)).dump(2) + "\n";
+}
+
+}  // namespace argil::scenario

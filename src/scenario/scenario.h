@@ -1,0 +1,99 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "device/trace.h"
+#include "mesh/shapes.h"
+#include "sim/params.h"
+
+namespace argil::scenario {
+
+enum class BodyKind { mesh, shape, surface };
+enum class ToolKind { sphere, capsule, stylus, mesh };
+enum class ModeChoice { push, pull, wet, dry, trace };
+
+/// Settings that stand below a scenario's own keys.
+enum class Preset {
+  none,
+  paper,  ///< the paper to the letter: linear strain, dilute scheme, per-step kernel, literal flow, 14 ticks'
+          ///< hold
+};
+
+/// Constant force on some vertices.
+struct NodalLoad {
+  std::vector<int> nodes;
+  Vec3 force = Vec3::Zero();  ///< [N] on each
+};
+
+/// Where the body comes from. Exactly one kind is given.
+struct BodySpec {
+  BodyKind kind = BodyKind::shape;
+  std::string file;              ///< mesh, surface
+  std::string cage_file;         ///< surface: a cage made before; empty: made now
+  double scale = 1.0;            ///< file's unit in metres
+  mesh::Shape shape;             ///< shape
+  int target_tets = 10000;       ///< shape; surface without a cage file
+  int skin_triangles = 20000;    ///< shape: at least so many; 0: no skin
+  std::string saturation_field;  ///< mesh: cell data with the initial saturation; empty: uniform
+  std::string modulus_field;     ///< mesh: cell data with Young's modulus [Pa]; empty: the material's
+  std::vector<solid::Region> fixed;
+  std::vector<NodalLoad> nodal_loads;
+};
+
+struct ToolSpec {
+  ToolKind kind = ToolKind::sphere;
+  double radius = 0.008;      ///< [m]
+  double tip_radius = 0.001;  ///< stylus [m]
+  double length = 0.05;       ///< capsule, stylus [m]
+  int subdivisions = 3;       ///< sphere
+  int segments = 24;          ///< capsule, stylus: around the axis
+  std::string file;           ///< mesh
+  double scale = 1.0;         ///< mesh
+  ModeChoice mode = ModeChoice::trace;
+};
+
+struct TraceSpec {
+  std::string file;
+  device::TraceOptions options;
+  double start = 0.0;     ///< [s] into the trace
+  double duration = 0.0;  ///< [s]; 0: to its end
+};
+
+/// A validated scene in SI units; paths resolved against the scenario's folder.
+struct Scenario {
+  std::string file;
+  std::string about;
+  Preset preset = Preset::none;
+  BodySpec body;
+  ToolSpec tool;
+  TraceSpec trace;
+  sim::Params params;
+  bool allow_locking = false;         ///< run nearly incompressible tets although they lock
+  std::vector<std::string> warnings;  ///< of validation; a run prints them and writes them to its file
+};
+
+/// One `--set /json/pointer=value`.
+struct Setting {
+  std::string pointer;
+  std::string value;  ///< JSON; anything that is no JSON is taken as a string
+};
+
+/// Splits "/a/b=value". Throws InputError.
+Setting parse_setting(const std::string& text);
+
+/// Reads, applies the preset and the settings, checks every key, type and range, and the combinations that
+/// cannot run. Throws InputError naming file, JSON pointer, value, allowed range and unit; IoError when the
+/// file cannot be read.
+Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings);
+
+/// The scene with every default written out, keys in the table's order, as JSON. Loading it gives it again.
+std::string print_resolved(const Scenario& scenario);
+
+/// JSON Schema (2020-12) of a scenario.
+std::string print_schema();
+
+/// Reference page (Markdown): one row a key.
+std::string print_reference();
+
+}  // namespace argil::scenario

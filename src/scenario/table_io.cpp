@@ -1,0 +1,189 @@
+// Reading and writing by the table, and the two descriptions that are printed from it.
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "base/error.h"
+#include "scenario/parameter_table.h"
+
+namespace argil::scenario {
+namespace {
+
+std::string print_number(double x) {
+  if (std::isinf(x)) return x > 0 ? "∞" : "−∞";
+  return Json(x).dump();
+}
+
+/// Keys that may stand directly below `pointer`.
+std::vector<std::string> find_keys_below(const std::vector<Parameter>& rows, const std::string& pointer) {
+  std::vector<std::string> keys;
+  for (const Parameter& row : rows) {
+    if (row.pointer.rfind(pointer + "/", 0) != 0) continue;
+    const std::size_t begin = pointer.size() + 1;
+    const std::string key = row.pointer.substr(begin, row.pointer.find('/', begin) - begin);
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+  }
+  return keys;
+}
+
+bool is_key(const std::vector<Parameter>& rows, const std::string& pointer) {
+  return std::any_of(rows.begin(), rows.end(), [&](const Parameter& row) { return row.pointer == pointer; });
+}
+
+void check_keys(const std::vector<Parameter>& rows, const Json& object, const std::string& pointer,
+                const std::string& file, const std::string& prefix) {
+  if (!object.is_object())
+    throw InputError(file, prefix + pointer, object.dump() + " is not an object", "give an object {…}");
+  const std::vector<std::string> allowed = find_keys_below(rows, pointer);
+  for (const auto& [key, value] : object.items()) {
+    const std::string below = pointer + "/" + key;
+    if (std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
+      std::string list;
+      for (const std::string& word : allowed) list += (list.empty() ? "" : ", ") + word;
+      const std::string nearest = find_nearest(key, allowed);
+      throw InputError(file, prefix + below, "is not a known key",
+                       nearest.empty() ? "known here are: " + list : "did you mean \"" + nearest + "\"?");
+    }
+    if (!is_key(rows, below)) check_keys(rows, value, below, file, prefix);
+  }
+}
+
+const char* schema_type(ValueType type) {
+  switch (type) {
+    case ValueType::number:
+      return "number";
+    case ValueType::integer:
+      return "integer";
+    case ValueType::boolean:
+      return "boolean";
+    case ValueType::string:
+    case ValueType::path:
+    case ValueType::choice:
+      return "string";
+    default:
+      return "array";
+  }
+}
+
+void add_range(Json& schema, const Range& range) {
+  if (std::isfinite(range.low)) schema[range.open_low ? "exclusiveMinimum" : "minimum"] = range.low;
+  if (std::isfinite(range.high)) schema[range.open_high ? "exclusiveMaximum" : "maximum"] = range.high;
+}
+
+Json make_schema(const std::vector<Parameter>& rows);
+
+Json make_value_schema(const Parameter& row) {
+  Json schema;
+  schema["type"] = schema_type(row.type);
+  schema["description"] = row.doc + (row.unit.empty() ? "" : " [" + row.unit + "]");
+  switch (row.type) {
+    case ValueType::number:
+    case ValueType::integer:
+      add_range(schema, row.range);
+      break;
+    case ValueType::choice:
+      schema["enum"] = row.choices;
+      break;
+    case ValueType::numbers:
+    case ValueType::integers:
+      schema["items"] = {{"type", row.type == ValueType::numbers ? "number" : "integer"}};
+      add_range(schema["items"], row.range);
+      if (row.length > 0) schema["minItems"] = schema["maxItems"] = row.length;
+      break;
+    case ValueType::strings:
+      schema["items"] = {{"type", "string"}};
+      break;
+    case ValueType::objects:
+      schema["items"] = make_schema(row.item());
+      break;
+    default:
+      break;
+  }
+  if (!row.required) schema["default"] = row.write();
+  return schema;
+}
+
+Json make_schema(const std::vector<Parameter>& rows) {
+  Json root = {{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
+  for (const Parameter& row : rows) {
+    Json* at = &root;
+    std::istringstream path(row.pointer.substr(1));
+    std::string key;
+    std::getline(path, key, '/');
+    for (std::string next; std::getline(path, next, '/'); key = next) {
+      if (row.required) {
+        Json& required = (*at)["required"];
+        if (std::find(required.begin(), required.end(), key) == required.end()) required.push_back(key);
+      }
+      Json& below = (*at)["properties"][key];
+      if (below.is_null())
+        below = {{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
+      at = &below;
+    }
+    (*at)["properties"][key] = make_value_schema(row);
+    if (row.required) (*at)["required"].push_back(key);
+  }
+  return root;
+}
+
+}  // namespace
+
+std::string to_string(const Range& range) {
+  return (range.open_low ? "(" : "[") + print_number(range.low) + ", " + print_number(range.high) +
+         (range.open_high ? ")" : "]");
+}
+
+void read_parameters(const std::vector<Parameter>& rows, const Json& object, const std::string& file,
+                     const std::string& prefix) {
+  check_keys(rows, object, "", file, prefix);
+  for (const Parameter& row : rows) {
+    const Json::json_pointer pointer(row.pointer);
+    if (object.contains(pointer)) {
+      row.read(object[pointer], prefix + row.pointer);
+    } else if (row.required) {
+      throw InputError(file, prefix + row.pointer, "is missing",
+                       "add it: " + row.doc + (row.unit.empty() ? "" : " [" + row.unit + "]"));
+    }
+  }
+}
+
+Json write_parameters(const std::vector<Parameter>& rows) {
+  Json object = Json::object();
+  for (const Parameter& row : rows)
+    if (!row.applies || row.applies()) object[Json::json_pointer(row.pointer)] = row.write();
+  return object;
+}
+
+std::string print_schema() {
+  Scenario defaults;
+  Json schema = make_schema(make_parameter_table(defaults, "scenario.json"));
+  schema["properties"]["body"]["oneOf"] = {
+      {{"required", {"mesh"}}}, {{"required", {"shape"}}}, {{"required", {"surface"}}}};
+  schema["required"].push_back("body");
+  Json page = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "argil scenario"}};
+  page.update(schema);
+  return page.dump(2) + "\n";
+}
+
+std::string print_reference() {
+  Scenario defaults;
+  std::ostringstream page;
+  page << "| key | unit | allowed | default | meaning |\n|---|---|---|---|---|\n";
+  const auto print_rows = [&page](const std::vector<Parameter>& rows, const std::string& prefix,
+                                  auto&& self) -> void {
+    for (const Parameter& row : rows) {
+      std::string allowed;
+      for (const std::string& word : row.choices) allowed += (allowed.empty() ? "" : ", ") + word;
+      if (row.type == ValueType::number || row.type == ValueType::integer) allowed = to_string(row.range);
+      page << "| `" << prefix << row.pointer << "` | " << row.unit << " | " << allowed << " | "
+           << (row.required ? "required" : "`" + row.write().dump() + "`") << " | " << row.doc << " |\n";
+      if (row.item) self(row.item(), prefix + row.pointer + "/N", self);
+    }
+  };
+  print_rows(make_parameter_table(defaults, "scenario.json"), "", print_rows);
+  return page.str();
+}
+
+}  // namespace argil::scenario
