@@ -1,0 +1,77 @@
+#include "embed/embedding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "embed/tet_locator.h"
+#include "embed/triangle_tree.h"
+#include "mesh/topology.h"
+
+namespace argil::embed {
+namespace {
+
+[[noreturn]] void refuse_outside(const mesh::TetMesh& cage, const Points& points,
+                                 const std::vector<int>& outside, const std::string& file) {
+  const TriangleTree boundary({cage.vertices, mesh::make_topology(cage).boundary});
+  double farthest = 0.0;
+  double first_distance = 0.0;
+  for (const int v : outside) {
+    const double distance = boundary.compute_distance(points.col(v), 1e300);
+    if (v == outside.front()) first_distance = distance;
+    farthest = std::max(farthest, distance);
+  }
+  std::ostringstream problem;
+  problem.precision(4);
+  problem << outside.size() << " of " << points.cols() << " vertices lie outside the cage, this one by "
+          << first_distance << " m, the farthest by " << farthest << " m";
+  throw InputError(file, "vertex " + std::to_string(outside.front()) + " (counted from 0)", problem.str(),
+                   "make a cage that encloses the surface with `argil cage`");
+}
+
+}  // namespace
+
+Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const std::string& file) {
+  const TetLocator locator(cage);
+  Embedding embedding;
+  embedding.tet.resize(static_cast<std::size_t>(points.cols()));
+  embedding.weights.resize(4, points.cols());
+  std::vector<int> outside;
+  for (int v = 0; v < static_cast<int>(points.cols()); ++v) {
+    if (!points.col(v).allFinite())
+      throw InputError(file, "vertex " + std::to_string(v) + " (counted from 0)",
+                       "a coordinate is not a finite number", "repair the surface file");
+    const TetLocator::Place place = locator.find(points.col(v));
+    embedding.tet[static_cast<std::size_t>(v)] = place.tet;
+    embedding.weights.col(v) = place.weights;
+    if (place.tet < 0) outside.push_back(v);
+  }
+  if (!outside.empty()) refuse_outside(cage, points, outside, file);
+  return embedding;
+}
+
+void interpolate_positions(const Embedding& embedding, const Tets& tets, const Points& x, Points& out) {
+  out.resize(3, embedding.num_points());
+  for (int i = 0; i < embedding.num_points(); ++i) {
+    const int t = embedding.tet[static_cast<std::size_t>(i)];
+    out.col(i) = embedding.weights(0, i) * x.col(tets(0, t)) + embedding.weights(1, i) * x.col(tets(1, t)) +
+                 embedding.weights(2, i) * x.col(tets(2, t)) + embedding.weights(3, i) * x.col(tets(3, t));
+  }
+}
+
+void interpolate_tet_field(const Embedding& embedding, const Field& per_tet, Field& out) {
+  out.resize(embedding.num_points());
+  for (int i = 0; i < embedding.num_points(); ++i)
+    out(i) = per_tet(embedding.tet[static_cast<std::size_t>(i)]);
+}
+
+void compute_region_of_influence(const Points& x, const Vec3& centre, double radius, Field& out) {
+  ARGIL_ASSERT(radius > 0.0, radius);
+  out.resize(x.cols());
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    out(i) = std::max(0.0, 1.0 - (x.col(i) - centre).norm() / radius);
+}
+
+}  // namespace argil::embed

@@ -1,0 +1,89 @@
+#include "embed/tet_locator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/check.h"
+
+namespace argil::embed {
+namespace {
+
+constexpr double kWeightTolerance = 1e-10;  // round-off of a weight in a tet of the worst shape we accept
+constexpr double kMaxBoxes = 2e7;
+
+}  // namespace
+
+Vec4 compute_barycentric_weights(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& x) {
+  const Vec3 u = b - a;
+  const Vec3 v = c - a;
+  const Vec3 w = d - a;
+  const Vec3 y = x - a;
+  const double volume = u.dot(v.cross(w));
+  const double wb = y.dot(v.cross(w)) / volume;
+  const double wc = y.dot(w.cross(u)) / volume;
+  const double wd = y.dot(u.cross(v)) / volume;
+  return {1.0 - wb - wc - wd, wb, wc, wd};
+}
+
+TetLocator::TetLocator(const mesh::TetMesh& mesh) : m_vertices(mesh.vertices), m_tets(mesh.tets) {
+  ARGIL_ASSERT(mesh.num_tets() > 0);
+  m_lower = m_vertices.rowwise().minCoeff();
+  const Vec3 extent = m_vertices.rowwise().maxCoeff() - m_lower;
+  double sum = 0.0;  // of the tets' largest extents
+  std::vector<std::array<Vec3, 2>> bounds(static_cast<std::size_t>(mesh.num_tets()));
+  for (int t = 0; t < mesh.num_tets(); ++t) {
+    auto& [low, high] = bounds[static_cast<std::size_t>(t)];
+    low = high = m_vertices.col(m_tets(0, t));
+    for (int i = 1; i < 4; ++i) {
+      low = low.cwiseMin(m_vertices.col(m_tets(i, t)));
+      high = high.cwiseMax(m_vertices.col(m_tets(i, t)));
+    }
+    sum += (high - low).maxCoeff();
+  }
+  m_box_size = std::max(sum / mesh.num_tets(), std::cbrt(extent.prod() / kMaxBoxes));
+  ARGIL_ASSERT(m_box_size > 0.0);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    m_counts[axis] = 1 + static_cast<int>(extent(static_cast<Eigen::Index>(axis)) / m_box_size);
+  const auto visit = [this, &bounds](auto&& action) {
+    for (std::size_t t = 0; t < bounds.size(); ++t) {
+      const std::array<int, 3> low = box(bounds[t][0]);
+      const std::array<int, 3> high = box(bounds[t][1]);
+      for (int k = low[2]; k <= high[2]; ++k)
+        for (int j = low[1]; j <= high[1]; ++j)
+          for (int i = low[0]; i <= high[0]; ++i)
+            action(static_cast<std::size_t>(i + m_counts[0] * (j + m_counts[1] * k)), static_cast<int>(t));
+    }
+  };
+  m_begin.assign(static_cast<std::size_t>(m_counts[0] * m_counts[1] * m_counts[2]) + 1, 0);
+  visit([this](std::size_t b, int) { ++m_begin[b + 1]; });
+  for (std::size_t b = 1; b < m_begin.size(); ++b) m_begin[b] += m_begin[b - 1];
+  m_list.resize(static_cast<std::size_t>(m_begin.back()));
+  std::vector<int> next(m_begin.begin(), m_begin.end() - 1);
+  visit([this, &next](std::size_t b, int t) { m_list[static_cast<std::size_t>(next[b]++)] = t; });
+}
+
+std::array<int, 3> TetLocator::box(const Vec3& x) const {
+  std::array<int, 3> result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    const double place = std::floor((x(a) - m_lower(a)) / m_box_size);
+    result[axis] = static_cast<int>(std::clamp(place, 0.0, static_cast<double>(m_counts[axis] - 1)));
+  }
+  return result;
+}
+
+TetLocator::Place TetLocator::find(const Vec3& x) const {
+  const std::array<int, 3> b = box(x);
+  const auto index = static_cast<std::size_t>(b[0] + m_counts[0] * (b[1] + m_counts[1] * b[2]));
+  for (int i = m_begin[index]; i < m_begin[index + 1]; ++i) {
+    const int t = m_list[static_cast<std::size_t>(i)];
+    const Vec4 weights =
+        compute_barycentric_weights(m_vertices.col(m_tets(0, t)), m_vertices.col(m_tets(1, t)),
+                                    m_vertices.col(m_tets(2, t)), m_vertices.col(m_tets(3, t)), x);
+    if (weights.minCoeff() >= -kWeightTolerance) return {t, weights};
+  }
+  return {};
+}
+
+}  // namespace argil::embed

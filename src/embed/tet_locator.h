@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+
+namespace argil::embed {
+
+/// Finds the tet of a mesh that contains a point, by a uniform grid of boxes that list the tets reaching into
+/// them.
+class TetLocator {
+ public:
+  explicit TetLocator(const mesh::TetMesh& mesh);
+
+  struct Place {
+    int tet = -1;                 ///< −1: outside
+    Vec4 weights = Vec4::Zero();  ///< barycentric
+  };
+
+  /// Lowest tet with all weights of x at or above −1e-10, so that no point falls between two tets by
+  /// round-off.
+  Place find(const Vec3& x) const;
+
+ private:
+  std::array<int, 3> box(const Vec3& x) const;
+
+  Points m_vertices;
+  Tets m_tets;
+  Vec3 m_lower;
+  double m_box_size = 1.0;
+  std::array<int, 3> m_counts = {1, 1, 1};
+  std::vector<int> m_begin;  // per box: where its tets begin
+  std::vector<int> m_list;   // tets, increasing in each box
+};
+
+/// Barycentric weights of x in the tet a, b, c, d; they sum to 1 and are negative beyond a face.
+Vec4 compute_barycentric_weights(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& x);
+
+}  // namespace argil::embed
