@@ -1,1 +1,123 @@
-int main() { return 0; }
+// Command line → command → exit code.
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "base/error.h"
+#include "embed/cage.h"
+#include "mesh/quality.h"
+#include "mesh/readers.h"
+#include "output/compare.h"
+#include "output/info.h"
+#include "scenario/build.h"
+#include "study/run.h"
+
+namespace {
+
+using namespace argil;
+using study::ExitCode;
+
+int make_cage_file(const std::string& surface, const std::string& output, int target_tets, double scale) {
+  const embed::Cage cage = embed::make_cage(mesh::read_triangle_mesh(surface, scale), {target_tets}, surface);
+  mesh::write_gmsh(cage.mesh, output);
+  std::printf(
+      "%s: %d tets, %d vertices, cell %.4g m, boundary %.4g m off the surface, dihedral angles %.2f to %.2f "
+      "degrees, "
+      "%d surface vertices enclosed\n",
+      output.c_str(), cage.report.num_tets, cage.mesh.num_vertices(), cage.report.cell_size,
+      cage.report.offset, cage.report.min_dihedral_degrees, cage.report.max_dihedral_degrees,
+      cage.report.enclosed_vertices);
+  return ExitCode::kDone;
+}
+
+int compare_files(const std::string& a, const std::string& b) {
+  const output::CompareReport report = output::compare_results(a, b, {});
+  std::fputs(to_string(report).c_str(), stdout);
+  return report.is_equal() ? ExitCode::kDone : ExitCode::kDifferent;
+}
+
+int validate(const study::RunOptions& options) {
+  const scenario::Scenario s = study::load(options);
+  for (const std::string& warning : s.warnings) std::fprintf(stderr, "argil: warning: %s\n", warning.c_str());
+  std::printf("%s: valid\n", s.file.c_str());
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Deterministic simulator of porous, deformable clay touched by a haptic tool", "argil");
+  app.set_version_flag("--version", study::describe_build());
+  app.require_subcommand(1);
+  int code = ExitCode::kDone;
+
+  study::RunOptions options;
+  const auto add_scenario = [&](CLI::App* command) {
+    command->add_option("SCENARIO", options.scenario, "scenario (JSON)")->required();
+    command
+        ->add_option("--set", options.settings,
+                     "/json/pointer=value, put in the scenario's place; may be repeated")
+        ->allow_extra_args(false);
+    command->add_option("--trace", options.trace, "recorded motion in place of the scenario's");
+  };
+  CLI::App* run = app.add_subcommand("run", "run a scenario and write its result");
+  add_scenario(run);
+  run->add_option("-o,--output", options.output, "result file (default: the scenario's name with .h5)");
+  run->add_option("--threads", options.threads, "threads; results do not depend on them")
+      ->check(CLI::Range(1, 256));
+  run->add_flag("--dry-run", options.dry_run, "check and build everything, write nothing");
+  run->add_flag("-q,--quiet", options.quiet, "print errors only");
+  run->callback([&] { code = study::run(options); });
+
+  CLI::App* check = app.add_subcommand("validate", "check a scenario without running it");
+  add_scenario(check);
+  check->callback([&] { code = validate(options); });
+
+  CLI::App* show = app.add_subcommand("show", "print a scenario with every default written out");
+  add_scenario(show);
+  show->callback([&] { std::cout << scenario::print_resolved(study::load(options)); });
+
+  bool reference = false;
+  CLI::App* schema = app.add_subcommand("schema", "print the JSON Schema of a scenario");
+  schema->add_flag("--reference", reference, "print the reference page (Markdown) instead");
+  schema->callback(
+      [&] { std::cout << (reference ? scenario::print_reference() : scenario::print_schema()); });
+
+  std::string first;
+  std::string second;
+  CLI::App* info = app.add_subcommand("info", "describe a result file");
+  info->add_option("FILE", first, "result file")->required();
+  info->callback([&] { std::cout << output::describe_result(first); });
+
+  CLI::App* compare =
+      app.add_subcommand("compare", "compare two result files bit by bit, all but their timing");
+  compare->add_option("A", first, "result file")->required();
+  compare->add_option("B", second, "result file")->required();
+  compare->callback([&] { code = compare_files(first, second); });
+
+  int target_tets = embed::CageOptions().target_tets;
+  double scale = 1.0;
+  CLI::App* cage = app.add_subcommand("cage", "make a tetrahedral cage that encloses a surface");
+  cage->add_option("SURFACE", first, "OBJ, STL or PLY, clean or not")->required();
+  cage->add_option("-o,--output", second, "cage (Gmsh)")->required();
+  cage->add_option("--tets", target_tets, "wanted number of tets")->check(CLI::Range(50, 5000000));
+  cage->add_option("--scale", scale, "metres per unit of the file")->check(CLI::PositiveNumber);
+  cage->callback([&] { code = make_cage_file(first, second, target_tets, scale); });
+
+  try {
+    app.parse(argc, argv);
+    return code;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? ExitCode::kDone : ExitCode::kInputRefused;
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "argil: %s\n", error.what());
+    return ExitCode::kInputRefused;
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "argil: %s\n", error.what());
+    return ExitCode::kIoFailed;
+  }
+}

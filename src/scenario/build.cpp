@@ -1,0 +1,175 @@
+#include "scenario/build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/error.h"
+#include "contact/tool_shape.h"
+#include "embed/cage.h"
+#include "mesh/quality.h"
+#include "mesh/readers.h"
+
+namespace argil::scenario {
+namespace {
+
+/// A field of the mesh file, checked against a range.
+Field take_field(const Scenario& s, const mesh::TetMesh& mesh, const std::string& name,
+                 const std::string& pointer, double low, double high) {
+  const auto found = mesh.cell_fields.find(name);
+  if (found == mesh.cell_fields.end())
+    throw InputError(s.body.file, "", "has no cell data named \"" + name + "\" that " + pointer + " asks for",
+                     "correct the name or leave it empty");
+  for (Eigen::Index t = 0; t < found->second.size(); ++t)
+    if (!(found->second(t) >= low && found->second(t) <= high)) {
+      std::ostringstream text;
+      text << "cell data \"" << name << "\" is " << found->second(t) << ", outside [" << low << ", " << high
+           << "]";
+      throw InputError(s.body.file, "tet " + std::to_string(t), text.str(), "correct the file");
+    }
+  return found->second;
+}
+
+std::string describe_cage(const embed::CageReport& report) {
+  std::ostringstream text;
+  text << "cage: " << report.num_tets << " tets, boundary " << report.offset * 1e3
+       << " mm off the skin, dihedral angles " << report.min_dihedral_degrees << " to "
+       << report.max_dihedral_degrees << " degrees";
+  return text.str();
+}
+
+void make_mesh(const Scenario& s, Scene& scene) {
+  sim::Body& body = scene.body;
+  switch (s.body.kind) {
+    case BodyKind::mesh:
+      body.mesh = mesh::read_tet_mesh(s.body.file, s.body.scale);
+      break;
+    case BodyKind::shape:
+      if (s.body.skin_triangles > 0) body.skin = mesh::make_shape_skin(s.body.shape, s.body.skin_triangles);
+      if (body.skin.num_triangles() > 0) {
+        embed::Cage cage = embed::make_cage(body.skin, {s.body.target_tets}, s.file);
+        scene.notes.push_back(describe_cage(cage.report));
+        body.mesh = std::move(cage.mesh);
+      } else {
+        body.mesh = mesh::make_shape_mesh(s.body.shape, s.body.target_tets);
+      }
+      break;
+    case BodyKind::surface:
+      body.skin = mesh::read_triangle_mesh(s.body.file, s.body.scale);
+      if (s.body.cage_file.empty()) {
+        embed::Cage cage = embed::make_cage(body.skin, {s.body.target_tets}, s.body.file);
+        scene.notes.push_back(describe_cage(cage.report));
+        body.mesh = std::move(cage.mesh);
+      } else {
+        body.mesh = mesh::read_tet_mesh(s.body.cage_file);
+      }
+      break;
+  }
+  const std::string& origin = s.body.kind == BodyKind::mesh ? s.body.file
+                              : !s.body.cage_file.empty()   ? s.body.cage_file
+                                                            : s.file;
+  const std::string warning = mesh::require_usable(mesh::compute_quality(body.mesh), origin);
+  if (!warning.empty()) scene.notes.push_back(warning);
+  body.topology = mesh::make_topology(body.mesh);
+  if (body.skin.num_triangles() > 0)
+    body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, origin);
+}
+
+void require_vertices(const Scenario& s, const std::string& pointer, const std::vector<int>& nodes,
+                      int num_vertices) {
+  for (const int v : nodes)
+    if (v >= num_vertices)
+      throw InputError(s.file, pointer, std::to_string(v) + " is no vertex of the mesh",
+                       "give numbers from 0 to " + std::to_string(num_vertices - 1));
+}
+
+void fix_and_load(const Scenario& s, sim::Body& body) {
+  for (std::size_t i = 0; i < s.body.fixed.size(); ++i) {
+    const solid::Region& region = s.body.fixed[i];
+    const std::string pointer = "/body/fixed/" + std::to_string(i);
+    require_vertices(s, pointer + "/nodes", region.nodes, body.mesh.num_vertices());
+    if (solid::find_vertices(body.mesh.vertices, std::span(&region, 1)).empty()) {
+      const Vec3 low = body.mesh.vertices.rowwise().minCoeff();
+      const Vec3 high = body.mesh.vertices.rowwise().maxCoeff();
+      std::ostringstream text;
+      text << "move it into the body's box, (" << low.transpose() << ") to (" << high.transpose() << ") m";
+      throw InputError(s.file, pointer, "holds no vertex of the body", text.str());
+    }
+  }
+  body.fixed = solid::find_vertices(body.mesh.vertices, s.body.fixed);
+  if (s.body.nodal_loads.empty()) return;
+  body.nodal_force.setZero(3, body.mesh.num_vertices());
+  for (std::size_t i = 0; i < s.body.nodal_loads.size(); ++i) {
+    const NodalLoad& load = s.body.nodal_loads[i];
+    require_vertices(s, "/body/loads/nodal/" + std::to_string(i) + "/nodes", load.nodes,
+                     body.mesh.num_vertices());
+    for (const int v : load.nodes) body.nodal_force.col(v) += load.force;
+  }
+}
+
+mesh::TriangleMesh make_tool(const Scenario& s) {
+  switch (s.tool.kind) {
+    case ToolKind::sphere:
+      return contact::make_sphere_tool(s.tool.radius, s.tool.subdivisions);
+    case ToolKind::capsule:
+      return contact::make_capsule_tool(s.tool.radius, s.tool.length, s.tool.segments);
+    case ToolKind::stylus:
+      return contact::make_stylus_tool(s.tool.tip_radius, s.tool.radius, s.tool.length, s.tool.segments);
+    case ToolKind::mesh:
+      break;
+  }
+  mesh::TriangleMesh tool = mesh::read_triangle_mesh(s.tool.file, s.tool.scale);
+  const mesh::SurfaceReport report = mesh::compute_surface_report(tool);
+  if (!report.is_closed() || report.num_degenerate > 0)
+    throw InputError(
+        s.tool.file, "",
+        "the tool's surface is not closed and clean: " + std::to_string(report.num_boundary_edges) +
+            " open edges, " + std::to_string(report.num_non_manifold_edges) + " non-manifold edges, " +
+            std::to_string(report.num_degenerate) + " degenerate triangles",
+        "repair it; a tool must have an inside");
+  double volume = 0.0;
+  for (Eigen::Index t = 0; t < tool.triangles.cols(); ++t)
+    volume += mesh::compute_tet_volume(Vec3::Zero(), tool.vertices.col(tool.triangles(0, t)),
+                                       tool.vertices.col(tool.triangles(1, t)),
+                                       tool.vertices.col(tool.triangles(2, t)));
+  if (!(volume > 0.0))
+    throw InputError(s.tool.file, "", "the tool's triangles point inwards", "turn their orientation round");
+  return tool;
+}
+
+void check_trace(const Scenario& s, const device::Trace& trace) {
+  if (!(s.trace.start < trace.duration()))
+    throw InputError(s.file, "/trace/start_s",
+                     "lies past the trace's end, " + std::to_string(trace.duration()) + " s",
+                     "give an earlier start");
+  if (s.trace.duration > trace.duration() - s.trace.start + 1e-9)
+    throw InputError(s.file, "/trace/duration_s",
+                     "asks for more than the " + std::to_string(trace.duration() - s.trace.start) +
+                         " s that the trace has",
+                     "give less, or 0 for all of it");
+}
+
+}  // namespace
+
+Scene build_scene(const Scenario& s) {
+  Scene scene;
+  scene.notes = s.warnings;
+  make_mesh(s, scene);
+  sim::Body& body = scene.body;
+  const Eigen::Index num_tets = body.mesh.num_tets();
+  body.initial_saturation =
+      s.body.saturation_field.empty()
+          ? Field(Field::Constant(num_tets, s.params.water.initial_saturation))
+          : take_field(s, body.mesh, s.body.saturation_field, "/body/mesh/saturation_field", 0.0, 1.0);
+  if (!s.body.modulus_field.empty())
+    body.modulus_scale =
+        take_field(s, body.mesh, s.body.modulus_field, "/body/mesh/youngs_modulus_field", 1e-6, 1e15) /
+        s.params.elastic.youngs_modulus;
+  fix_and_load(s, body);
+  scene.tool = make_tool(s);
+  scene.trace = device::read_trace(s.trace.file, s.trace.options);
+  check_trace(s, scene.trace);
+  return scene;
+}
+
+}  // namespace argil::scenario

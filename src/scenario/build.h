@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "device/trace.h"
+#include "scenario/scenario.h"
+#include "sim/state.h"
+
+namespace argil::scenario {
+
+/// What a simulation needs, made from a scenario's files and shapes.
+struct Scene {
+  sim::Body body;
+  mesh::TriangleMesh tool;
+  device::Trace trace;
+  std::vector<std::string> notes;  ///< for the user: mesh quality, cage report, warnings
+};
+
+/// Reads or generates the body, its cage and skin, the tool and the trace. Throws InputError for what cannot
+/// run: inverted or flat tets, orphan vertices, regions without vertices, node numbers out of range, an open
+/// tool, a trace that is shorter than asked; IoError when a file cannot be read.
+Scene build_scene(const Scenario& scenario);
+
+}  // namespace argil::scenario

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.h"
+
+namespace argil::study {
+
+/// How `argil run` was called.
+struct RunOptions {
+  std::string scenario;
+  std::string trace;   ///< replaces /trace/file when not empty
+  std::string output;  ///< result file; empty: the scenario's name with .h5 in the working folder
+  std::vector<std::string> settings;  ///< --set texts
+  int threads = 1;
+  bool dry_run = false;  ///< check and build everything, run and write nothing
+  bool quiet = false;
+};
+
+/// Exit codes of the program.
+enum ExitCode : int {
+  kDone = 0,
+  kInputRefused = 2,
+  kRunFailed = 3,
+  kIoFailed = 4,
+  kDifferent = 5,
+  kInterrupted = 130,
+};
+
+/// Loads and checks a scenario with the options' settings and trace.
+scenario::Scenario load(const RunOptions& options);
+
+/// Runs a scenario from start to end and writes its result file and XDMF. Returns kDone, kRunFailed or
+/// kInterrupted (the file is complete up to the last tick in each case). Throws InputError before anything is
+/// written, IoError.
+int run(const RunOptions& options);
+
+/// Name, version, commit, compiler, flags, libraries: what a numeric result depends on besides its input.
+std::string describe_build();
+
+}  // namespace argil::study
