@@ -1,0 +1,261 @@
+#!/usr/bin/python3
+"""Makes the synthetic hand motions of traces/: what a 1 kHz haptic device would have recorded.
+
+A motion is a list of strokes between way-points, each the minimum-jerk path of a reaching hand [Flash & Hogan
+1985], plus physiological tremor (8 to 12 Hz), seen through a device that resolves only steps of a grid. What a
+real device adds and this one does not: a low-pass filter of its driver, joint angles in place of Cartesian
+steps, and a hand that the force pushes back. Without the filter the speed between two samples jumps by a whole
+grid step, the harder case for a simulator.
+
+Nothing but Python's standard library is used and every number is rounded to the digits written, so the files
+are the same bytes on every machine.
+
+Usage: make_traces.py [--check] [--out FOLDER]
+"""
+import argparse
+import hashlib
+import math
+import random
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+# ---- The table: where the hand touches, and what it does there -------------------------------------------------
+
+
+class Place(NamedTuple):
+    """Where a trace touches the body. Lengths in mm, world frame; the dinosaur stands on z = 0 and looks along +x."""
+
+    contact: tuple  # point of the surface
+    normal: tuple  # outward, of any length
+    slide: tuple  # direction of sliding, of any length; its part along the normal is left out
+    tool_radius: float
+
+
+class Stroke(NamedTuple):
+    """One minimum-jerk stroke to a way-point."""
+
+    mode: str  # push, pull, wet or dry
+    seconds: float
+    height: float  # of the tool's surface over the contact point [mm], negative: into the body
+    slide: float  # along Place.slide [mm]
+    tilt: float  # of the tool about normal × slide [degrees]
+
+
+HAUNCH = Place(contact=(-6.0, -30.4, 62.0), normal=(0.0, -1.0, 0.0), slide=(0.35, 0.0, -0.94), tool_radius=8.0)
+
+START = Stroke("push", 0.0, 25.0, 0.0, 0.0)  # where every motion begins
+
+PRESS = [  # three presses, each deeper and held, a slide, and away
+    Stroke("push", 0.60, 2.0, 0.0, 0.0),
+    Stroke("push", 0.25, -2.0, 0.0, 1.0),
+    Stroke("push", 0.30, -2.0, 0.0, 1.0),
+    Stroke("push", 0.25, 2.0, 0.0, 0.0),
+    Stroke("push", 0.25, -3.0, 0.0, 2.0),
+    Stroke("push", 0.30, -3.0, 0.0, 2.0),
+    Stroke("push", 0.25, 2.0, 0.0, 0.0),
+    Stroke("push", 0.25, -4.0, 0.0, 3.0),
+    Stroke("push", 0.30, -4.0, 0.0, 3.0),
+    Stroke("push", 0.80, -3.0, 8.0, 6.0),
+    Stroke("push", 0.20, -3.0, 8.0, 6.0),
+    Stroke("push", 0.25, 5.0, 8.0, 3.0),
+    Stroke("push", 0.50, 25.0, 0.0, 0.0),
+    Stroke("push", 0.50, 25.0, 0.0, 0.0),
+]
+
+WET = [  # touch the same place with water, follow the later slide and come back, and return to START
+    Stroke("wet", 0.60, 2.0, 0.0, 0.0),
+    Stroke("wet", 0.20, -1.0, 0.0, 0.0),
+    Stroke("wet", 0.80, -1.0, 0.0, 0.0),
+    Stroke("wet", 0.50, -1.0, 8.0, 3.0),
+    Stroke("wet", 0.50, -1.0, 0.0, 0.0),
+    Stroke("wet", 0.60, 25.0, 0.0, 0.0),
+]
+
+POKE = [  # stabs whose highest speeds are 0.25, 0.5 and 1 m/s: 15/8 of the way over the time
+    Stroke("push", 0.40, 17.0, 0.0, 0.0),
+    Stroke("push", 0.15, -3.0, 0.0, 0.0),
+    Stroke("push", 0.15, 17.0, 0.0, 0.0),
+    Stroke("push", 0.30, 17.0, 0.0, 0.0),
+    Stroke("push", 0.075, -3.0, 0.0, 0.0),
+    Stroke("push", 0.075, 17.0, 0.0, 0.0),
+    Stroke("push", 0.30, 17.0, 0.0, 0.0),
+    Stroke("push", 0.0375, -3.0, 0.0, 0.0),
+    Stroke("push", 0.0375, 17.0, 0.0, 0.0),
+    Stroke("push", 0.50, 25.0, 0.0, 0.0),
+]
+
+PULL = [  # touch, draw outward while sliding up, and away
+    Stroke("pull", 0.60, 2.0, 0.0, 0.0),
+    Stroke("pull", 0.25, -1.5, -4.0, -2.0),
+    Stroke("pull", 0.60, -1.5, -4.0, -2.0),
+    Stroke("pull", 0.60, -1.0, 4.0, 2.0),
+    Stroke("pull", 0.60, 25.0, 0.0, 0.0),
+]
+
+DRY = [stroke._replace(mode="dry") for stroke in WET]
+
+TRACES = {  # file: place, strokes before time zero of the tremor, strokes from there on
+    "press_flank.csv": (HAUNCH, [], PRESS),
+    "wet_press_flank.csv": (HAUNCH, WET, PRESS),
+    "poke.csv": (HAUNCH, [], POKE),
+    "long_session.csv": (HAUNCH, [], WET + PRESS + PULL + DRY + PRESS),
+}
+
+RATE_HZ = 1000
+GRID_MM = 0.06  # what the device resolves
+TREMOR_BAND_HZ = (8.0, 12.0)
+TREMOR_AMPLITUDE_MM = 0.07  # √2 times the root mean square, of each coordinate
+TREMOR_SINES = 6  # of each coordinate, one in each equal part of the band
+DEVICE = (
+    f"synthetic hand at {RATE_HZ} Hz, steps of {GRID_MM} mm, tremor of {TREMOR_AMPLITUDE_MM} mm at "
+    f"{TREMOR_BAND_HZ[0]:g} to {TREMOR_BAND_HZ[1]:g} Hz, by scripts/make_traces.py"
+)
+
+# ---- Vectors and quaternions (x, y, z, w) ----------------------------------------------------------------------
+
+
+def scaled(a, s):
+    return tuple(s * x for x in a)
+
+
+def added(*vectors):
+    return tuple(sum(parts) for parts in zip(*vectors))
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def unit(a):
+    return scaled(a, 1.0 / math.sqrt(dot(a, a)))
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def quaternion_product(p, q):
+    vector = added(scaled(p[:3], q[3]), scaled(q[:3], p[3]), cross(p[:3], q[:3]))
+    return (*vector, p[3] * q[3] - dot(p[:3], q[:3]))
+
+
+def rotation_about(axis, angle):
+    return (*scaled(axis, math.sin(0.5 * angle)), math.cos(0.5 * angle))
+
+
+def rotation_from_z(direction):
+    """Shortest rotation that takes +z to a unit direction; about x when it is −z."""
+    if direction[2] < -1.0 + 1e-12:
+        return (1.0, 0.0, 0.0, 0.0)
+    return unit((*cross((0.0, 0.0, 1.0), direction), 1.0 + direction[2]))
+
+
+# ---- The hand --------------------------------------------------------------------------------------------------
+
+
+def minimum_jerk(s):
+    """Fraction of the way at the fraction s of the time: 10 s³ − 15 s⁴ + 6 s⁵ [Flash & Hogan 1985]."""
+    return s * s * s * (10.0 + s * (6.0 * s - 15.0))
+
+
+def way_at(strokes, time):
+    """Height [mm], slide [mm], tilt [degrees] and mode `time` seconds after the strokes began at START."""
+    origin = START
+    for stroke in strokes:
+        # A sample on the border belongs to the next stroke; half a nanosecond takes up the sum's rounding.
+        if time < stroke.seconds - 5e-10:
+            s = minimum_jerk(max(time, 0.0) / stroke.seconds)
+            ways = (a + s * (b - a) for a, b in zip(origin[2:], stroke[2:]))
+            return (*ways, stroke.mode)
+        time -= stroke.seconds
+        origin = stroke
+    return (*origin[2:], origin.mode)
+
+
+def make_tremor(seed):
+    """Displacement [mm] as a function of time [s]: per coordinate a sum of sines, one in each part of the band."""
+    numbers = random.Random(seed)  # its random() is the same on every version and machine
+    low, high = TREMOR_BAND_HZ
+    sines = [
+        [(low + (high - low) * (part + numbers.random()) / TREMOR_SINES, 2.0 * math.pi * numbers.random())
+         for part in range(TREMOR_SINES)]
+        for _ in range(3)
+    ]
+    amplitude = TREMOR_AMPLITUDE_MM / math.sqrt(TREMOR_SINES)
+
+    def tremor(time):
+        return tuple(amplitude * sum(math.sin(2.0 * math.pi * f * time + phase) for f, phase in axis) for axis in sines)
+
+    return tremor
+
+
+def duration(strokes):
+    return sum(stroke.seconds for stroke in strokes)
+
+
+def make_rows(place, before, after):
+    """The samples of a trace, one line each. The tremor's clock starts after `before`, so that the samples of
+    `after` do not depend on what came first."""
+    normal = unit(place.normal)
+    slide = unit(added(place.slide, scaled(normal, -dot(normal, place.slide))))
+    upright = rotation_from_z(normal)  # the tool's tip lies towards its −z
+    tilt_axis = cross(normal, slide)
+    tremor = make_tremor("argil tremor 1")
+    first = -round(duration(before) * RATE_HZ)
+    last = round(duration(after) * RATE_HZ)
+    for tick in range(first, last + 1):
+        time = tick / RATE_HZ
+        strokes, local = (before, time + duration(before)) if tick < 0 else (after, time)
+        height, slid, tilt, mode = way_at(strokes, local)
+        hand = added(place.contact, scaled(normal, place.tool_radius + height), scaled(slide, slid), tremor(time))
+        # Rotations about one axis: interpolating the angle is the slerp.
+        turn = quaternion_product(rotation_about(tilt_axis, math.radians(tilt)), upright)
+        position = (1e-3 * GRID_MM * round(x / GRID_MM) for x in hand)
+        cells = [f"{(tick - first) / RATE_HZ:.3f}", *(f"{x:.5f}" for x in position), *(f"{q:.6f}" for q in turn), mode]
+        yield ",".join("0.000000" if cell == "-0.000000" else cell for cell in cells) + "\n"
+
+
+def make_trace(place, before, after):
+    """The whole file, as the format in src/device/README.md wants it."""
+    body = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,mode\n" + "".join(make_rows(place, before, after))
+    digest = hashlib.sha256(body.encode()).hexdigest()
+    return f"# argil-trace: 1\n# device: {DEVICE}\n# units: m\n# rate_hz: {RATE_HZ}\n# sha256: {digest}\n{body}"
+
+
+def find_difference(file, text):
+    """What differs between a file and the text that it should hold; nothing when they are equal."""
+    if not file.is_file():
+        return "is missing"
+    found = file.read_bytes().decode(errors="replace")
+    if found == text:
+        return None
+    lines = zip(found.splitlines(), text.splitlines())
+    first = next((i for i, (a, b) in enumerate(lines, start=1) if a != b), "past the end of one")
+    return f"differs from what this script makes, first at line {first}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    folder = Path(__file__).resolve().parent.parent / "traces"
+    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 when a file is not what would be made")
+    parser.add_argument("--out", type=Path, default=folder, metavar="FOLDER", help="default: traces/")
+    options = parser.parse_args()
+    num_different = 0
+    for name, motion in TRACES.items():
+        file = options.out / name
+        text = make_trace(*motion)
+        if options.check:
+            difference = find_difference(file, text)
+            if difference:
+                print(f"{file}: {difference}", file=sys.stderr)
+                num_different += 1
+        else:
+            options.out.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, newline="\n")
+            print(f"{file}: {duration(motion[1]) + duration(motion[2]):g} s")
+    return 1 if num_different else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
