@@ -9,12 +9,13 @@ namespace {
 
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2.0;
 
-double largest_coordinate(const PairPath& path) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < 4; ++i)
-    largest = std::max({largest, path.t0[i].cwiseAbs().maxCoeff(), path.t1[i].cwiseAbs().maxCoeff()});
-  return largest;
-}
+using Four = std::array<Vec3, 4>;
+
+struct Directions {
+  std::array<Vec3, 8> d;
+  std::size_t count = 0;
+  void add(const Vec3& direction) { d[count++] = direction; }
+};
 
 /// Extent of the eight points in space: edge of their bounding box.
 double compute_extent(const PairPath& path) {
@@ -27,72 +28,76 @@ double compute_extent(const PairPath& path) {
   return (high - low).maxCoeff();
 }
 
-/// Difference of the two features' points with parameters u, v at an end of the motion.
-Vec3 evaluate(PairKind kind, const std::array<Vec3, 4>& p, double u, double v) {
-  if (kind == PairKind::vertex_face) return p[0] - (p[1] + u * (p[2] - p[1]) + v * (p[3] - p[1]));
-  return (p[0] + u * (p[1] - p[0])) - (p[2] + v * (p[3] - p[2]));
+/// Number of points of the first feature; the others are the second's.
+std::size_t first_feature_size(PairKind kind) {
+  return kind == PairKind::vertex_face ? 1 : 2;
 }
 
-struct Box {
-  std::array<double, 3> low;    // t, u, v
-  std::array<double, 3> width;  // powers of two, so halving is exact
-};
-
-using Corners = std::array<Vec3, 8>;  // bit 0: t, bit 1: u, bit 2: v
-
-Corners evaluate_corners(PairKind kind, const PairPath& path, const Box& box) {
-  Corners corners;
-  for (std::size_t uv = 0; uv < 4; ++uv) {
-    const double u = box.low[1] + (uv & 1U ? box.width[1] : 0.0);
-    const double v = box.low[2] + (uv & 2U ? box.width[2] : 0.0);
-    const Vec3 at0 = evaluate(kind, path.t0, u, v);
-    const Vec3 at1 = evaluate(kind, path.t1, u, v);
-    corners[2 * uv] = at0 + box.low[0] * (at1 - at0);
-    corners[2 * uv + 1] = at0 + (box.low[0] + box.width[0]) * (at1 - at0);
-  }
-  return corners;
-}
-
-/// How far the difference moves along each parameter, at most over the box's edges.
-std::size_t find_widest(const Corners& corners, double& extent) {
-  std::array<double, 3> span = {0.0, 0.0, 0.0};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t bit = std::size_t{1} << axis;
-    for (std::size_t c = 0; c < 8; ++c)
-      if (!(c & bit))
-        span[axis] = std::max(span[axis], (corners[c | bit] - corners[c]).cwiseAbs().maxCoeff());
-  }
-  const auto widest = std::max_element(span.begin(), span.end());
-  extent = *widest;
-  return static_cast<std::size_t>(widest - span.begin());
-}
-
-bool excludes_zero(const Corners& corners, double tolerance) {
-  Vec3 low = corners[0];
-  Vec3 high = corners[0];
-  for (const Vec3& c : corners) {
-    low = low.cwiseMin(c);
-    high = high.cwiseMax(c);
-  }
-  return (low.array() > tolerance).any() || (high.array() < -tolerance).any();
-}
-
-/// Are the boxes swept by the two features apart on some axis?
+/// Are the boxes swept by the two features apart on some axis? Compares given numbers only: exact.
 bool are_boxes_apart(PairKind kind, const PairPath& path) {
-  const std::size_t split = kind == PairKind::vertex_face ? 1 : 2;
-  Vec3 low_a = path.t0[0].cwiseMin(path.t1[0]);
-  Vec3 high_a = path.t0[0].cwiseMax(path.t1[0]);
-  for (std::size_t i = 1; i < split; ++i) {
-    low_a = low_a.cwiseMin(path.t0[i]).cwiseMin(path.t1[i]);
-    high_a = high_a.cwiseMax(path.t0[i]).cwiseMax(path.t1[i]);
+  const std::size_t split = first_feature_size(kind);
+  std::array<Vec3, 2> low;
+  std::array<Vec3, 2> high;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t side = i < split ? 0 : 1;
+    const bool is_first = i == 0 || i == split;
+    low[side] = path.t0[i].cwiseMin(is_first ? path.t1[i] : low[side].cwiseMin(path.t1[i]).eval());
+    high[side] = path.t0[i].cwiseMax(is_first ? path.t1[i] : high[side].cwiseMax(path.t1[i]).eval());
   }
-  Vec3 low_b = path.t0[split].cwiseMin(path.t1[split]);
-  Vec3 high_b = path.t0[split].cwiseMax(path.t1[split]);
-  for (std::size_t i = split + 1; i < 4; ++i) {
-    low_b = low_b.cwiseMin(path.t0[i]).cwiseMin(path.t1[i]);
-    high_b = high_b.cwiseMax(path.t0[i]).cwiseMax(path.t1[i]);
-  }
-  return (low_a.array() > high_b.array()).any() || (low_b.array() > high_a.array()).any();
+  return (low[0].array() > high[1].array()).any() || (low[1].array() > high[0].array()).any();
+}
+
+/// Two convex features that are apart and not degenerate are apart along one of these: the common normal, and
+/// the normals within the plane to each side of the triangle, or to each edge.
+Directions find_face_directions(PairKind kind, const Four& p) {
+  Directions out;
+  const bool face = kind == PairKind::vertex_face;
+  const Vec3 a = face ? p[2] - p[1] : p[1] - p[0];
+  const Vec3 b = face ? p[3] - p[1] : p[3] - p[2];
+  const Vec3 n = a.cross(b);
+  out.add(n);
+  out.add(n.cross(a));
+  out.add(n.cross(b));
+  if (face) out.add(n.cross(b - a));
+  return out;
+}
+
+/// For parallel edges and triangles without area: the longest edge, two directions across it, and the axes.
+Directions find_degenerate_directions(PairKind kind, const Four& p) {
+  Directions out;
+  Vec3 longest = p[3] - p[2];
+  const Vec3 second = kind == PairKind::vertex_face ? p[2] - p[1] : p[1] - p[0];
+  if (second.squaredNorm() > longest.squaredNorm()) longest = second;
+  if (kind == PairKind::vertex_face && (p[3] - p[1]).squaredNorm() > longest.squaredNorm())
+    longest = p[3] - p[1];
+  Eigen::Index thin = 0;
+  longest.cwiseAbs().minCoeff(&thin);
+  const Vec3 across = longest.cross(Vec3::Unit(thin));
+  out.add(longest);
+  out.add(across);
+  out.add(across.cross(longest));
+  for (Eigen::Index axis = 0; axis < 3; ++axis) out.add(Vec3::Unit(axis));
+  return out;
+}
+
+/// Until which share of [now, 1] do all differences of the features' points keep one sign along d? With fixed
+/// d each difference is linear in time, so its values at `now` and 1 tell. `error` bounds the rounding of one
+/// value for |d|₁ = 1. 0: not apart now.
+double find_separated_share(PairKind kind, const Vec3& d, const Four& now, const Four& end, double error) {
+  const std::size_t split = first_feature_size(kind);
+  const double bound = error * d.cwiseAbs().sum();
+  double share = 1.0;
+  double sign = 0.0;
+  for (std::size_t i = 0; i < split; ++i)
+    for (std::size_t j = split; j < 4; ++j) {
+      const double raw = d.dot(now[i] - now[j]);
+      if (sign == 0.0) sign = raw > 0.0 ? 1.0 : -1.0;
+      const double here = sign * raw;
+      if (!(here > 2.0 * bound)) return 0.0;
+      const double there = sign * d.dot(end[i] - end[j]);
+      if (!(there > bound)) share = std::min(share, (here - 2.0 * bound) / (here - there));
+    }
+  return share;
 }
 
 }  // namespace
@@ -100,9 +105,9 @@ bool are_boxes_apart(PairKind kind, const PairPath& path) {
 std::array<double, 4> compute_coplanarity(PairKind kind, const PairPath& path) {
   // Edge-edge: the same determinant of a1−a0, b1−b0 and b0−a0, written with "face" edges a1−a0, b1−b0.
   const bool face = kind == PairKind::vertex_face;
-  const auto edge1 = [&](const std::array<Vec3, 4>& p) -> Vec3 { return face ? p[2] - p[1] : p[1] - p[0]; };
-  const auto edge2 = [&](const std::array<Vec3, 4>& p) -> Vec3 { return face ? p[3] - p[1] : p[3] - p[2]; };
-  const auto offset = [&](const std::array<Vec3, 4>& p) -> Vec3 { return face ? p[0] - p[1] : p[0] - p[2]; };
+  const auto edge1 = [&](const Four& p) -> Vec3 { return face ? p[2] - p[1] : p[1] - p[0]; };
+  const auto edge2 = [&](const Four& p) -> Vec3 { return face ? p[3] - p[1] : p[3] - p[2]; };
+  const auto offset = [&](const Four& p) -> Vec3 { return face ? p[0] - p[1] : p[0] - p[2]; };
   const Vec3 n0 = edge1(path.t0).cross(edge2(path.t0));
   const Vec3 n1 = edge1(path.t1).cross(edge2(path.t1));
   const Vec3 spin = (edge1(path.t1) - edge1(path.t0)).cross(edge2(path.t1) - edge2(path.t0));
@@ -114,52 +119,50 @@ std::array<double, 4> compute_coplanarity(PairKind kind, const PairPath& path) {
 }
 
 double coplanarity_error_bound(const PairPath& path) {
-  // Differences d̂ of coordinates up to M carry an error ≤ u·2M each against extents up to L; the triple
-  // product of three of them adds fewer than 32 roundings of terms ≤ 6·(2L)³ … the constants below are
-  // rounded up generously.
-  const double extent = 2.0 * compute_extent(path);
-  const double coordinate = 2.0 * largest_coordinate(path);
-  return 128.0 * kUnitRoundoff * extent * extent * (extent + coordinate);
+  // With every coordinate difference at most L: |n₀|∞, |n₁|∞ ≤ 2L², |spin|∞ ≤ 8L², |middle|∞ ≤ 6L², so that a
+  // coefficient sums terms of at most 14·3 L³; on the way to it a term meets at most 14 roundings
+  // (differences of given numbers carry a relative one). 42·14 < 1024. The second summand is for results that
+  // underflow.
+  const double extent = compute_extent(path);
+  return 1024.0 * kUnitRoundoff * extent * extent * extent + 1e-300;
 }
 
 std::optional<double> find_time_of_impact(PairKind kind, const PairPath& path) {
   if (are_boxes_apart(kind, path)) return {};
   const std::array<double, 4> c = compute_coplanarity(kind, path);
-  const double error = coplanarity_error_bound(path);
-  if (*std::min_element(c.begin(), c.end()) > error || *std::max_element(c.begin(), c.end()) < -error)
+  const double coplanarity_error = coplanarity_error_bound(path);
+  if (*std::min_element(c.begin(), c.end()) > coplanarity_error ||
+      *std::max_element(c.begin(), c.end()) < -coplanarity_error)
     return {};
 
-  // evaluate() and the interpolation in t take 6 roundings of values ≤ 4M.
-  const double rounding = 32.0 * kUnitRoundoff * largest_coordinate(path);
-  const double smallest = std::max(kSeparation * compute_extent(path), 4.0 * rounding);
-  constexpr int kMaxBoxes =
-      1 << 16;  // degenerate pairs can touch along a line; beyond this the answer stays conservative
-  constexpr std::size_t kMaxDepth = 192;
-  std::array<Box, kMaxDepth> stack;
-  std::size_t depth = 0;
-  stack[depth++] = {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
-  double earliest = std::numeric_limits<double>::infinity();
-  for (int boxes = 0; depth > 0; ++boxes) {
-    const Box box = stack[--depth];
-    if (box.low[0] >= earliest) continue;
-    if (kind == PairKind::vertex_face && box.low[1] + box.low[2] > 1.0) continue;
-    const Corners corners = evaluate_corners(kind, path, box);
-    if (excludes_zero(corners, rounding)) continue;
-    double extent = 0.0;
-    const std::size_t axis = find_widest(corners, extent);
-    if (extent <= smallest || boxes >= kMaxBoxes || depth + 2 > kMaxDepth) {
-      earliest = box.low[0];
-      continue;
-    }
-    Box first = box;
-    first.width[axis] *= 0.5;
-    Box second = first;
-    second.low[axis] += first.width[axis];
-    stack[depth++] = second;  // the earlier half is looked at first
-    stack[depth++] = first;
+  // Seen from the first point, coordinates are at most L; shifting, interpolating, subtracting and the
+  // product with d make fewer than 12 roundings of at most 2L|d|∞ each.
+  const double error = 32.0 * kUnitRoundoff * compute_extent(path);
+  Four start;
+  Four end;
+  for (std::size_t i = 0; i < 4; ++i) {
+    start[i] = path.t0[i] - path.t0[0];
+    end[i] = path.t1[i] - path.t0[0];
   }
-  if (!std::isfinite(earliest)) return {};
-  return earliest;
+  constexpr int kMaxSteps = 256;  // grazing pairs take about 50; beyond, the answer stays on the safe side
+  constexpr double kFairProgress = 1e-3;  // of the time left; with less, the other directions are tried too
+  double t = 0.0;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    Four now;
+    for (std::size_t i = 0; i < 4; ++i) now[i] = (1.0 - t) * start[i] + t * end[i];
+    double share = 0.0;
+    const auto try_all = [&](const Directions& directions) {
+      for (std::size_t k = 0; k < directions.count && share < 1.0; ++k)
+        share = std::max(share, find_separated_share(kind, directions.d[k], now, end, error));
+    };
+    try_all(find_face_directions(kind, now));
+    if (share < kFairProgress) try_all(find_degenerate_directions(kind, now));
+    if (share >= 1.0) return {};
+    const double later = t + share * (1.0 - t);
+    if (!(later > t)) break;
+    t = later;
+  }
+  return t;
 }
 
 }  // namespace argil::contact
