@@ -7,26 +7,28 @@
 
 namespace argil::mesh {
 
-/// What a reviewer asks of a tet mesh. Lists hold element or vertex numbers, increasing.
+/// What a reviewer asks of a tet mesh. Lists hold element or vertex numbers from 0, increasing.
 struct QualityReport {
   int num_vertices = 0;
   int num_tets = 0;
-  double volume = 0.0;                     ///< [m³]
-  double min_dihedral_degrees = 0.0;
-  double max_dihedral_degrees = 0.0;
-  std::vector<int> inverted;               ///< tets with volume < 0
-  std::vector<int> flat;                   ///< tets whose volume is below round-off of their size
-  std::vector<int> orphan_vertices;        ///< used by no tet
-  std::vector<int> overfull_faces;         ///< tets with a face that three or more tets share
+  double volume = 0.0;                ///< [m³]
+  double min_dihedral_degrees = 0.0;  ///< between faces, inside the tet; 0 when a face has no area
+  double max_dihedral_degrees = 0.0;  ///< 180 when a face has no area
+  std::vector<int> inverted;          ///< tets with volume < 0, beyond round-off
+  std::vector<int> flat;              ///< tets whose volume is below round-off of their size
+  std::vector<int> orphan_vertices;   ///< used by no tet
+  std::vector<int> overfull_faces;    ///< tets with a face that three or more share, or two on the same side
   std::vector<int> non_manifold_vertices;  ///< boundary vertices whose boundary triangles form no single fan
   int num_non_manifold_edges = 0;          ///< boundary edges with other than two boundary triangles
   int num_components = 0;                  ///< parts not connected by faces
 };
 
+/// Vertex numbers must be in range. Nothing else is asked of the mesh.
 QualityReport compute_quality(const TetMesh& mesh);
 
-/// Throws InputError naming the elements when `report` has what a simulation cannot run with: inverted or flat
-/// tets, orphan vertices, overfull faces. A non-manifold boundary is returned as a warning line, else empty.
+/// Throws InputError naming the elements when `report` has what a simulation cannot run with: inverted or
+/// flat tets, orphan vertices, overfull faces. A non-manifold boundary is returned as a warning line, else
+/// empty.
 std::string require_usable(const QualityReport& report, const std::string& file);
 
 /// What a surface lacks of being closed and clean.
@@ -35,10 +37,11 @@ struct SurfaceReport {
   int num_triangles = 0;
   int num_boundary_edges = 0;      ///< edges of one triangle
   int num_non_manifold_edges = 0;  ///< edges of three or more, or of two with the same direction
-  int num_degenerate = 0;          ///< triangles with area below round-off
+  int num_degenerate = 0;          ///< triangles with area below round-off of their size
   bool is_closed() const { return num_boundary_edges == 0 && num_non_manifold_edges == 0; }
 };
 
+/// Triangles that name a vertex twice count as degenerate and have no edges.
 SurfaceReport compute_surface_report(const TriangleMesh& surface);
 
 }  // namespace argil::mesh

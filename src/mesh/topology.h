@@ -16,7 +16,7 @@ struct Topology {
 };
 
 /// Finds faces, neighbours and vertex→tet lists of `mesh`. Vertex numbers must be in range and a face may
-/// belong to at most two tets (checked by the readers; asserted here).
+/// belong to at most two tets (checked by require_usable; asserted here).
 Topology make_topology(const TetMesh& mesh);
 
 /// Volume [m³] of every tet at positions `vertices`.
