@@ -1,0 +1,406 @@
+#!/usr/bin/python3
+"""Draws the body of one or more runs at chosen moments, with the tool and the force that the hand feels.
+
+Usage: render.py A.h5 [B.h5 ...] [--labels A B ...] [--frames before,during,after] [--field saturation] [-o FILE.png]
+
+One row a run, one column a moment. A moment is before (the first frame), wetting (the frame in the middle of the
+wet contact), during (nearest to the largest force while the tool pushes or pulls), after (the last frame), or a
+time in seconds. Fields: saturation, displacement, and on the cage plastic_strain. The pictures are made by VTK
+without a window; where there is no display the script starts a virtual one (Xvfb).
+"""
+import argparse
+import contextlib
+import os
+import shutil
+import subprocess
+from typing import NamedTuple
+
+import argil_plot as ap
+from argil_plot import np, plt
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+
+PANEL_PIXELS = (1280, 960)
+BACKGROUND = (0.965, 0.968, 0.972)
+CLAY = (0.80, 0.56, 0.43)
+TOOL = (0.86, 0.90, 0.94)
+ARROW = (0.10, 0.10, 0.12)
+
+
+class Field(NamedTuple):
+    """How a quantity is named and coloured."""
+
+    title: str
+    colours: LinearSegmentedColormap
+    scale: float = 1.0  # from SI to the title's unit
+    top: float = None  # of the colour bar; the largest value of all panels when None
+    on_cage_only: bool = False
+
+
+# From dry clay to deep water: lightness falls all the way, so the order survives a grey print.
+WET = LinearSegmentedColormap.from_list("wet", (CLAY, (0.52, 0.56, 0.62), (0.13, 0.40, 0.66), (0.04, 0.15, 0.40)))
+STRAINED = LinearSegmentedColormap.from_list("strained", (CLAY, (0.72, 0.33, 0.36), (0.40, 0.12, 0.40), (0.13, 0.04, 0.24)))
+
+FIELDS = {
+    "saturation": Field("saturation S [–]", WET, top=1.0),
+    "displacement": Field("displacement [mm]", STRAINED, scale=1e3),
+    "plastic_strain": Field("plastic strain ‖ε_p‖ [–]", STRAINED, on_cage_only=True),
+}
+
+# ---- What is drawn: read from the file -------------------------------------------------------------------------
+
+
+class Shot:
+    """One moment of a run: surface, field, tool (None where there is none) and force. SI units."""
+
+    def __init__(self, result, frame, field):
+        self.time = float(frame.attrs["time"])
+        mesh, haptic = result["mesh"], result["haptic"]
+        skinned = len(mesh["skin_triangles"]) > 0 and not FIELDS[field].on_cage_only
+        self.points = frame["skin_position" if skinned else "position"][:]
+        self.triangles = mesh["skin_triangles" if skinned else "surface_triangles"][:]
+        self.values = FIELDS[field].scale * point_values(result, frame, field, skinned)
+        self.force, self.tool_points = np.zeros(3), None
+        self.tool_triangles = mesh["tool_triangles"][:]
+        if len(haptic["time"]) > 0 and len(self.tool_triangles) > 0:
+            sample = min(np.searchsorted(haptic["time"][:], self.time - 1e-9), len(haptic["time"]) - 1)
+            self.tool_position = haptic["tool_position"][sample]
+            turned = mesh["tool_vertices"][:] @ rotation_matrix(haptic["tool_orientation"][sample]).T
+            self.tool_points = turned + self.tool_position
+            self.force = haptic["force"][sample]
+
+
+def rotation_matrix(quaternion):
+    """Of a unit quaternion x, y, z, w."""
+    x, y, z, w = quaternion
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+
+
+def point_values(result, frame, field, skinned):
+    """The field at the vertices that are drawn. What the file holds per tet is averaged around each cage vertex."""
+    if field == "displacement":
+        name = "skin_position" if skinned else "position"
+        return np.linalg.norm(frame[name][:] - ap.frames_of(result)[0][name][:], axis=1)
+    if skinned:
+        return frame["skin_saturation"][:]
+    per_tet = frame["plastic_strain_norm" if field == "plastic_strain" else "saturation"][:]
+    tets = result["mesh/tets"][:]
+    num_points = len(frame["position"])
+    total = np.bincount(tets.ravel(), weights=np.repeat(per_tet, 4), minlength=num_points)
+    return total / np.maximum(np.bincount(tets.ravel(), minlength=num_points), 1)
+
+
+def contact_force(result, moment):
+    """Size of the force [N] at each haptic tick in which the tool pushes or pulls (during), wets or dries (wetting)."""
+    return ap.force_norm(result) * (ap.is_deforming(result) == (moment == "during"))
+
+
+def find_time(result, moment):
+    """Time [s] of a moment's name, or of a number of seconds."""
+    if moment in ("before", "after"):
+        return ap.frames_of(result)[0 if moment == "before" else -1].attrs["time"]
+    if moment in ("during", "wetting"):
+        force = contact_force(result, moment)
+        if not np.max(force, initial=0.0) > 0.0:
+            ap.refuse(f"{result.filename}: no contact, so there is no moment '{moment}'")
+        time = result["haptic/time"][:]
+        return time[np.argmax(force)] if moment == "during" else np.median(time[force > 0.0])
+    try:
+        return float(moment)
+    except ValueError:
+        ap.refuse(f"moment '{moment}': use before, wetting, during, after or seconds")
+
+
+def default_moments(file):
+    with ap.open_result(file) as result:
+        touched = np.max(contact_force(result, "during"), initial=0.0) > 0.0
+    return ["before", "during", "after"] if touched else ["before", "after"]
+
+
+def read_shots(file, moments, field):
+    with ap.open_result(file) as result:
+        frames = ap.frames_of(result)
+        times = np.array([frame.attrs["time"] for frame in frames])
+        nearest = [frames[np.argmin(np.abs(times - find_time(result, moment)))] for moment in moments]
+        return [Shot(result, frame, field) for frame in nearest]
+
+
+# ---- How it is drawn: VTK --------------------------------------------------------------------------------------
+
+
+def poly_data(vtk, points, triangles):
+    from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+
+    vertices = vtk.vtkPoints()
+    vertices.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=float), deep=True))
+    cells = vtk.vtkCellArray()
+    offsets = numpy_to_vtkIdTypeArray(np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int64), deep=True)
+    cells.SetData(offsets, numpy_to_vtkIdTypeArray(np.ascontiguousarray(triangles, dtype=np.int64).ravel(), deep=True))
+    data = vtk.vtkPolyData()
+    data.SetPoints(vertices)
+    data.SetPolys(cells)
+    return data
+
+
+def smooth_mapper(vtk, data):
+    """Maps a surface with one normal a vertex, except at the edges of boxes: shading without facets."""
+    normals = vtk.vtkPolyDataNormals()
+    normals.SetInputData(data)
+    normals.SetFeatureAngle(60)
+    normals.ConsistencyOff()
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputConnection(normals.GetOutputPort())
+    mapper.ScalarVisibilityOff()
+    return mapper
+
+
+def body_actor(vtk, shot, colours, top):
+    from vtk.util.numpy_support import numpy_to_vtk
+
+    data = poly_data(vtk, shot.points, shot.triangles)
+    rgb = (255.0 * colours(np.clip(shot.values / top, 0.0, 1.0))[:, :3]).round().astype(np.uint8)
+    data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(rgb), deep=True))
+    mapper = smooth_mapper(vtk, data)
+    mapper.ScalarVisibilityOn()
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetAmbient(0.26)
+    actor.GetProperty().SetDiffuse(0.78)
+    actor.GetProperty().SetSpecular(0.10)
+    actor.GetProperty().SetSpecularPower(18)
+    return actor
+
+
+def tool_actor(vtk, shot):
+    actor = vtk.vtkActor()
+    actor.SetMapper(smooth_mapper(vtk, poly_data(vtk, shot.tool_points, shot.tool_triangles)))
+    actor.GetProperty().SetColor(*TOOL)
+    actor.GetProperty().SetOpacity(0.42)  # the dent under the tool is what one wants to see
+    actor.GetProperty().SetSpecular(0.5)
+    actor.GetProperty().SetSpecularPower(40)
+    return actor
+
+
+def arrow_actor(vtk, shot, length):
+    """The force on the hand, from the hand's point, `length` metres long."""
+    direction = shot.force / np.linalg.norm(shot.force)
+    side = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
+    side /= np.linalg.norm(side)
+    columns = np.stack([direction, side, np.cross(direction, side)], axis=1) * length
+    matrix = np.eye(4)
+    matrix[:3, :3] = columns
+    matrix[:3, 3] = shot.tool_position
+    source = vtk.vtkArrowSource()
+    source.SetTipResolution(48)
+    source.SetShaftResolution(32)
+    source.SetTipLength(0.32)
+    source.SetTipRadius(0.085)
+    source.SetShaftRadius(0.03)
+    transform = vtk.vtkTransform()
+    transform.SetMatrix(matrix.ravel())
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputConnection(source.GetOutputPort())
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    actor.SetUserTransform(transform)
+    actor.GetProperty().SetColor(*ARROW)
+    return actor
+
+
+def add_lights(vtk, renderer):
+    """Key from above the camera's left, fill from the right, rim from behind; all fixed to the camera."""
+    for position, brightness, colour in (((-0.55, 0.75, 1.1), 0.92, (1.0, 0.985, 0.96)),
+                                         ((1.0, 0.1, 0.6), 0.34, (0.93, 0.96, 1.0)),
+                                         ((0.3, 0.8, -1.0), 0.35, (1.0, 1.0, 1.0))):
+        light = vtk.vtkLight()
+        light.SetLightTypeToCameraLight()
+        light.SetPosition(*position)
+        light.SetFocalPoint(0, 0, 0)
+        light.SetIntensity(brightness)
+        light.SetColor(*colour)
+        renderer.AddLight(light)
+
+
+class Camera:
+    """Parallel projection, three-quarter view from the side on which the tools touch, the same for all panels."""
+
+    def __init__(self, bounds, tool_centre, zoom):
+        centre = bounds.mean(axis=0)
+        side = -1.0 if tool_centre[1] <= centre[1] else 1.0
+        away = np.array([0.50, 0.92 * side, 0.36])
+        self.direction = away / np.linalg.norm(away)
+        right = np.cross([0.0, 0.0, 1.0], self.direction)
+        right /= np.linalg.norm(right)
+        up = np.cross(self.direction, right)
+        corners = np.array([[bounds[i, 0], bounds[j, 1], bounds[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+        width, height = np.ptp(corners @ right), np.ptp(corners @ up)
+        aspect = PANEL_PIXELS[0] / PANEL_PIXELS[1]
+        self.half_height = 0.5 * max(height, width / aspect) * 1.16 / zoom
+        self.focus = centre if zoom == 1.0 else tool_centre
+        self.reach = 1.5 * np.linalg.norm(np.ptp(bounds, axis=0))
+        self.distance = 2.0 * self.reach
+
+    def apply(self, camera):
+        camera.ParallelProjectionOn()
+        camera.SetFocalPoint(*self.focus)
+        camera.SetPosition(*(self.focus + self.distance * self.direction))
+        camera.SetViewUp(0, 0, 1)
+        camera.SetParallelScale(self.half_height)
+        # No wider than needed: the occlusion pass compares depths, and coarse ones draw contour lines.
+        camera.SetClippingRange(self.distance - self.reach, self.distance + self.reach)
+
+
+def make_window(vtk):
+    window = vtk.vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(0)  # does not work through passes; the sheet scales the image down instead
+    window.SetSize(*PANEL_PIXELS)
+    return window
+
+
+def picture(vtk, window, actors, camera, occlusion_radius):
+    """Renders actors into an off-screen window; an image as rows × columns × 3 bytes."""
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    renderer = vtk.vtkRenderer()
+    renderer.SetBackground(*BACKGROUND)
+    renderer.AutomaticLightCreationOff()
+    add_lights(vtk, renderer)
+    for actor in actors:
+        renderer.AddActor(actor)
+    camera.apply(renderer.GetActiveCamera())
+    shade_creases(vtk, renderer, occlusion_radius)
+    window.AddRenderer(renderer)
+    window.Render()
+    grab = vtk.vtkWindowToImageFilter()
+    grab.SetInput(window)
+    grab.ReadFrontBufferOff()
+    grab.Update()
+    window.RemoveRenderer(renderer)
+    image = grab.GetOutput()
+    columns, rows, _ = image.GetDimensions()
+    pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(rows, columns, 3)
+    return pixels[::-1].copy()  # VTK keeps and reuses its own
+
+
+def shade_creases(vtk, renderer, radius):
+    """Ambient occlusion within `radius` [m]: creases and dents darken as they do to the eye."""
+    occlusion = vtk.vtkSSAOPass()
+    occlusion.SetRadius(radius)
+    occlusion.SetBias(0.04 * radius)
+    occlusion.SetKernelSize(48)
+    occlusion.BlurOn()
+    occlusion.SetDelegatePass(vtk.vtkRenderStepsPass())
+    renderer.SetPass(occlusion)
+
+
+# ---- The sheet -------------------------------------------------------------------------------------------------
+
+
+def render_rows(rows, field, zoom):
+    """Images of all shots, with one camera, one colour scale and one force scale. Returns images and the scale's top."""
+    import vtk
+
+    shots = [shot for row in rows for shot in row]
+    bounds = np.array([np.min([s.points.min(axis=0) for s in shots], axis=0),
+                       np.max([s.points.max(axis=0) for s in shots], axis=0)])
+    strongest = max(shots, key=lambda shot: np.linalg.norm(shot.force))
+    largest_force = np.linalg.norm(strongest.force)
+    top = FIELDS[field].top or max(max(shot.values.max() for shot in shots), 1e-12)
+    touched = bounds.mean(axis=0) if strongest.tool_points is None else strongest.tool_position
+    camera = Camera(bounds, touched, zoom)
+    size = np.ptp(bounds, axis=0).max()
+
+    def actors_of(shot):
+        actors = [body_actor(vtk, shot, FIELDS[field].colours, top)]
+        if shot.tool_points is not None:
+            actors.append(tool_actor(vtk, shot))
+        force = np.linalg.norm(shot.force)
+        if force > 1e-3 * largest_force > 0.0:
+            actors.append(arrow_actor(vtk, shot, 0.9 * camera.half_height * force / largest_force))
+        return actors
+
+    window = make_window(vtk)  # one for all: a virtual display ends with its last window
+    return [[picture(vtk, window, actors_of(shot), camera, 0.08 * size) for shot in row] for row in rows], top
+
+
+def compose(images, rows, labels, field, top):
+    """Puts the images on one sheet with their labels and one colour bar."""
+    num_rows, num_columns = len(images), len(images[0])
+    panel_width = min(90.0, 240.0 / num_columns) * ap.MILLIMETRES
+    panel_height = panel_width * PANEL_PIXELS[1] / PANEL_PIXELS[0]
+    figure, panels = plt.subplots(num_rows, num_columns, squeeze=False,
+                                  figsize=(panel_width * num_columns + 0.65, panel_height * num_rows),
+                                  facecolor=BACKGROUND, gridspec_kw={"hspace": 0, "wspace": 0})
+    figure.get_layout_engine().set(w_pad=0.01, h_pad=0.01, wspace=0, hspace=0)
+    for axes_row, image_row, shot_row, label in zip(panels, images, rows, labels):
+        for axes, image, shot in zip(axes_row, image_row, shot_row):
+            axes.imshow(image, interpolation="lanczos")
+            axes.set_axis_off()
+            force = np.linalg.norm(shot.force)
+            words = f"{label}, t = {shot.time:.2f} s" + (f", {force:.2f} N" if force > 0.0 else "")
+            axes.text(0.03, 0.97, words, transform=axes.transAxes, va="top", color="#222222", fontsize=9)
+    scale = ScalarMappable(Normalize(0.0, top), FIELDS[field].colours)
+    bar = figure.colorbar(scale, ax=panels, shrink=0.6 if num_rows > 1 else 0.75, aspect=22, pad=0.01)
+    bar.set_label(FIELDS[field].title)
+    bar.outline.set_visible(False)
+    return figure
+
+
+@contextlib.contextmanager
+def display():
+    """VTK of Debian draws through an X server, also without a window: a virtual one where there is none."""
+    if os.environ.get("DISPLAY"):
+        yield
+        return
+    if not shutil.which("Xvfb"):
+        ap.refuse("no display and no Xvfb; scripts/setup installs it (package xvfb)")
+    # The server picks a free number itself and writes it when it is ready: two renderings do not get in their way.
+    read_end, write_end = os.pipe()
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(write_end), "-screen", "0", "1280x1024x24", "-nolisten", "tcp",
+                               "-terminate"],  # with its last client, also when that was killed
+                              pass_fds=[write_end], stderr=subprocess.DEVNULL)
+    os.close(write_end)
+    try:
+        with os.fdopen(read_end) as pipe:
+            number = pipe.readline().strip()
+        if not number:
+            ap.refuse("Xvfb did not start")
+        os.environ["DISPLAY"] = ":" + number
+        yield
+    finally:
+        os.environ.pop("DISPLAY", None)
+        server.terminate()
+        server.wait()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("files", nargs="+", metavar="RESULT.h5")
+    parser.add_argument("--labels", nargs="+", help="one a file; default: the files' names")
+    parser.add_argument("--frames", metavar="MOMENTS", help="before, wetting, during, after or seconds, with commas "
+                        "between; default: before,during,after, without the second where nothing was touched")
+    parser.add_argument("--field", default="saturation", choices=FIELDS, help="default: %(default)s")
+    parser.add_argument("--zoom", type=float, default=1.0, help="more than 1: look at the tool from closer")
+    parser.add_argument("-o", "--output", default="body.png", metavar="FILE.png", help="default: %(default)s")
+    options = parser.parse_args()
+    if not options.zoom >= 1.0:
+        ap.refuse(f"zoom {options.zoom:g}: give 1 or more")
+    labels = ap.labels_for(options.files, options.labels)
+    try:
+        import vtk  # noqa: F401
+    except ImportError:
+        ap.refuse("VTK is missing, so there is no picture; scripts/setup installs it (package python3-vtk9)")
+    moments = options.frames.split(",") if options.frames else default_moments(options.files[0])
+    rows = [read_shots(file, moments, options.field) for file in options.files]
+    with display():
+        images, top = render_rows(rows, options.field, options.zoom)
+    figure = compose(images, rows, labels, options.field, top)
+    figure.savefig(options.output, dpi=200, facecolor=BACKGROUND, metadata={"Software": None})
+    print(options.output)
+
+
+if __name__ == "__main__":
+    main()
