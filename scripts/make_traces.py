@@ -65,10 +65,12 @@ PRESS = [  # three presses, each deeper and held, a slide, and away
 
 WET = [  # touch the same place with water, follow the later slide and come back, and return to START
     Stroke("wet", 0.60, 2.0, 0.0, 0.0),
-    Stroke("wet", 0.20, -1.0, 0.0, 0.0),
-    Stroke("wet", 0.80, -1.0, 0.0, 0.0),
-    Stroke("wet", 0.50, -1.0, 8.0, 3.0),
-    Stroke("wet", 0.50, -1.0, 0.0, 0.0),
+    Stroke("wet", 0.20, -0.3, 0.0, 0.0),
+    Stroke("wet", 1.00, -0.3, 0.0, 0.0),
+    Stroke("wet", 0.80, -0.3, 8.0, 3.0),
+    Stroke("wet", 1.20, -0.3, -6.0, -2.0),
+    Stroke("wet", 0.60, -0.3, 0.0, 0.0),
+    Stroke("wet", 0.60, -0.3, 0.0, 0.0),
     Stroke("wet", 0.60, 25.0, 0.0, 0.0),
 ]
 
