@@ -12,10 +12,11 @@ namespace argil::mesh {
 namespace {
 
 // Where the surface is finer than the lattice, snapped nodes can join two sheets in a point or an edge. Such
-// nodes go back to their places; without any snapped node the boundary is manifold, so this ends.
-StuffedLattice stuff_without_pinches(CutLattice& cut_lattice, StuffingPart part, Triangles& boundary) {
+// nodes go back to their places; without any snapped node the boundary is manifold, so this ends. Returns the
+// layer of tets at the surface.
+StuffedLattice stuff_without_pinches(CutLattice& cut_lattice, Triangles& boundary) {
   while (true) {
-    StuffedLattice stuffed = stuff_lattice(cut_lattice, part);
+    StuffedLattice stuffed = stuff_lattice(cut_lattice, StuffingPart::surface_layer);
     boundary = find_surface_faces(stuffed);
     std::vector<int> pinched;
     for (const int vertex : find_non_manifold_vertices(boundary, stuffed.mesh.num_vertices()))
@@ -74,7 +75,8 @@ double smallest_quality(const TriangleMesh& mesh, const std::vector<int>& around
 TetMesh stuff_isosurface(const ImplicitSurface& surface, double cell_size) {
   CutLattice cut_lattice(surface, cell_size);
   Triangles boundary;
-  return stuff_without_pinches(cut_lattice, StuffingPart::all, boundary).mesh;
+  stuff_without_pinches(cut_lattice, boundary);
+  return stuff_lattice(cut_lattice, StuffingPart::all).mesh;
 }
 
 namespace {
@@ -125,7 +127,7 @@ void relax(const ImplicitSurface& surface, double cell_size, TriangleMesh& mesh)
 TriangleMesh extract_isosurface(const ImplicitSurface& surface, double cell_size) {
   CutLattice cut_lattice(surface, cell_size);
   Triangles boundary;
-  const StuffedLattice stuffed = stuff_without_pinches(cut_lattice, StuffingPart::surface_layer, boundary);
+  const StuffedLattice stuffed = stuff_without_pinches(cut_lattice, boundary);
   TriangleMesh mesh = compact(stuffed.mesh.vertices, boundary);
   relax(surface, cell_size, mesh);
   return mesh;
