@@ -1,9 +1,7 @@
 #include "embed/cage.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -14,6 +12,7 @@
 #include "embed/tet_locator.h"
 #include "embed/triangle_tree.h"
 #include "mesh/implicit.h"
+#include "mesh/quality.h"
 #include "mesh/topology.h"
 
 namespace argil::embed {
@@ -26,7 +25,6 @@ constexpr double kLargestOffset =
     1.2;                       // at 0.56 every skin point has an inside node, hence this is never needed
 constexpr double kBand = 1.5;  // beyond this distance only the side matters
 constexpr int kRounds = 40;
-constexpr int kGuesses = 3;  // rounds that look for the lattice alone
 constexpr double kTetsPerCube = 12.0;
 constexpr double kCountTolerance = 0.15;
 
@@ -69,12 +67,15 @@ mesh::ImplicitSurface make_thick_surface(const TriangleTree& tree, const Points&
   mesh::ImplicitSurface thick;
   thick.lower = vertices.rowwise().minCoeff() - Vec3::Constant(reach);
   thick.upper = vertices.rowwise().maxCoeff() + Vec3::Constant(reach);
-  thick.value = [&tree, cell_size](const Vec3& x) {
+  const Vec3 lower = thick.lower;
+  const Vec3 upper = thick.upper;
+  thick.value = [&tree, cell_size, lower, upper](const Vec3& x) {
     const double distance = tree.compute_distance(x, kBand * cell_size);
     if (distance < 0.0) return distance;
+    const double outside_box = (lower - x).cwiseMax(x - upper).maxCoeff();  // stacked sheets wind far round
     const double winding =
         std::abs(tree.compute_winding_number(x));  // a surface turned inside out counts as well
-    return std::min(distance, (0.5 - winding) * cell_size);
+    return std::min(distance, std::max((0.5 - winding) * cell_size, outside_box));
   };
   return thick;
 }
@@ -149,40 +150,52 @@ std::vector<int> find_bad_vertices(const mesh::TriangleMesh& skin, const mesh::T
   throw InputError(name, "target_tets", problem.str(), "ask for more tets");
 }
 
-// Smallest and largest angle between two faces of a tet [degrees].
-std::pair<double, double> compute_dihedral_range(const mesh::TetMesh& mesh) {
-  double largest_cosine = -1.0;
-  double smallest_cosine = 1.0;
-  for (int t = 0; t < mesh.num_tets(); ++t) {
-    const Vec3 a = mesh.vertices.col(mesh.tets(0, t));
-    const Vec3 u = mesh.vertices.col(mesh.tets(1, t)) - a;
-    const Vec3 v = mesh.vertices.col(mesh.tets(2, t)) - a;
-    const Vec3 w = mesh.vertices.col(mesh.tets(3, t)) - a;
-    const std::array<Vec3, 4> normal = {(v - u).cross(w - u).normalized(), w.cross(v).normalized(),
-                                        u.cross(w).normalized(), v.cross(u).normalized()};  // outward
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i + 1; j < 4; ++j) {
-        const double cosine = std::clamp(-normal[i].dot(normal[j]), -1.0, 1.0);
-        largest_cosine = std::max(largest_cosine, cosine);
-        smallest_cosine = std::min(smallest_cosine, cosine);
-      }
-  }
-  const double degrees = 180.0 / std::numbers::pi;
-  return {std::acos(largest_cosine) * degrees, std::acos(smallest_cosine) * degrees};
-}
-
 Cage finish(mesh::TetMesh mesh, double cell_size, const Field& offset, int num_vertices) {
-  const auto [min_dihedral, max_dihedral] = compute_dihedral_range(mesh);
+  const mesh::QualityReport quality = mesh::compute_quality(mesh);
   Cage cage;
   cage.report.num_tets = mesh.num_tets();
   cage.report.cell_size = cell_size;
   cage.report.offset = kBaseOffset * cell_size;
   cage.report.max_offset = offset.maxCoeff() * cell_size;
-  cage.report.min_dihedral_degrees = min_dihedral;
-  cage.report.max_dihedral_degrees = max_dihedral;
+  cage.report.min_dihedral_degrees = quality.min_dihedral_degrees;
+  cage.report.max_dihedral_degrees = quality.max_dihedral_degrees;
   cage.report.enclosed_vertices = num_vertices;
   cage.mesh = std::move(mesh);
   return cage;
+}
+
+// Lattice on which body and thickened skin together take about the wanted number of tets: the root h of
+// N h³ = 12 (V + A h/2), with the volume V and the area A that the triangles enclose and have.
+double guess_cell_size(const mesh::TriangleMesh& skin, int target_tets) {
+  const Vec3 lower = skin.vertices.rowwise().minCoeff();
+  const Vec3 extent = skin.vertices.rowwise().maxCoeff() - lower;
+  double volume = 0.0;
+  double area = 0.0;
+  for (int t = 0; t < skin.num_triangles(); ++t) {
+    const Vec3 a = skin.vertices.col(skin.triangles(0, t)) - lower;
+    const Vec3 b = skin.vertices.col(skin.triangles(1, t)) - lower;
+    const Vec3 c = skin.vertices.col(skin.triangles(2, t)) - lower;
+    volume += a.dot(b.cross(c)) / 6.0;
+    area += 0.5 * (b - a).cross(c - a).norm();
+  }
+  volume = std::min(std::abs(volume), extent.prod());
+  double high = extent.maxCoeff();
+  double low = 0.0;
+  constexpr int kHalvings = 40;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double h = 0.5 * (low + high);
+    (target_tets * h * h * h > kTetsPerCube * (volume + 0.5 * area * h) ? high : low) = h;
+  }
+  return high;
+}
+
+void require_room(const mesh::ImplicitSurface& thick, double cell_size, const std::string& name) {
+  constexpr double kMostCubes = 1e8;
+  const double num_cubes = ((thick.upper - thick.lower).array() / cell_size + 4.0).prod();
+  if (!(num_cubes <= kMostCubes))
+    throw InputError(name, "target_tets",
+                     "the surface is so thin in its box that the lattice needs more than 1e8 cubes",
+                     "ask for fewer tets or cut the surface into parts");
 }
 
 }  // namespace
@@ -192,31 +205,26 @@ Cage make_cage(const mesh::TriangleMesh& surface, const CageOptions& options, co
   const mesh::TriangleMesh skin = with_all_vertices(surface);
   TriangleTree tree(skin);
   Field offset = Field::Constant(skin.num_vertices(), kBaseOffset);  // in cube edges
-  const Vec3 extent = skin.vertices.rowwise().maxCoeff() - skin.vertices.rowwise().minCoeff();
-  // First guess: a tenth of the box is full. A sheet has no volume, hence the longest edge has a say.
-  double cell_size = std::cbrt(std::max(0.1 * extent.prod(), 1e-4 * std::pow(extent.maxCoeff(), 3)) *
-                               kTetsPerCube / options.target_tets);
+  double cell_size = guess_cell_size(skin, options.target_tets);
   std::vector<int> bad;
   int num_tets = 0;
   for (int round = 0; round < kRounds; ++round) {
     tree.set_radius(offset * cell_size);
     const mesh::ImplicitSurface thick =
         make_thick_surface(tree, skin.vertices, offset.maxCoeff() * cell_size, cell_size);
+    require_room(thick, cell_size, name);
     mesh::TetMesh mesh = mesh::stuff_isosurface(thick, cell_size);
     num_tets = mesh.num_tets();
     const double ratio = static_cast<double>(std::max(num_tets, 1)) / options.target_tets;
-    bad.clear();
-    // The first guesses of the lattice may be far off and tell nothing about the offset.
-    const bool is_telling = round < kGuesses ? std::abs(ratio - 1.0) < 0.5 : ratio < 3.0;
-    if (is_telling) bad = find_bad_vertices(skin, mesh);
     const double count_error = std::abs(ratio - 1.0);
+    bad = find_bad_vertices(skin, mesh);
     const double wanted = round < kRounds / 2 ? 0.5 * kCountTolerance : kCountTolerance;
-    if (is_telling && bad.empty() && count_error <= wanted)
+    if (bad.empty() && count_error <= wanted)
       return finish(std::move(mesh), cell_size, offset, skin.num_vertices());
     for (const int v : bad) offset(v) += kOffsetStep;
     if (offset.maxCoeff() > kLargestOffset) break;
     if (count_error > (bad.empty() ? wanted : 0.8 * kCountTolerance))
-      cell_size *= std::clamp(std::cbrt(ratio), 0.5, 2.0);
+      cell_size *= std::clamp(std::cbrt(ratio), 0.8, 1.5);
   }
   give_up(name, options, bad.size(), num_tets);
 }

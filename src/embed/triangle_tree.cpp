@@ -13,8 +13,8 @@ namespace {
 constexpr int kLeafSize = 4;
 constexpr int kMaxDepth = 64;  // halving 2³¹ triangles takes 31 levels
 
-// A group looks like one dipole from beyond twice its reach; the winding number is then right to about 1 %,
-// and only whether it passes a half matters.
+// A group looks like one dipole from beyond this many times its reach. Winding numbers are then right to a
+// few hundredths, and only whether they pass a half matters.
 constexpr double kFarFactor = 2.0;
 
 double compute_box_distance(const Vec3& lower, const Vec3& upper, const Vec3& x) {
@@ -127,7 +127,12 @@ void TriangleTree::summarise(Node& node) const {
     area += area_normal.norm();
   }
   node.centre = area > 0.0 ? Vec3(moment / area) : Vec3(0.5 * (node.lower + node.upper));
-  node.reach = (node.upper - node.centre).cwiseMax(node.centre - node.lower).norm();
+  node.reach = 0.0;
+  for (int i = node.first; i < node.first + node.count; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const int v = m_surface.triangles(k, m_order[static_cast<std::size_t>(i)]);
+      node.reach = std::max(node.reach, (m_surface.vertices.col(v) - node.centre).norm());
+    }
 }
 
 void TriangleTree::set_radius(const Field& radius) {

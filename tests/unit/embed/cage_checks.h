@@ -4,46 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
 #include <string>
-#include <vector>
 
 #include "embed/cage.h"
 #include "embed/embedding.h"
 #include "support/mesh_measures.h"
 
 namespace argil::embed {
-
-inline mesh::TriangleMesh read_obj(
-    const std::string& file) {  // v and f lines with v/t/n corners, polygons fanned
-  std::ifstream in(file);
-  std::vector<Vec3> points;
-  std::vector<Eigen::Vector3i> triangles;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream values(line);
-    std::string key;
-    values >> key;
-    if (key == "v") {
-      Vec3 x;
-      values >> x(0) >> x(1) >> x(2);
-      points.push_back(x);
-    } else if (key == "f") {
-      std::vector<int> corners;
-      for (std::string corner; values >> corner;) corners.push_back(std::stoi(corner) - 1);
-      for (std::size_t i = 2; i < corners.size(); ++i)
-        triangles.emplace_back(corners[0], corners[i - 1], corners[i]);
-    }
-  }
-  mesh::TriangleMesh surface;
-  surface.vertices.resize(3, static_cast<Eigen::Index>(points.size()));
-  surface.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
-  for (std::size_t i = 0; i < points.size(); ++i)
-    surface.vertices.col(static_cast<Eigen::Index>(i)) = points[i];
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    surface.triangles.col(static_cast<Eigen::Index>(i)) = triangles[i];
-  return surface;
-}
 
 inline void expect_good_cage(const mesh::TriangleMesh& surface, int target, const std::string& name) {
   SCOPED_TRACE(testing::Message() << name << ", " << target);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "mesh/readers.h"
 #include "mesh/shapes.h"
 #include "support/shared_data.h"
 #include "unit/embed/cage_checks.h"
@@ -17,14 +18,15 @@ namespace {
 
 TEST(MakeCage, EnclosesAStandingFigure) {
   ARGIL_NEED_SHARED_DATA("surface/Animated_Human.obj");
-  const mesh::TriangleMesh surface = read_obj(test::shared_data("surface/Animated_Human.obj"));
+  const mesh::TriangleMesh surface =
+      mesh::read_triangle_mesh(test::shared_data("surface/Animated_Human.obj"));
   ASSERT_EQ(surface.num_triangles(), 1578);
   for (const int target : {2000, 10000}) expect_good_cage(surface, target, "Animated_Human.obj");
 }
 
 TEST(MakeCage, EnclosesADinosaurWithHolesAndDegenerateFaces) {
   ARGIL_NEED_SHARED_DATA("surface/Stegosaurus.obj");
-  const mesh::TriangleMesh surface = read_obj(test::shared_data("surface/Stegosaurus.obj"));
+  const mesh::TriangleMesh surface = mesh::read_triangle_mesh(test::shared_data("surface/Stegosaurus.obj"));
   ASSERT_EQ(surface.num_vertices(), 1141);
   for (const int target : {2000, 10000}) expect_good_cage(surface, target, "Stegosaurus.obj");
 }

@@ -6,12 +6,10 @@
 
 #include <fstream>
 #include <limits>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "base/error.h"
 #include "base/rng.h"
+#include "mesh/readers.h"
 #include "mesh/shapes.h"
 #include "support/shared_data.h"
 
@@ -120,57 +118,10 @@ TEST(RegionOfInfluence, FallsLinearlyFromOneAtTheToolToZeroAtTheRadius) {
   EXPECT_DOUBLE_EQ(out(3), 0.0);
 }
 
-// The turtle's mesh, surface and weights as Vega FEM distributes them.
-mesh::TetMesh read_turtle(const std::string& file) {
-  std::ifstream in(file);
-  std::string line;
-  const auto skip_to = [&](const std::string& start) {
-    while (std::getline(in, line) && line.rfind(start, 0) != 0) {
-    }
-  };
-  mesh::TetMesh mesh;
-  int count = 0;
-  int number = 0;
-  skip_to("*VERTICES");
-  std::getline(in, line);
-  std::istringstream(line) >> count;
-  mesh.vertices.resize(3, count);
-  for (int v = 0; v < count; ++v) {
-    std::getline(in, line);
-    std::istringstream(line) >> number >> mesh.vertices(0, v) >> mesh.vertices(1, v) >> mesh.vertices(2, v);
-  }
-  skip_to("TET");
-  std::getline(in, line);
-  std::istringstream(line) >> count;
-  mesh.tets.resize(4, count);
-  for (int t = 0; t < count; ++t) {
-    std::getline(in, line);
-    std::istringstream values(line);
-    values >> number;
-    for (int i = 0; i < 4; ++i) values >> mesh.tets(i, t);
-  }
-  mesh.tets.array() -= 1;
-  return mesh;
-}
-
-Points read_obj_vertices(const std::string& file) {
-  std::ifstream in(file);
-  std::vector<Vec3> points;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream values(line);
-    std::string key;
-    Vec3 x;
-    if (values >> key && key == "v" && values >> x(0) >> x(1) >> x(2)) points.push_back(x);
-  }
-  Points result(3, static_cast<Eigen::Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) result.col(static_cast<Eigen::Index>(i)) = points[i];
-  return result;
-}
-
 TEST(Embedding, GivesTheWeightsThatVegaFemPublishedForItsTurtle) {
   ARGIL_NEED_SHARED_DATA("tets/turtle.interp");
-  const mesh::TetMesh cage = read_turtle(test::shared_data("tets/turtle-volumetric-homogeneous.veg"));
-  const Points points = read_obj_vertices(test::shared_data("tets/turtle.obj"));
+  const mesh::TetMesh cage = mesh::read_tet_mesh(test::shared_data("tets/turtle-volumetric-homogeneous.veg"));
+  const Points points = mesh::read_triangle_mesh(test::shared_data("tets/turtle.obj")).vertices;
   ASSERT_EQ(cage.num_tets(), 1185);
   ASSERT_EQ(points.cols(), 1961);
   const Embedding embedding = make_embedding(cage, points, "turtle.obj");
