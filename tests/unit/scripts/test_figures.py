@@ -1,0 +1,158 @@
+#!/usr/bin/python3
+"""The figures show what the result file holds: a cube of six tets, pressed and wetted by a small tool, in a file made
+here by h5py. Expected values: the numbers put in. Skipped where numpy, h5py, matplotlib or VTK are absent."""
+import importlib.util
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SCRIPTS = Path(__file__).resolve().parents[3] / "scripts"
+MISSING = [name for name in ("numpy", "h5py", "matplotlib") if importlib.util.find_spec(name) is None]
+if not MISSING:
+    sys.path.insert(0, str(SCRIPTS))
+    sys.dont_write_bytecode = True
+    import h5py
+    import matplotlib.image
+    import numpy as np
+    import plot_force
+    import plot_water
+    import render
+
+PUSH, WET = 0, 2
+
+
+def write_result(file, saturation, leak=0.0, touch=True):
+    """200 ticks: wet for 50, away for 50, push for 50 with 2 N at tick 120, away; wetting is felt stronger. Frames every 20 ticks.
+    `leak` [kg] is missing from the ledger at the end."""
+    tick = np.arange(200)
+    corner = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)], dtype=float)
+    tets = np.array([(0, 4, 6, 7), (0, 6, 2, 7), (0, 2, 3, 7), (0, 3, 1, 7), (0, 1, 5, 7), (0, 5, 4, 7)])
+    sides = np.array([(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),
+                      (0, 6, 4), (1, 5, 7), (1, 7, 3)])
+    force = np.zeros((200, 3))
+    if touch:
+        force[20:40, 1], force[110:140, 1], force[120, 1] = -3.0, -1.0, -2.0
+    with h5py.File(file, "w") as result:
+        result.attrs.update(format="argil-result", format_version=1, complete=1, outcome="done")
+        for name, data in {
+                "haptic/time": 1e-3 * tick, "haptic/tool_position": np.tile([0.05, -0.02, 0.05], (200, 1)),
+                "haptic/tool_orientation": np.tile([0.0, 0.0, 0.0, 1.0], (200, 1)), "haptic/force": force,
+                "haptic/mode": np.where(tick < 50, WET, PUSH).astype("u1"), "physics/time": 1e-3 * tick,
+                "physics/water_mass": 1e-3 + 1e-5 * tick - np.linspace(0, leak, 200),
+                "physics/water_added": 2e-5 * tick, "physics/water_removed": 1e-5 * tick,
+                "mesh/rest_position": 0.1 * corner, "mesh/tets": tets, "mesh/surface_triangles": sides,
+                "mesh/skin_triangles": np.zeros((0, 3), int), "mesh/tool_vertices": 0.01 * corner,
+                "mesh/tool_triangles": sides}.items():
+            result[name] = data
+        for number in range(10):
+            frame = result.create_group(f"frames/{number:06d}")
+            frame.attrs.update(tick=20 * number, time=0.02 * number)
+            frame["position"] = 0.1 * corner
+            frame["saturation"] = np.array([saturation * number / 9, 0, 0, 0, 0, 0])
+            frame["plastic_strain_norm"] = np.full(6, 0.1)
+
+
+@unittest.skipIf(MISSING, f"needs {', '.join(MISSING)}")
+class Figures(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        write_result(self.file("dry.h5"), 0.0)
+        write_result(self.file("wet.h5"), 0.9)
+
+    def file(self, name):
+        return str(self.folder / name)
+
+    def draw(self, script, *arguments):
+        return subprocess.run([SCRIPTS / script, *arguments], capture_output=True, text=True, cwd=self.folder)
+
+    def expect_refusal(self, words, script, *arguments):
+        run = self.draw(script, *arguments)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn(words, run.stderr)
+        self.assertNotIn("Traceback", run.stderr)
+
+    def test_the_strongest_contact_is_that_of_the_largest_push(self):
+        runs = [plot_force.read_run(self.file("dry.h5"), "dry", align_press=True)]
+        self.assertEqual(runs[0].time[0], -0.05)  # the push begins at tick 50
+        start, end = plot_force.find_peak(runs)
+        self.assertAlmostEqual(start, 0.060)
+        self.assertAlmostEqual(end, 0.089)
+
+    def test_a_run_without_contact_has_no_strongest_one(self):
+        write_result(self.file("none.h5"), 0.0, touch=False)
+        self.assertIsNone(plot_force.find_peak([plot_force.read_run(self.file("none.h5"), "none", False)]))
+        self.assertEqual(self.draw("plot_force.py", "none.h5").returncode, 0)
+
+    def test_the_ledger_error_is_the_missing_water(self):
+        write_result(self.file("leak.h5"), 0.0, leak=1e-6)
+        with h5py.File(self.file("leak.h5")) as leaking, h5py.File(self.file("wet.h5")) as tight:
+            largest_number = 2e-5 * 199  # [kg] added is the largest of mass, added and removed
+            self.assertAlmostEqual(plot_water.read_ledger(leaking).error()[-1], 1e-6 / largest_number, places=12)
+            self.assertLess(plot_water.read_ledger(tight).error().max(), 1e-15)
+
+    def test_mean_saturation_is_weighted_by_volume(self):
+        with h5py.File(self.file("wet.h5")) as result:
+            saturation = plot_water.read_saturation(result)
+            self.assertAlmostEqual(plot_water.rest_volumes(result).sum(), 1e-3)
+        self.assertAlmostEqual(saturation.mean[-1], 0.9 / 6)
+        self.assertAlmostEqual(saturation.largest[-1], 0.9)
+
+    def test_moments_name_the_frames(self):
+        with h5py.File(self.file("wet.h5")) as result:
+            times = [float(render.find_time(result, moment)) for moment in ("before", "wetting", "during", "after", "0.07")]
+        for found, wanted in zip(times, (0.0, 0.0295, 0.12, 0.18, 0.07)):
+            self.assertAlmostEqual(found, wanted)
+
+    def test_values_at_vertices_are_means_of_the_tets_around(self):
+        with h5py.File(self.file("wet.h5")) as result:
+            values = render.point_values(result, result["frames/000009"], "saturation", skinned=False)
+        # Vertex 4 has the wet tet and one dry, vertex 0 and 7 all six, vertex 6 the wet and one dry, the others none.
+        np.testing.assert_allclose(values, [0.15, 0, 0, 0, 0.45, 0, 0.45, 0.15])
+
+    def test_rotations_follow_the_quaternion(self):
+        half = np.sqrt(0.5)
+        np.testing.assert_allclose(render.rotation_matrix([half, 0, 0, half]) @ [0, 0, 1], [0, -1, 0], atol=1e-15)
+        # 120 degrees about the diagonal turn the axes into one another.
+        np.testing.assert_allclose(render.rotation_matrix([0.5, 0.5, 0.5, 0.5]) @ [1, 2, 3], [3, 1, 2], atol=1e-15)
+        np.testing.assert_allclose(render.rotation_matrix([0, 0, half, half]) @ [1, 2, 3], [-2, 1, 3], atol=1e-15)
+        np.testing.assert_allclose(render.rotation_matrix([0, half, 0, half]) @ [1, 2, 3], [3, 2, -1], atol=1e-15)
+
+    def test_figures_are_written_and_equal_when_drawn_again(self):
+        for script, files in (("plot_force.py", ["dry.h5", "wet.h5"]), ("plot_water.py", ["wet.h5"])):
+            for stem in ("one", "two"):
+                run = self.draw(script, *files, "-o", stem)
+                self.assertEqual((run.returncode, run.stderr), (0, ""))
+                self.assertEqual(run.stdout, f"{stem}.png\n{stem}.pdf\n")
+            for suffix in (".png", ".pdf"):
+                self.assertEqual((self.folder / f"one{suffix}").read_bytes(), (self.folder / f"two{suffix}").read_bytes())
+
+    def test_what_is_no_result_is_refused(self):
+        self.folder.joinpath("text.h5").write_text("no HDF5")
+        with h5py.File(self.file("other.h5"), "w"):
+            pass
+        self.expect_refusal("cannot be read", "plot_force.py", "text.h5")
+        self.expect_refusal("is not a result file of argil run", "plot_water.py", "other.h5")
+        self.expect_refusal("2 files but 1 labels", "plot_force.py", "dry.h5", "wet.h5", "--labels", "dry")
+
+    @unittest.skipUnless(importlib.util.find_spec("vtk") and shutil.which("Xvfb"), "needs python3-vtk9 and xvfb")
+    def test_the_picture_is_blue_where_it_is_wet(self):
+        self.assertEqual(self.draw("render.py", "dry.h5", "-o", "dry.png").returncode, 0)
+        self.assertEqual(self.draw("render.py", "wet.h5", "-o", "wet.png").returncode, 0)
+
+        def count_blue(name):
+            pixels = matplotlib.image.imread(self.file(name))
+            body = pixels[:, : int(0.85 * pixels.shape[1])]  # without the colour bar
+            return np.count_nonzero(body[..., 2] > body[..., 0] + 0.12)
+
+        self.assertEqual(count_blue("dry.png"), 0)
+        self.assertGreater(count_blue("wet.png"), 1000)
+        self.expect_refusal("moment 'soon'", "render.py", "dry.h5", "--frames", "soon")
+
+
+if __name__ == "__main__":
+    unittest.main()
