@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "base/check.h"
+#include "base/mandel.h"
 
 namespace argil::material {
 namespace {
 
-/// Mura's integrals for semi-axes 1, 1, c, over 4π, those with index 3 twice times c² where P needs them so.
+/// Mura's integrals for semi-axes 1, 1, c, over 4π.
 struct ShapeIntegrals {
   double i1;      // I₁/4π
   double i3;      // I₃/4π
@@ -16,8 +18,8 @@ struct ShapeIntegrals {
   double c2_i33;  // c² I₃₃/4π
 };
 
-/// With s = 1/x² − 1 the integrals become c∫₀¹ x²(1+εx²)^{−1/2} dx and the like, ε = c² − 1: smooth near ε =
-/// 0.
+/// With s = 1/x² − 1 the integrals over s become c∫₀¹ x²(1+εx²)^{−1/2} dx and the like, ε = c² − 1: smooth at
+/// ε = 0, where the closed forms are 0/0.
 void integrate_near_sphere(double c, ShapeIntegrals& result) {
   // Gauss–Legendre, 8 points on [−1, 1]
   constexpr std::array<double, 4> node = {0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
@@ -38,6 +40,7 @@ void integrate_near_sphere(double c, ShapeIntegrals& result) {
 }
 
 ShapeIntegrals compute_shape_integrals(double c) {
+  ARGIL_ASSERT(c > 0.0 && std::isfinite(c), c);
   ShapeIntegrals r{};
   constexpr double kNearSphere = 0.05;
   if (std::abs(c - 1.0) < kNearSphere) {
@@ -60,21 +63,28 @@ ShapeIntegrals compute_shape_integrals(double c) {
 
 }  // namespace
 
-Mat6 compute_eshelby_tensor(double nu, double aspect) {
+Transverse compute_eshelby_transverse(double nu, double aspect) {
   const ShapeIntegrals s = compute_shape_integrals(aspect);
   const double c2 = aspect * aspect;
   const double a = 1.0 / (2.0 * (1.0 - nu));  // 4π/(8π(1−ν))
   const double b = (1.0 - 2.0 * nu) * a;
-  Mat6 P = Mat6::Zero();
-  P(0, 0) = P(1, 1) = 3.0 * a * s.i11 + b * s.i1;
-  P(2, 2) = 3.0 * a * s.c2_i33 + b * s.i3;
-  P(0, 1) = P(1, 0) = a * s.i11 - b * s.i1;
-  P(0, 2) = P(1, 2) = a * c2 * s.i13 - b * s.i1;
-  P(2, 0) = P(2, 1) = a * s.i13 - b * s.i3;
-  // Shear entries 2·P₂₃₂₃ and so on: Mandel.
-  P(3, 3) = P(4, 4) = a * (1.0 + c2) * s.i13 + b * (s.i1 + s.i3);
-  P(5, 5) = 2.0 * a * s.i11 + 2.0 * b * s.i1;
-  return P;
+  const double P11 = 3.0 * a * s.i11 + b * s.i1;
+  const double P12 = a * s.i11 - b * s.i1;
+  const double P13 = a * c2 * s.i13 - b * s.i1;
+  const double P31 = a * s.i13 - b * s.i3;
+  const double P33 = 3.0 * a * s.c2_i33 + b * s.i3;
+  Transverse P;
+  P.uu = (2.0 * (P11 + P12 + P13 + P31) + P33) / 3.0;
+  P.uw = kSqrt2 * (2.0 * P13 - P11 - P12 + P33 - P31) / 3.0;
+  P.wu = kSqrt2 * (2.0 * P31 - P11 - P12 + P33 - P13) / 3.0;
+  P.ww = (P11 + P12 + 2.0 * (P33 - P13 - P31)) / 3.0;
+  P.plane = P11 - P12;                                   // 2 P₁₂₁₂
+  P.axial = a * (1.0 + c2) * s.i13 + b * (s.i1 + s.i3);  // 2 P₁₃₁₃
+  return aspect == 1.0 ? to_transverse(average(P)) : P;  // no rounding between mean and deviator of a sphere
+}
+
+Mat6 compute_eshelby_tensor(double nu, double aspect) {
+  return to_mandel_matrix(compute_eshelby_transverse(nu, aspect));
 }
 
 }  // namespace argil::material

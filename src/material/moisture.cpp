@@ -7,10 +7,10 @@
 namespace argil::material {
 namespace {
 
-constexpr int kIntervals =
-    1024;  // the laws are smooth: linear interpolation errs below 1e-6 of the dry modulus
+// Linear interpolation errs by |f''|/8/1024²: 2e-6 of the modulus for every law of this folder (tested).
+constexpr int kIntervals = 1024;
 
-/// Monotone cubic through (x, y) [Fritsch & Carlson 1980] at `at`.
+/// Monotone cubic through (x, y) at `at`, tangents by harmonic means of the secants [Fritsch & Butland 1984].
 double interpolate_monotone(std::span<const double> x, std::span<const double> y, double at) {
   const std::size_t n = x.size();
   const auto secant = [&](std::size_t i) { return (y[i + 1] - y[i]) / (x[i + 1] - x[i]); };
@@ -25,12 +25,8 @@ double interpolate_monotone(std::span<const double> x, std::span<const double> y
       std::upper_bound(x.begin(), x.end(), at) - x.begin() - 1, 0, static_cast<std::ptrdiff_t>(n) - 2));
   const double h = x[i + 1] - x[i];
   const double t = (at - x[i]) / h;
-  const double limit = 3.0 * secant(i);
-  const auto limited = [limit](double m) {
-    return limit >= 0.0 ? std::clamp(m, 0.0, limit) : std::clamp(m, limit, 0.0);
-  };
-  const double m0 = limited(tangent(i));
-  const double m1 = limited(tangent(i + 1));
+  const double m0 = tangent(i);
+  const double m1 = tangent(i + 1);
   const double t2 = t * t;
   const double t3 = t2 * t;
   return (2 * t3 - 3 * t2 + 1) * y[i] + (t3 - 2 * t2 + t) * h * m0 + (3 * t2 - 2 * t3) * y[i + 1] +
@@ -41,12 +37,19 @@ WetState make_state(double E, double nu, double yield) {
   return {E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu)), yield};
 }
 
+/// Place of S in the table: lower node and share of the upper one. Rounding may leave S a last bit outside
+/// [0, 1].
+std::pair<std::size_t, double> locate(double saturation) {
+  const double at = std::clamp(saturation, 0.0, 1.0) * kIntervals;
+  const auto node = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kIntervals) - 1);
+  return {node, at - static_cast<double>(node)};
+}
+
 }  // namespace
 
 MoistureTable::MoistureTable(const Elastic& dry, double yield, const Moisture& moisture, double porosity) {
   const bool anisotropic = moisture.law == MoistureLaw::effective_medium && moisture.softens_elasticity &&
-                           moisture.medium.orientation == Orientation::aligned &&
-                           moisture.medium.aspect != 1.0;
+                           !material::is_isotropic(moisture.medium);
   const double nu = dry.poissons_ratio;
   for (int i = 0; i <= kIntervals; ++i) {
     const double S = static_cast<double>(i) / kIntervals;
@@ -83,24 +86,12 @@ MoistureTable::MoistureTable(const Elastic& dry, double yield, const Moisture& m
   }
 }
 
-namespace {
-
-/// Place of S in the table: lower node and share of the upper one. Rounding may leave S a last bit outside
-/// [0, 1].
-std::pair<std::size_t, double> locate(double saturation) {
-  const double at = std::clamp(saturation, 0.0, 1.0) * kIntervals;
-  const auto node = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kIntervals) - 1);
-  return {node, at - static_cast<double>(node)};
-}
-
-}  // namespace
-
 WetState MoistureTable::at(double saturation) const {
   const auto [node, share] = locate(saturation);
   const WetState& a = m_states[node];
   const WetState& b = m_states[node + 1];
-  const auto mix = [share = share](double low, double high) { return (1.0 - share) * low + share * high; };
-  return {mix(a.lambda, b.lambda), mix(a.mu, b.mu), mix(a.yield, b.yield)};
+  return {std::lerp(a.lambda, b.lambda, share), std::lerp(a.mu, b.mu, share),
+          std::lerp(a.yield, b.yield, share)};
 }
 
 Mat6 MoistureTable::stiffness_at(double saturation) const {

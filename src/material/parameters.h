@@ -38,7 +38,7 @@ struct EffectiveMedium {
 
 /// How water changes stiffness and yield beyond or instead of the effective medium.
 enum class MoistureLaw {
-  effective_medium,  ///< C from eq. 6, yield stress as `yield_law` says
+  effective_medium,  ///< C from eq. 6; the yield strain as `yield_law` says
   liquidity_index,  ///< modulus and yield stress fall log-linearly from plastic limit (S = 0) to liquid limit
                     ///< (S = 1)
   table,            ///< the user's E(S) and yield(S), monotone interpolation
