@@ -1,0 +1,132 @@
+// What a run refuses, and the one line it says: file, place, value, remedy. Nothing is written.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "study/run.h"
+#include "support/scene_files.h"
+#include "support/temp_folder.h"
+
+namespace argil {
+namespace {
+
+class BadInput : public testing::Test {
+ protected:
+  test::TempFolder folder;
+  std::string trace = test::write_press_trace(folder / "press.csv", 0.048, 0.0435, 0.1, "push");
+
+  void expect_refused(const std::string& scenario, const std::vector<std::string>& settings,
+                      const std::vector<std::string>& parts) {
+    study::RunOptions options;
+    options.quiet = true;
+    options.scenario = test::write_text(folder / "scene.json", scenario);
+    options.output = folder / "out.h5";
+    options.settings = settings;
+    try {
+      study::run(options);
+      ADD_FAILURE() << "was not refused";
+    } catch (const InputError& error) {
+      for (const std::string& part : parts)
+        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << part << "\nis not in\n"
+                                                                           << error.what();
+    }
+    EXPECT_FALSE(std::filesystem::exists(options.output));
+  }
+  std::string ball() const { return test::make_ball_scenario(trace); }
+};
+
+TEST_F(BadInput, MissingScenarioIsNamed) {
+  study::RunOptions options;
+  options.scenario = folder / "nowhere.json";
+  try {
+    study::run(options);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("nowhere.json"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(BadInput, MissingTraceIsNamedWithItsPointer) {
+  expect_refused(test::make_ball_scenario("gone.csv"), {}, {"/trace/file", "gone.csv", "does not exist"});
+}
+
+TEST_F(BadInput, UnknownKeyNamesTheNearest) {
+  expect_refused(ball(), {"/material/youngs_modulus=1e5"},
+                 {"/material/youngs_modulus", "not a known key", "youngs_modulus_Pa"});
+}
+
+TEST_F(BadInput, ValueOutsideItsRangeNamesRangeAndUnit) {
+  expect_refused(ball(), {"/material/youngs_modulus_Pa=-3"},
+                 {"/material/youngs_modulus_Pa", "-3", "(0.0, ∞) Pa"});
+  expect_refused(ball(), {"/material/poissons_ratio=0.5"},
+                 {"/material/poissons_ratio", "0.5", "(-1.0, 0.5)"});
+}
+
+TEST_F(BadInput, WrongTypeIsNamed) {
+  expect_refused(ball(), {"/haptics/physics_period_ticks=1.5"},
+                 {"/haptics/physics_period_ticks", "1.5", "whole number"});
+  expect_refused(ball(), {"/material/density_kg_per_m3=heavy"},
+                 {"/material/density_kg_per_m3", "heavy", "kg/m³"});
+}
+
+TEST_F(BadInput, DuplicateKeyIsRefused) {
+  std::string text = ball();
+  text.insert(text.rfind('}'), ", \"about\": \"again\"");
+  expect_refused(text, {}, {"\"about\" stands twice"});
+}
+
+TEST_F(BadInput, BrokenJsonNamesLineAndColumn) {
+  expect_refused("{\n  \"about\": }", {}, {"line 2, column 12"});
+}
+
+TEST_F(BadInput, NanInTheTraceIsNamedWithItsLine) {
+  const std::string bad =
+      test::write_text(folder / "bad.csv", "t,x,y,z\n0,0,0,0.05\n0.001,0,nan,0.05\n0.002,0,0,0.05\n");
+  expect_refused(test::make_ball_scenario(bad), {}, {"bad.csv", "line 3", "nan"});
+}
+
+TEST_F(BadInput, UnsortedTimeIsNamedWithItsLine) {
+  const std::string bad = test::write_text(
+      folder / "bad.csv", "t,x,y,z\n0,0,0,0.05\n0.002,0,0,0.05\n0.001,0,0,0.05\n0.003,0,0,0.05\n");
+  expect_refused(test::make_ball_scenario(bad), {}, {"bad.csv", "line 4"});
+}
+
+TEST_F(BadInput, InvertedTetIsNamedByItsNumber) {
+  test::write_text(
+      folder / "bad.mesh",
+      "MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 0\n0.02 0 0 0\n0 0.02 0 0\n0 0 0.02 0\n"
+      "0 0 -0.02 0\nTetrahedra 2\n1 2 3 4 0\n1 2 3 5 0\nEnd\n");
+  std::string text = ball();
+  const std::string from =
+      R"("shape": {"kind": "sphere", "size_m": 0.04, "target_tets": 600, "skin_triangles": 0})";
+  text.replace(text.find(from), from.size(), R"("mesh": {"file": "bad.mesh"})");
+  expect_refused(text, {}, {"bad.mesh", "1 of 2 have negative volume: 1"});
+}
+
+TEST_F(BadInput, ToolThatStartsInsideTheBodyIsRefused) {
+  const std::string deep = test::write_press_trace(folder / "deep.csv", 0.020, 0.019, 0.1, "push");
+  expect_refused(test::make_ball_scenario(deep), {}, {"/trace", "starts in or across the body"});
+}
+
+TEST_F(BadInput, FixedRegionWithoutVerticesIsRefused) {
+  expect_refused(ball(), {R"(/body/fixed=[{"kind":"sphere","centre_m":[1,1,1],"radius_m":0.1}])"},
+                 {"/body/fixed/0", "holds no vertex"});
+}
+
+TEST_F(BadInput, DilutePaperLawPastItsPoleIsRefusedWithPhiModeAndRemedy) {
+  // Undrained water in ν = 0.3 clay: the paper's bulk modulus turns negative past φ = α + K_M/(K_I − K_M),
+  // 0.619.
+  expect_refused(ball(),
+                 {"/material/effective_medium/scheme=dilute",
+                  "/material/effective_medium/fluid_bulk_modulus_Pa=2.2e9", "/water/porosity=0.7"},
+                 {"/material/effective_medium/scheme", "bulk", "0.619", "mori_tanaka"});
+}
+
+TEST_F(BadInput, LockingTetsAreRefusedUnlessAllowed) {
+  expect_refused(ball(), {"/material/poissons_ratio=0.49"},
+                 {"/material/poissons_ratio", "lock", "allow_locking"});
+}
+
+}  // namespace
+}  // namespace argil
