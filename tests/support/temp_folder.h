@@ -25,6 +25,7 @@ class TempFolder {
 
   /// Writes a file of this content and gives its path.
   std::string write(const std::string& name, const std::string& content) const {
+    std::filesystem::remove(m_path / name);  // some file systems flush to disk when a file is written over
     std::ofstream(m_path / name, std::ios::binary) << content;
     return *this / name;
   }
