@@ -240,7 +240,7 @@ def find_difference(file, text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     folder = Path(__file__).resolve().parent.parent / "traces"
-    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 when a file is not what would be made")
+    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 when a file differs")
     parser.add_argument("--out", type=Path, default=folder, metavar="FOLDER", help="default: traces/")
     options = parser.parse_args()
     num_different = 0

@@ -71,7 +71,7 @@ def draw(runs, align_press):
     peak = find_peak(runs)
     time_label = "time since the push began [s]" if align_press else "time [s]"
     figure, panels = plt.subplots(1, 2 if peak else 1, figsize=(180 * ap.MILLIMETRES, 72 * ap.MILLIMETRES),
-                                  sharey=True, squeeze=False, gridspec_kw={"width_ratios": [2, 1] if peak else [1]})
+                                  squeeze=False, gridspec_kw={"width_ratios": [2, 1] if peak else [1]})
     whole = panels[0][0]
     draw_lines(whole, runs, time_label)
     draw_water_bands(whole, runs)
@@ -82,9 +82,14 @@ def draw(runs, align_press):
         close = panels[0][1]
         draw_lines(close, runs, time_label)
         margin = 0.06 * (peak[1] - peak[0]) + 0.005
-        close.set_xlim(peak[0] - margin, peak[1] + margin)
+        left, right = peak[0] - margin, peak[1] + margin
+        # Its own height: what wetting feels, which deforms nothing, may be far above.
+        height = 1.08 * max(np.max(run.force[(run.time >= left) & (run.time <= right)], initial=0.0) for run in runs)
+        close.set_xlim(left, right)
+        close.set_ylim(0, height)
         close.set_title("strongest contact", loc="left", color=ap.GREY)
-        whole.axvspan(peak[0] - margin, peak[1] + margin, fill=False, edgecolor=ap.GREY, linewidth=0.8, linestyle=":")
+        whole.add_patch(plt.Rectangle((left, 0), right - left, height, fill=False, edgecolor=ap.GREY, linewidth=0.8,
+                                      linestyle=":"))
     if len(runs) > 1 or whole.get_legend_handles_labels()[1] != [runs[0].label]:
         whole.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncol=3, borderaxespad=0.3)
     return figure

@@ -80,7 +80,8 @@ def draw_error(axes, ledger):
     rounding = np.finfo(float).eps
     axes.semilogy(ledger.time, np.maximum(error, 0.1 * rounding), color=ap.COLOURS[0], linewidth=0.9)
     axes.axhline(rounding, color=ap.GREY, linewidth=0.8, linestyle=":")
-    axes.text(ledger.time[-1], 1.2 * rounding, "rounding of one number", color=ap.GREY, ha="right", va="bottom", fontsize=8)
+    axes.text(ledger.time[-1], 1.2 * rounding, "rounding of one number", color=ap.GREY, ha="right", va="bottom",
+              fontsize=8)
     axes.set_ylim(0.1 * rounding, max(1e-12, 3.0 * error.max()))
     axes.set_ylabel("ledger error, relative [–]")
     axes.set_title(f"at most {error.max():.1e}", loc="right", color=ap.GREY, fontsize=8)

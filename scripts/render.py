@@ -39,7 +39,8 @@ class Field(NamedTuple):
 
 # From dry clay to deep water: lightness falls all the way, so the order survives a grey print.
 WET = LinearSegmentedColormap.from_list("wet", (CLAY, (0.52, 0.56, 0.62), (0.13, 0.40, 0.66), (0.04, 0.15, 0.40)))
-STRAINED = LinearSegmentedColormap.from_list("strained", (CLAY, (0.72, 0.33, 0.36), (0.40, 0.12, 0.40), (0.13, 0.04, 0.24)))
+STRAINED = LinearSegmentedColormap.from_list("strained", (CLAY, (0.72, 0.33, 0.36), (0.40, 0.12, 0.40),
+                                                          (0.13, 0.04, 0.24)))
 
 FIELDS = {
     "saturation": Field("saturation S [–]", WET, top=1.0),
@@ -178,6 +179,7 @@ def tool_actor(vtk, shot):
     actor.SetMapper(smooth_mapper(vtk, poly_data(vtk, shot.tool_points, shot.tool_triangles)))
     actor.GetProperty().SetColor(*TOOL)
     actor.GetProperty().SetOpacity(0.42)  # the dent under the tool is what one wants to see
+    actor.GetProperty().BackfaceCullingOn()  # its far side would shine through in patches
     actor.GetProperty().SetSpecular(0.5)
     actor.GetProperty().SetSpecularPower(40)
     return actor
@@ -300,7 +302,7 @@ def shade_creases(vtk, renderer, radius):
 
 
 def render_rows(rows, field, zoom):
-    """Images of all shots, with one camera, one colour scale and one force scale. Returns images and the scale's top."""
+    """Images of all shots by one camera, one scale of colours and of forces; and the top of the colours' scale."""
     import vtk
 
     shots = [shot for row in rows for shot in row]
@@ -341,7 +343,8 @@ def compose(images, rows, labels, field, top):
             axes.set_axis_off()
             force = np.linalg.norm(shot.force)
             words = f"{label}, t = {shot.time:.2f} s" + (f", {force:.2f} N" if force > 0.0 else "")
-            axes.text(0.03, 0.97, words, transform=axes.transAxes, va="top", color="#222222", fontsize=9)
+            axes.text(0.03, 0.97, words, transform=axes.transAxes, va="top", color="#222222", fontsize=9,
+                      bbox={"facecolor": BACKGROUND, "alpha": 0.75, "linewidth": 0, "pad": 2})
     scale = ScalarMappable(Normalize(0.0, top), FIELDS[field].colours)
     bar = figure.colorbar(scale, ax=panels, shrink=0.6 if num_rows > 1 else 0.75, aspect=22, pad=0.01)
     bar.set_label(FIELDS[field].title)

@@ -25,8 +25,8 @@ PUSH, WET = 0, 2
 
 
 def write_result(file, saturation, leak=0.0, touch=True):
-    """200 ticks: wet for 50, away for 50, push for 50 with 2 N at tick 120, away; wetting is felt stronger. Frames every 20 ticks.
-    `leak` [kg] is missing from the ledger at the end."""
+    """200 ticks: wet for 50, away for 50, push for 50 with 2 N at tick 120, away; wetting is felt stronger. Frames every 20
+    ticks. `leak` [kg] is missing from the ledger at the end."""
     tick = np.arange(200)
     corner = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)], dtype=float)
     tets = np.array([(0, 4, 6, 7), (0, 6, 2, 7), (0, 2, 3, 7), (0, 3, 1, 7), (0, 1, 5, 7), (0, 5, 4, 7)])
@@ -104,7 +104,8 @@ class Figures(unittest.TestCase):
 
     def test_moments_name_the_frames(self):
         with h5py.File(self.file("wet.h5")) as result:
-            times = [float(render.find_time(result, moment)) for moment in ("before", "wetting", "during", "after", "0.07")]
+            moments = ("before", "wetting", "during", "after", "0.07")
+            times = [float(render.find_time(result, moment)) for moment in moments]
         for found, wanted in zip(times, (0.0, 0.0295, 0.12, 0.18, 0.07)):
             self.assertAlmostEqual(found, wanted)
 
@@ -129,7 +130,8 @@ class Figures(unittest.TestCase):
                 self.assertEqual((run.returncode, run.stderr), (0, ""))
                 self.assertEqual(run.stdout, f"{stem}.png\n{stem}.pdf\n")
             for suffix in (".png", ".pdf"):
-                self.assertEqual((self.folder / f"one{suffix}").read_bytes(), (self.folder / f"two{suffix}").read_bytes())
+                one, two = ((self.folder / f"{stem}{suffix}").read_bytes() for stem in ("one", "two"))
+                self.assertEqual(one, two)
 
     def test_what_is_no_result_is_refused(self):
         self.folder.joinpath("text.h5").write_text("no HDF5")

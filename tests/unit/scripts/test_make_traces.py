@@ -97,8 +97,8 @@ class Traces(unittest.TestCase):
         self.assertAlmostEqual(math.sqrt(2 * mean_square), make_traces.TREMOR_AMPLITUDE_MM, delta=0.1 * 0.07)
 
         def power(frequency):
-            parts = [(v * math.cos(2 * math.pi * frequency * i / rate), v * math.sin(2 * math.pi * frequency * i / rate))
-                     for i, v in enumerate(values)]
+            angle = 2 * math.pi * frequency / rate
+            parts = [(v * math.cos(angle * i), v * math.sin(angle * i)) for i, v in enumerate(values)]
             return 2 * (sum(c for c, _ in parts) ** 2 + sum(s for _, s in parts) ** 2) / len(values) ** 2
 
         step = 1 / seconds
