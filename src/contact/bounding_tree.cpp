@@ -1,7 +1,6 @@
 #include "contact/bounding_tree.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 
 namespace argil::contact {
@@ -16,7 +15,16 @@ BoundingTree::BoundingTree(const Points& vertices, const Triangles& triangles) :
   m_nodes.reserve(m_order.size() + 1);
   m_nodes.emplace_back();
   split(0, 0, static_cast<int>(m_order.size()), centroids);
-  refit(vertices, vertices);
+  fit_all(vertices);
+}
+
+void BoundingTree::fit_all(const Points& x) {
+  if (m_order.empty()) return;
+  for (std::size_t n = m_nodes.size(); n-- > 0;) {
+    Node& node = m_nodes[n];
+    node.motion = -1.0;  // no motion summed so far: needs a fit
+    node.count > 0 ? fit_leaf(node, x, x) : fit_inner(node);
+  }
 }
 
 void BoundingTree::split(int node, int first, int count, const Points& centroids) {
@@ -45,39 +53,46 @@ void BoundingTree::split(int node, int first, int count, const Points& centroids
   split(left + 1, first + half, count - half, centroids);
 }
 
-void BoundingTree::refit(const Points& x_t0, const Points& x_t1) {
-  for (std::size_t n = m_nodes.size(); n-- > 0;) {
-    Node& node = m_nodes[n];
-    node.bounds = Bounds();
-    if (node.count == 0 && !m_order.empty()) {
-      node.bounds.include(m_nodes[static_cast<std::size_t>(node.first)].bounds);
-      node.bounds.include(m_nodes[static_cast<std::size_t>(node.first) + 1].bounds);
-      continue;
+Bounds BoundingTree::fit_triangle(int triangle, const Points& x_t0, const Points& x_t1) const {
+  Bounds bounds;
+  for (int k = 0; k < 3; ++k) {
+    bounds.include(Vec3(x_t0.col(m_triangles(k, triangle))));
+    bounds.include(Vec3(x_t1.col(m_triangles(k, triangle))));
+  }
+  return bounds;
+}
+
+void BoundingTree::visit(int index, const Bounds& query, const Points& x_t0, const Points& x_t1,
+                         std::vector<int>& triangles) {
+  Node& node = m_nodes[static_cast<std::size_t>(index)];
+  if (!current(node).overlaps(query)) return;
+  if (node.count > 0) {
+    fit_leaf(node, x_t0, x_t1);
+    if (!node.bounds.overlaps(query)) return;
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      const int triangle = m_order[static_cast<std::size_t>(i)];
+      if (fit_triangle(triangle, x_t0, x_t1).overlaps(query)) triangles.push_back(triangle);
     }
-    for (int i = node.first; i < node.first + node.count; ++i)
-      for (int k = 0; k < 3; ++k) {
-        const int v = m_triangles(k, m_order[static_cast<std::size_t>(i)]);
-        node.bounds.include(Vec3(x_t0.col(v)));
-        node.bounds.include(Vec3(x_t1.col(v)));
-      }
+  } else {
+    visit(node.first, query, x_t0, x_t1, triangles);
+    visit(node.first + 1, query, x_t0, x_t1, triangles);
+    fit_inner(node);
   }
 }
 
-void BoundingTree::find_overlaps(const Bounds& query, std::vector<int>& triangles) const {
-  std::array<int, 64> stack;  // the tree is balanced: depth ≤ log₂ of the number of triangles + 1
-  std::size_t depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const Node& node = m_nodes[static_cast<std::size_t>(stack[--depth])];
-    if (!node.bounds.overlaps(query)) continue;
-    if (node.count > 0) {
-      for (int i = node.first; i < node.first + node.count; ++i)
-        triangles.push_back(m_order[static_cast<std::size_t>(i)]);
-    } else if (!m_order.empty()) {
-      stack[depth++] = node.first + 1;
-      stack[depth++] = node.first;
-    }
-  }
+void BoundingTree::fit_leaf(Node& node, const Points& x_t0, const Points& x_t1) {
+  if (node.motion == m_motion) return;
+  node.bounds = Bounds();
+  for (int i = node.first; i < node.first + node.count; ++i)
+    node.bounds.include(fit_triangle(m_order[static_cast<std::size_t>(i)], x_t0, x_t1));
+  node.motion = m_motion;
+}
+
+void BoundingTree::fit_inner(Node& node) {
+  if (node.motion == m_motion) return;
+  node.bounds = current(m_nodes[static_cast<std::size_t>(node.first)]);
+  node.bounds.include(current(m_nodes[static_cast<std::size_t>(node.first) + 1]));
+  node.motion = m_motion;
 }
 
 }  // namespace argil::contact

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "base/types.h"
@@ -18,35 +19,89 @@ struct Bounds {
     low = low.cwiseMin(other.low);
     high = high.cwiseMax(other.high);
   }
+  Bounds grown(double margin) const { return {low.array() - margin, high.array() + margin}; }
   bool overlaps(const Bounds& other) const {
     return (low.array() <= other.high.array()).all() && (high.array() >= other.low.array()).all();
   }
+  double squared_distance(const Vec3& p) const {
+    return (low - p).cwiseMax(p - high).cwiseMax(0.0).squaredNorm();
+  }
 };
 
-/// Binary tree of boxes over a triangle mesh. Built once on the rest shape, refitted to moving vertices.
+/// Binary tree of boxes over a moving triangle mesh. Its shape is made once. Boxes are fitted late: a node
+/// keeps the box of its last fit and the motion summed up to then; it is grown by the motion since, and
+/// fitted anew only when a query reaches it. So a call costs what lies near the query, not the size of the
+/// mesh.
 class BoundingTree {
  public:
   BoundingTree(const Points& vertices, const Triangles& triangles);
 
-  /// Fits every box to the triangles at both ends of an interval; linear paths stay inside.
-  void refit(const Points& x_t0, const Points& x_t1);
+  /// Fits every box to vertices at rest: a new start.
+  void fit_all(const Points& x);
 
-  const Bounds& bounds() const { return m_nodes.front().bounds; }
+  /// The vertices move on; none by more than `bound` along any axis [m].
+  void advance(double bound) { m_motion += bound; }
 
-  /// Appends the triangles whose boxes overlap `query`, in an order that depends on the tree alone.
-  void find_overlaps(const Bounds& query, std::vector<int>& triangles) const;
+  /// Box that holds the surface during the whole present motion.
+  Bounds bounds() const { return current(m_nodes.front()); }
+
+  /// Appends the triangles whose boxes over the present motion (both ends; linear paths stay inside) overlap
+  /// `query`, in an order that depends on the tree alone, and fits the boxes it meets.
+  void find_overlaps(const Bounds& query, const Points& x_t0, const Points& x_t1,
+                     std::vector<int>& triangles) {
+    if (!m_order.empty()) visit(0, query, x_t0, x_t1, triangles);
+  }
+
+  /// Calls visit(triangle) → squared distance for triangles that may be nearer to `p`, at any time of the
+  /// present motion, than the least one found so far, which starts as `least`. Fits the boxes it meets.
+  template <class Visit>
+  void visit_near(const Vec3& p, double least, const Points& x_t0, const Points& x_t1, Visit visit) {
+    if (!m_order.empty()) visit_node(0, p, least, x_t0, x_t1, visit);
+  }
 
  private:
   struct Node {
     Bounds bounds;
-    int first = 0;  // leaf: first triangle in m_order; inner: index of the left child, right is next
-    int count = 0;  // leaf: number of triangles; inner: 0
+    double motion = 0.0;  // m_motion when the box was fitted
+    int first = 0;        // leaf: first triangle in m_order; inner: index of the left child, right is next
+    int count = 0;        // leaf: number of triangles; inner: 0
   };
+  Bounds current(const Node& node) const {
+    // The factor takes up the rounding of the sum of many motions.
+    return node.bounds.grown((m_motion - node.motion) * (1.0 + 1e-9) + 1e-12 * m_motion);
+  }
   void split(int node, int first, int count, const Points& centroids);
+  Bounds fit_triangle(int triangle, const Points& x_t0, const Points& x_t1) const;
+  void fit_leaf(Node& node, const Points& x_t0, const Points& x_t1);
+  void fit_inner(Node& node);
+  void visit(int node, const Bounds& query, const Points& x_t0, const Points& x_t1,
+             std::vector<int>& triangles);
+  template <class Visit>
+  void visit_node(int index, const Vec3& p, double& least, const Points& x_t0, const Points& x_t1,
+                  Visit& visit) {
+    Node& node = m_nodes[static_cast<std::size_t>(index)];
+    if (node.count > 0) {
+      fit_leaf(node, x_t0, x_t1);
+      for (int i = node.first; i < node.first + node.count; ++i)
+        least = std::min(least, visit(m_order[static_cast<std::size_t>(i)]));
+      return;
+    }
+    const int l = node.first;
+    const double left = current(m_nodes[static_cast<std::size_t>(l)]).squared_distance(p);
+    const double right = current(m_nodes[static_cast<std::size_t>(l) + 1]).squared_distance(p);
+    // Equal distances are visited too, so that the answer does not depend on the tree; see find_nearest.
+    constexpr double kRounding = 1.0 + 1e-12;
+    const int first = left <= right ? l : l + 1;
+    if (std::min(left, right) <= least * kRounding) visit_node(first, p, least, x_t0, x_t1, visit);
+    if (std::max(left, right) <= least * kRounding)
+      visit_node(2 * l + 1 - first, p, least, x_t0, x_t1, visit);
+    fit_inner(node);
+  }
 
   Triangles m_triangles;
   std::vector<int> m_order;
   std::vector<Node> m_nodes;  // children after their parent
+  double m_motion = 0.0;
 };
 
 }  // namespace argil::contact

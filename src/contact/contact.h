@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "contact/parameters.h"
@@ -31,11 +32,20 @@ struct Contact {
 /// What one detection over [t₀, t₁] found, in an order that depends on the meshes alone.
 struct Contacts {
   std::vector<Contact> contacts;
+  bool with_touched = true;            ///< asked by the caller: also find the touched area (costs time)
   std::vector<int> touched_triangle;   ///< body triangles with an inside point, increasing
-  std::vector<double> touched_area;    ///< [m²] part of each that lies within the tool's reach
+  std::vector<double> touched_area;    ///< [m²] part of each that lies inside the tool
   Vec3 force_on_tool = Vec3::Zero();   ///< [N], push sense: −Σ force
   Vec3 torque_on_tool = Vec3::Zero();  ///< [N m] about the hand's point at t₁
-  void clear();
+  void clear();                        ///< of results; keeps with_touched
+};
+
+/// Which vertices lie inside at the end of an interval, increasing, and the face each of them presses on.
+struct ContactState {
+  std::vector<int> tool_vertex;
+  std::vector<int> body_face;
+  std::vector<int> body_vertex;
+  std::vector<int> tool_face;
 };
 
 /// Detects contact between a deforming body surface and a rigidly moving tool, interval after interval, and
@@ -51,12 +61,19 @@ class ContactDetector {
 
   /// Contacts while the body's vertices go linearly from x_t0 to x_t1 and the tool's vertices linearly
   /// between their places at the two poses. Successive calls must join: x_t0, pose_t0 equal the last x_t1,
-  /// pose_t1.
+  /// pose_t1. `body_motion` bounds how far any body vertex moves along any axis [m]; without it that is found
+  /// by looking at all of them, the only part of the work that grows with the body.
   void find_contacts(const Points& x_t0, const Points& x_t1, const Pose& pose_t0, const Pose& pose_t1,
-                     Contacts& contacts);
+                     Contacts& contacts, std::optional<double> body_motion = {});
 
-  /// Tool vertices inside the body or body vertices inside the tool at one instant (a start must have none).
+  /// Do the two solids have a point in common at one instant? (A start must have none.)
   bool overlaps(const Points& x, const Pose& pose) const;
+
+  /// What the next interval needs to know of the past ones; for a checkpoint.
+  ContactState state() const;
+  /// Continues from a state taken from a detector of the same surface and tool. The next call may start
+  /// anywhere.
+  void restore(const ContactState& state);
 
   struct Impl;
 

@@ -111,7 +111,7 @@ bool crosses_within(PairKind kind, const std::array<Vec3, 4>& p) {
 
 /// The walk along t: `c` is the coplanarity with the sign that makes outside positive.
 Penalty compute_penalty(PairKind kind, const PairPath& path, Cubic c, bool inside_at_start,
-                        double orientation) {
+                        double orientation, double until) {
   // A start that touches within rounding counts as outside, so that a motion inwards from there is an entry
   // at t = 0.
   const double touching = coplanarity_error_bound(path);
@@ -151,9 +151,11 @@ Penalty compute_penalty(PairKind kind, const PairPath& path, Cubic c, bool insid
     if (next >= 0.0 && penalty.inside_at_end) close(root);
     previous = next;
   }
+  if (until < 1.0) penalty.inside_at_end = false;
   constexpr int kMaxHalvings = 12;
   for (int i = 0; i < penalty.num_intervals; ++i) {
-    const Interval& interval = penalty.intervals[static_cast<std::size_t>(i)];
+    Interval& interval = penalty.intervals[static_cast<std::size_t>(i)];
+    interval.end = std::max(interval.begin, std::min(interval.end, until));
     penalty.duration += interval.end - interval.begin;
     if (interval.end > interval.begin)
       penalty.integral += integrate_adaptive(feature, interval.begin, interval.end, kMaxHalvings);
@@ -193,14 +195,14 @@ Eigen::Vector2d compute_line_parameters(const std::array<Vec3, 4>& p) {
   return {(wa * bb - wb * ab) / det, (wa * ab - wb * aa) / det};
 }
 
-Penalty compute_vertex_face_penalty(const PairPath& path, bool inside_at_start) {
+Penalty compute_vertex_face_penalty(const PairPath& path, bool inside_at_start, double until) {
   return compute_penalty(PairKind::vertex_face, path, compute_coplanarity(PairKind::vertex_face, path),
-                         inside_at_start, 1.0);
+                         inside_at_start, 1.0, until);
 }
 
 Penalty compute_edge_edge_penalty(const PairPath& path, bool inside_at_start, double orientation) {
   return compute_penalty(PairKind::edge_edge, path, compute_coplanarity(PairKind::edge_edge, path),
-                         inside_at_start, orientation);
+                         inside_at_start, orientation, 1.0);
 }
 
 }  // namespace argil::contact

@@ -25,8 +25,8 @@ struct Penalty {
 /// the force of a unit stiffness is `integral` (inward, as nᵀ(p−q) < 0 inside); where the vertex is the
 /// body's, its negative. An interval opens where the vertex crosses the plane from outside within the
 /// triangle (a margin of kInsideMargin takes part, so that no vertex slips between two faces) and closes at
-/// the next crossing outwards.
-Penalty compute_vertex_face_penalty(const PairPath& path, bool inside_at_start);
+/// the next crossing outwards, or at `until` when the vertex leaves the face sideways at that time.
+Penalty compute_vertex_face_penalty(const PairPath& path, bool inside_at_start, double until = 1.0);
 
 /// Eq. 8: p on edge a, q on edge b, n the edges' common unit normal, turned so that nᵀ(p−q) > 0 before the
 /// entry. `orientation` (±1) is used when inside_at_start; 0 finds it so that the start lies inside. On b's

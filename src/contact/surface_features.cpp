@@ -37,7 +37,18 @@ SurfaceFeatures::SurfaceFeatures(const Triangles& t, int num_vertices)
   }
   edges.conservativeResize(2, e + 1);
   edge_triangles.conservativeResize(2, e + 1);
+  edge_opposite.resize(2, e + 1);
+  for (Eigen::Index i = 0; i <= e; ++i)
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      const Eigen::Vector3i f = t.col(edge_triangles(k, i));
+      edge_opposite(k, i) = f.sum() - edges(0, i) - edges(1, i);
+    }
 
+  fan_begin.push_back(0);
+  for (const std::vector<int>& of_vertex : around) {
+    fan.insert(fan.end(), of_vertex.begin(), of_vertex.end());
+    fan_begin.push_back(static_cast<int>(fan.size()));
+  }
   ring_begin.push_back(0);
   std::vector<int> list;
   for (int f = 0; f < m; ++f) {
@@ -52,46 +63,6 @@ SurfaceFeatures::SurfaceFeatures(const Triangles& t, int num_vertices)
       if (other != f) ring.push_back(other);
     ring_begin.push_back(static_cast<int>(ring.size()));
   }
-}
-
-double compute_squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 n = (b - a).cross(c - a);
-  const double nn = n.squaredNorm();
-  const double b1 = n.dot((p - a).cross(c - a));
-  const double b2 = n.dot((b - a).cross(p - a));
-  if (nn > 0.0 && b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= nn) {
-    const double d = n.dot(p - a);
-    return d * d / nn;
-  }
-  const auto to_segment = [&p](const Vec3& s, const Vec3& e) {
-    const Vec3 edge = e - s;
-    const double length = edge.squaredNorm();
-    const double t = length > 0.0 ? std::clamp((p - s).dot(edge) / length, 0.0, 1.0) : 0.0;
-    return (p - s - t * edge).squaredNorm();
-  };
-  return std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
-}
-
-int walk_to_nearest(const SurfaceFeatures& features, const Points& x, const Vec3& p, int face) {
-  const auto distance = [&](int f) {
-    return compute_squared_distance(p, x.col(features.triangles(0, f)), x.col(features.triangles(1, f)),
-                                    x.col(features.triangles(2, f)));
-  };
-  double nearest = distance(face);
-  for (bool moved = true; moved;) {
-    moved = false;
-    const int from = face;
-    for (int i = features.ring_begin[static_cast<std::size_t>(from)];
-         i < features.ring_begin[static_cast<std::size_t>(from) + 1]; ++i) {
-      const int candidate = features.ring[static_cast<std::size_t>(i)];
-      const double d = distance(candidate);
-      if (!(d < nearest)) continue;
-      nearest = d;
-      face = candidate;
-      moved = true;
-    }
-  }
-  return face;
 }
 
 }  // namespace argil::contact

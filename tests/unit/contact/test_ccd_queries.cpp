@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "contact/ccd.h"
+#include "contact/nearest.h"
 #include "contact/penalty.h"
 #include "contact/queries.h"
-#include "contact/surface_features.h"
 #include "support/shared_data.h"
 
 namespace argil::contact {
@@ -36,7 +36,8 @@ struct Count {
 double measure_closest(PairKind kind, const PairPath& path) {
   const auto distance = [&](double t) {
     const std::array<Vec3, 4> p = interpolate(path, t);
-    if (kind == PairKind::vertex_face) return std::sqrt(compute_squared_distance(p[0], p[1], p[2], p[3]));
+    if (kind == PairKind::vertex_face)
+      return std::sqrt(compute_nearest_on_triangle(p[0], p[1], p[2], p[3]).squared_distance);
     // The closest points of two segments: of the lines when both lie within, else an end and a segment.
     const Eigen::Vector2d s = compute_line_parameters(p);
     double least = 1e300;
@@ -44,7 +45,9 @@ double measure_closest(PairKind kind, const PairPath& path) {
       least = (p[0] + s(0) * (p[1] - p[0]) - p[2] - s(1) * (p[3] - p[2])).norm();
     for (std::size_t i = 0; i < 4; ++i) {
       const std::size_t other = i < 2 ? 2 : 0;
-      least = std::min(least, std::sqrt(compute_squared_distance(p[i], p[other], p[other], p[other + 1])));
+      least = std::min(
+          least,
+          std::sqrt(compute_nearest_on_triangle(p[i], p[other], p[other], p[other + 1]).squared_distance));
     }
     return least;
   };

@@ -1,0 +1,181 @@
+// Forces: penalty integrals of every pair in penetration, and what is carried to the next interval.
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/detector.h"
+
+namespace argil::contact {
+namespace {
+
+// The common normal of nearly parallel edges is at the mercy of rounding: between one and two times this
+// sine² of their angle the pair fades in.
+constexpr double kParallelSine2 = 1e-3;
+
+double compute_parallel_fade(const std::array<Vec3, 4>& p) {
+  const Vec3 a = p[1] - p[0];
+  const Vec3 b = p[3] - p[2];
+  const double sine2 = a.cross(b).squaredNorm() / (a.squaredNorm() * b.squaredNorm());
+  return std::clamp(sine2 / kParallelSine2 - 1.0, 0.0, 1.0);
+}
+
+/// When does a vertex that is inside at `from` and outside at t₁ come out? By halving; a time just after.
+double find_exit(const VertexFaceMotion& m, int v, int face, double from) {
+  constexpr int kHalvings = 12;  // to 1/4096 of the interval
+  double inside = from;
+  double outside = 1.0;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double t = 0.5 * (inside + outside);
+    const SurfaceAt faces{m.faces.features, m.faces.x_t0, m.faces.x_t1, t};
+    (is_inside(faces, m.tree, m.vertex_at(v, t), face) ? inside : outside) = t;
+  }
+  return outside;
+}
+
+/// The contact of a vertex with a face, seen from the body.
+Contact make_vertex_contact(const VertexFaceMotion& m, int v, int face, const Penalty& penalty, double k) {
+  // On the face's body the force is the integral; where the vertex is the body's, its negative.
+  const double sign = m.body_has_face ? 1.0 : -1.0;
+  Contact c;
+  if (m.body_has_face) {
+    const Eigen::Vector3i f = m.faces.features.triangles.col(face);
+    c.vertex = {f(0), f(1), f(2)};
+    c.weight = {penalty.weights[1], penalty.weights[2], penalty.weights[3]};
+    for (int i = 0; i < 3; ++i) c.point += c.weight[static_cast<std::size_t>(i)] * m.faces.corner(face, i);
+  } else {
+    c.vertex = {v, -1, -1};
+    c.weight = {1.0, 0.0, 0.0};
+    c.point = m.v_t1.col(v);
+  }
+  c.normal = sign * penalty.integral.normalized();
+  c.force = sign * k * penalty.integral;
+  c.stiffness = k * penalty.duration;
+  return c;
+}
+
+}  // namespace
+
+/// Eq. 7. Every vertex presses on one face: the one it entered through, and after each interval the one that
+/// it can have slid to. It is carried as long as it is inside the surface as a whole, so that a vertex which
+/// left sideways, or through the far side, exerts no force any more.
+void ContactDetector::Impl::press_vertices(const VertexFaceMotion& m, Contacts& out) const {
+  VertexSide& side = m.side;
+  for (const int v : side.pressed) side.depth[static_cast<std::size_t>(v)] = 0.0;
+  side.pressed.clear();
+  side.inside_next.clear();
+
+  const auto settle = [&](int v, int face, bool was_inside) {
+    const PairPath path = m.path(v, face);
+    Penalty penalty = compute_vertex_face_penalty(path, was_inside);
+    const Vec3 p = m.v_t1.col(v);
+    const int next_face = walk_to_nearest(m.faces, p, face).face;
+    const bool inside = is_inside(m.faces, m.tree, p, next_face);
+    side.face_of_vertex[static_cast<std::size_t>(v)] = inside ? next_face : -1;
+    if (inside) side.inside_next.push_back(v);
+    if (!inside && penalty.inside_at_end) {
+      const double from = penalty.intervals[static_cast<std::size_t>(penalty.num_intervals) - 1].begin;
+      penalty = compute_vertex_face_penalty(path, was_inside, find_exit(m, v, face, from));
+    }
+    const double depth = penalty.integral.norm();
+    if (!(depth > 0.0)) return;
+    side.depth[static_cast<std::size_t>(v)] = depth;
+    side.pressed.push_back(v);
+    out.contacts.push_back(make_vertex_contact(m, v, face, penalty, params.vertex_face_stiffness));
+  };
+
+  auto entry = side.entries.cbegin();
+  auto old = side.inside.cbegin();
+  while (old != side.inside.cend() || entry != side.entries.cend()) {
+    if (entry == side.entries.cend() || (old != side.inside.cend() && *old < entry->vertex)) {
+      const int v = *old++;
+      settle(v, side.face_of_vertex[static_cast<std::size_t>(v)], true);
+      continue;
+    }
+    // Of the faces the vertex met, the earliest through whose plane it really went in takes it. If rounding
+    // shows none, the first still decides whether it is carried.
+    const int v = entry->vertex;
+    int face = entry->face;
+    bool is_found = false;
+    for (; entry != side.entries.cend() && entry->vertex == v; ++entry) {
+      if (is_found || compute_vertex_face_penalty(m.path(v, entry->face), false).num_intervals == 0) continue;
+      is_found = true;
+      face = entry->face;
+    }
+    settle(v, face, false);
+  }
+  std::swap(side.inside, side.inside_next);
+}
+
+/// Share of an edge pair's depth that its end vertices do not press already: 1 while none of them is inside,
+/// 0 once one is as deep as the pair. Without it one dent would count at the vertices and again at every
+/// crossing of edges between them; with it the pair brings what it lies deeper, k·max(d_edges, d_vertex) in
+/// all, which is continuous when a vertex enters or leaves beside it.
+double ContactDetector::Impl::compute_uncovered_share(const EdgePair& pair, double depth) const {
+  double covered = 0.0;
+  for (int k = 0; k < 2; ++k) {
+    covered = std::max(covered, tool_vertices.depth[static_cast<std::size_t>(tool.edges(k, pair.tool_edge))]);
+    covered = std::max(covered, body_vertices.depth[static_cast<std::size_t>(body.edges(k, pair.body_edge))]);
+  }
+  return std::max(0.0, 1.0 - covered / depth);
+}
+
+/// Do the pair's crossing points lie inside the other surface? Tells edges in penetration from edges whose
+/// lines merely pass each other somewhere.
+bool ContactDetector::Impl::is_edge_pair_inside(const EdgePair& pair, const Motion& m, double t) {
+  const SurfaceAt body_at{body, t == 1.0 ? m.body_t1 : m.body_t0, t == 1.0 ? m.body_t1 : m.body_t0};
+  const SurfaceAt tool_at{tool, t == 1.0 ? m.tool_t1 : m.tool_t0, t == 1.0 ? m.tool_t1 : m.tool_t0};
+  const PairPath path = make_edge_path(m, tool.edges.col(pair.tool_edge), body.edges.col(pair.body_edge));
+  const std::array<Vec3, 4>& x = t == 1.0 ? path.t1 : path.t0;
+  const Eigen::Vector2d s = compute_line_parameters(x);
+  const Vec3 p = x[0] + s(0) * (x[1] - x[0]);
+  const Vec3 q = x[2] + s(1) * (x[3] - x[2]);
+  return is_inside(tool_at, tool_tree, q, tool.edge_triangles(0, pair.tool_edge)) &&
+         is_inside(body_at, *body_tree, p, body.edge_triangles(0, pair.body_edge));
+}
+
+/// Eq. 8 with p on the tool's edge and q on the body's. Edges carry nothing from interval to interval:
+/// whether a pair is in penetration is read off the positions, so that neighbouring edges take over from each
+/// other.
+void ContactDetector::Impl::press_edges(const Motion& m, Contacts& out) {
+  for (const EdgePair& pair : edge_pairs) {
+    const Eigen::Vector2i b = body.edges.col(pair.body_edge);
+    const PairPath path = make_edge_path(m, tool.edges.col(pair.tool_edge), b);
+    const double fade = compute_parallel_fade(path.t1);
+    if (!(fade > 0.0)) continue;
+    // The normal's sign makes inside negative at the end where the pair is known to be inside.
+    double orientation = 0.0;
+    bool starts_inside = false;
+    if (pair.inside_t0 || pair.inside_t1) {
+      const std::array<double, 4> c = compute_coplanarity(PairKind::edge_edge, path);
+      orientation = (pair.inside_t1 ? c[3] : c[0]) < 0.0 ? 1.0 : -1.0;
+      starts_inside = orientation * c[0] < 0.0;
+    }
+    const Penalty penalty = compute_edge_edge_penalty(path, starts_inside, orientation);
+    // Inside by its lines at the end but not within the edges: slid off, and a neighbour has it.
+    if (penalty.num_intervals == 0 || (penalty.inside_at_end && !pair.inside_t1)) continue;
+    if (orientation == 0.0) {
+      // In and out within the interval. Edges that part after coming alongside cross too, the other way
+      // round.
+      const Vec3 n = penalty.orientation * (path.t1[1] - path.t1[0]).cross(path.t1[3] - path.t1[2]);
+      if (!is_in_normal_cone({body, m.body_t0, m.body_t1}, pair.body_edge, n) ||
+          !is_in_normal_cone({tool, m.tool_t0, m.tool_t1}, pair.tool_edge, -n))
+        continue;
+    }
+    const double depth = penalty.integral.norm();
+    const double share = fade * compute_uncovered_share(pair, depth);
+    constexpr double kNegligible = 1e-9;  // of the depth: rounding where a vertex covers the pair
+    if (!(share > kNegligible) || !(depth > 0.0)) continue;
+    if ((pair.inside_t0 || pair.inside_t1) && !is_edge_pair_inside(pair, m, pair.inside_t1 ? 1.0 : 0.0))
+      continue;
+    Contact c;
+    c.vertex = {b(0), b(1), -1};
+    c.weight = {penalty.weights[2], penalty.weights[3], 0.0};
+    c.normal = penalty.integral / depth;
+    c.force = share * params.edge_edge_stiffness * penalty.integral;
+    c.stiffness = share * params.edge_edge_stiffness * penalty.duration;
+    c.point = c.weight[0] * path.t1[2] + c.weight[1] * path.t1[3];
+    out.contacts.push_back(c);
+  }
+}
+
+}  // namespace argil::contact

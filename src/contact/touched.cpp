@@ -1,0 +1,132 @@
+// Touched area: the part of each body triangle that lies inside the tool at the end of the interval.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "contact/detector.h"
+
+namespace argil::contact {
+namespace {
+
+/// Share of a triangle on which a linear function with these corner values is negative.
+double compute_negative_share(const std::array<double, 3>& d) {
+  const auto num_negative = std::count_if(d.begin(), d.end(), [](double value) { return value < 0.0; });
+  if (num_negative == 0 || num_negative == 3) return num_negative == 3 ? 1.0 : 0.0;
+  // The corner that is alone on its side cuts off a triangle similar to none, of this share.
+  std::size_t alone = 0;
+  while ((d[alone] < 0.0) != (num_negative == 1)) ++alone;
+  const double da = d[alone];
+  const double cut = da * da / ((da - d[(alone + 1) % 3]) * (da - d[(alone + 2) % 3]));
+  return num_negative == 1 ? cut : 1.0 - cut;
+}
+
+/// For tools of any shape: by quartering the triangle.
+struct Measure {
+  SurfaceAt tool;
+  BoundingTree& tree;
+  int guess = 0;  ///< tool face near the last point that was asked for
+
+  /// Distance to the tool's surface, negative inside [m].
+  double compute_distance(const Vec3& p) {
+    const SurfacePoint nearest = find_nearest(tool, tree, p, guess);
+    guess = nearest.face;
+    const double d = std::sqrt(nearest.squared_distance);
+    return is_behind(tool, nearest, p) ? -d : d;
+  }
+
+  /// Share of a triangle inside the tool. The distance to a surface changes by no more than the point moves,
+  /// so a triangle whose centre is farther than its corners is wholly on one side; others are quartered, and
+  /// on the last level the distance is taken as linear between the corners.
+  double compute_share(const std::array<Vec3, 3>& x, int level) {
+    const Vec3 centre = (x[0] + x[1] + x[2]) / 3.0;
+    const double reach = std::sqrt(std::max(
+        {(x[0] - centre).squaredNorm(), (x[1] - centre).squaredNorm(), (x[2] - centre).squaredNorm()}));
+    const double d = compute_distance(centre);
+    if (d >= reach) return 0.0;
+    if (d <= -reach) return 1.0;
+    if (level == 0)
+      return compute_negative_share({compute_distance(x[0]), compute_distance(x[1]), compute_distance(x[2])});
+    const std::array<Vec3, 3> m = {0.5 * (x[0] + x[1]), 0.5 * (x[1] + x[2]), 0.5 * (x[2] + x[0])};
+    return 0.25 *
+           (compute_share({x[0], m[0], m[2]}, level - 1) + compute_share({m[0], x[1], m[1]}, level - 1) +
+            compute_share({m[2], m[1], x[2]}, level - 1) + compute_share({m[0], m[1], m[2]}, level - 1));
+  }
+};
+
+/// Keeps of a polygon what lies behind a plane.
+void clip(std::vector<Vec3>& polygon, std::vector<Vec3>& work, const Vec3& normal, const Vec3& on_plane) {
+  bool is_cut = false;
+  for (const Vec3& p : polygon) is_cut = is_cut || normal.dot(p - on_plane) > 0.0;
+  if (!is_cut) return;
+  work.clear();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3& p = polygon[i];
+    const Vec3& q = polygon[(i + 1) % polygon.size()];
+    const double dp = normal.dot(p - on_plane);
+    const double dq = normal.dot(q - on_plane);
+    if (dp <= 0.0) work.push_back(p);
+    if ((dp <= 0.0) != (dq <= 0.0)) work.push_back(p + dp / (dp - dq) * (q - p));
+  }
+  std::swap(polygon, work);
+}
+
+double compute_area(const std::vector<Vec3>& polygon) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 2; i < polygon.size(); ++i)
+    sum += (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0]);
+  return 0.5 * sum.norm();
+}
+
+}  // namespace
+
+/// A convex tool cuts a convex polygon out of the triangle, and only faces that meet the triangle bound it:
+/// from a common point, every way out of the tool within the triangle leads through one of them. Cutting by
+/// their planes is therefore exact when there is a common point, which the polygon's centre then is, and else
+/// the centre tells.
+double ContactDetector::Impl::compute_convex_overlap(const std::array<Vec3, 3>& x, const SurfaceAt& at,
+                                                     const Bounds& box) {
+  tool_candidates.clear();
+  tool_tree.find_overlaps(box, at.x_t0, at.x_t1, tool_candidates);
+  polygon.assign(x.begin(), x.end());
+  for (const int face : tool_candidates)
+    clip(polygon, clip_work, compute_face_normal(at, face), at.corner(face, 0));
+  if (polygon.size() < 3) return 0.0;
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& p : polygon) centre += p / static_cast<double>(polygon.size());
+  const int guess = tool_candidates.empty() ? 0 : tool_candidates.front();
+  return is_inside(at, tool_tree, centre, guess) ? compute_area(polygon) : 0.0;
+}
+
+void ContactDetector::Impl::measure_touched(const Motion& m, Contacts& out) {
+  if (!out.with_touched) return;
+  if (out.contacts.empty() && tool_vertices.inside.empty() && body_vertices.inside.empty()) return;
+  const Bounds tool_box = tool_tree.bounds();
+  const SurfaceAt tool_at{tool, m.tool_t0, m.tool_t1};
+  Measure measure{tool_at, tool_tree};
+  std::sort(body_candidates.begin(), body_candidates.end());
+  for (const int f : body_candidates) {
+    const Eigen::Vector3i corner = body.triangles.col(f);
+    const std::array<Vec3, 3> x = {m.body_t1.col(corner(0)), m.body_t1.col(corner(1)),
+                                   m.body_t1.col(corner(2))};
+    Bounds box;
+    for (const Vec3& p : x) box.include(p);
+    if (!box.overlaps(tool_box)) continue;
+    double area = 0.0;
+    if (tool_is_convex) {
+      area = compute_convex_overlap(x, tool_at, box);
+    } else {
+      const double longest = std::sqrt(
+          std::max({(x[1] - x[0]).squaredNorm(), (x[2] - x[1]).squaredNorm(), (x[0] - x[2]).squaredNorm()}));
+      constexpr int kMaxLevel = 5;
+      int level = 0;  // fine enough to see the tool's own facets
+      for (double size = longest; level < kMaxLevel && size > tool_edge_length; size *= 0.5) ++level;
+      area = measure.compute_share(x, level) * 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
+    }
+    if (!(area > 0.0)) continue;
+    out.touched_triangle.push_back(f);
+    out.touched_area.push_back(area);
+  }
+}
+
+}  // namespace argil::contact
