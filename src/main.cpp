@@ -8,12 +8,14 @@
 #include <iterator>
 
 #include "base/error.h"
+#include "contact/queries.h"
 #include "embed/cage.h"
 #include "mesh/quality.h"
 #include "mesh/readers.h"
 #include "output/compare.h"
 #include "output/info.h"
 #include "scenario/build.h"
+#include "scenario/probe.h"
 #include "study/run.h"
 
 namespace {
@@ -38,6 +40,19 @@ int compare_files(const std::string& a, const std::string& b) {
   const output::CompareReport report = output::compare_results(a, b, {});
   std::fputs(to_string(report).c_str(), stdout);
   return report.is_equal() ? ExitCode::kDone : ExitCode::kDifferent;
+}
+
+int print_times_of_impact(const std::string& kind, const std::string& queries) {
+  const auto pair = kind == "vertex-face" ? contact::PairKind::vertex_face : contact::PairKind::edge_edge;
+  const contact::QueryFile file = contact::read_queries(queries);
+  std::puts("query,hit,time_of_impact");
+  for (std::size_t q = 0; q < file.paths.size(); ++q) {
+    if (const auto time = contact::find_time_of_impact(pair, file.paths[q]))
+      std::printf("%zu,1,%.17g\n", q, *time);
+    else
+      std::printf("%zu,0,\n", q);
+  }
+  return ExitCode::kDone;
 }
 
 int validate(const study::RunOptions& options) {
@@ -98,6 +113,26 @@ int main(int argc, char** argv) {
   compare->add_option("A", first, "result file")->required();
   compare->add_option("B", second, "result file")->required();
   compare->callback([&] { code = compare_files(first, second); });
+
+  CLI::App* probe = app.add_subcommand(
+      "probe", "one law at a point: JSON cases on standard input, results on standard output");
+  probe
+      ->add_option(
+          "KERNEL", first,
+          "effective_medium, eshelby, vertex_face, edge_edge, polar, element, plastic_update, clay_kernel")
+      ->required();
+  probe->callback([&] {
+    const std::string text((std::istreambuf_iterator<char>(std::cin)), std::istreambuf_iterator<char>());
+    std::cout << scenario::run_probe(first, text);
+  });
+
+  CLI::App* ccd =
+      app.add_subcommand("ccd", "time of impact of each query of a file, by the simulation's own detection");
+  ccd->add_option("--kind", second, "vertex-face or edge-edge")
+      ->required()
+      ->check(CLI::IsMember({"vertex-face", "edge-edge"}));
+  ccd->add_option("QUERIES", first, "CSV, eight rows of rational coordinates a query")->required();
+  ccd->callback([&] { code = print_times_of_impact(second, first); });
 
   int target_tets = embed::CageOptions().target_tets;
   double scale = 1.0;

@@ -80,11 +80,11 @@ class Case {
   void finish() const {
     for (const auto& [key, value] : m_json.items())
       if (!m_asked.contains(key))
-        throw InputError("probe", m_place + "." + key, "is not a known key",
-                         "keys are: " + list_keys());
+        throw InputError("probe", m_place + "." + key, "is not a known key", "keys are: " + list_keys());
   }
   [[noreturn]] void refuse_range(const std::string& key, const std::string& range) const {
-    throw InputError("probe", m_place + "." + key, m_json[key].dump() + " is outside " + range, "give a value in that range");
+    throw InputError("probe", m_place + "." + key, m_json[key].dump() + " is outside " + range,
+                     "give a value in that range");
   }
 
  private:
@@ -120,7 +120,9 @@ Json to_json(const Matrix& a) {
   return rows;
 }
 
-Json list(const Vec3& a) { return {a(0), a(1), a(2)}; }
+Json list(const Vec3& a) {
+  return {a(0), a(1), a(2)};
+}
 
 material::Elastic read_elastic(Case& c) {
   material::Elastic e{c.number("youngs_modulus_Pa"), c.number("poissons_ratio")};
@@ -131,11 +133,13 @@ material::Elastic read_elastic(Case& c) {
 
 Json probe_effective_medium(Case& c) {
   using material::Scheme;
-  const std::vector<std::string> names = {"dilute",  "dilute_strain", "mori_tanaka", "self_consistent", "differential",
-                                          "voigt",   "reuss",         "hs_lower",    "hs_upper"};
-  constexpr std::array<Scheme, 9> kSchemes = {Scheme::dilute, Scheme::dilute_strain, Scheme::mori_tanaka,
-                                              Scheme::self_consistent, Scheme::differential, Scheme::voigt,
-                                              Scheme::reuss, Scheme::hs_lower, Scheme::hs_upper};
+  const std::vector<std::string> names = {"dilute",          "dilute_strain", "mori_tanaka",
+                                          "self_consistent", "differential",  "voigt",
+                                          "reuss",           "hs_lower",      "hs_upper"};
+  constexpr std::array<Scheme, 9> kSchemes = {
+      Scheme::dilute,          Scheme::dilute_strain, Scheme::mori_tanaka,
+      Scheme::self_consistent, Scheme::differential,  Scheme::voigt,
+      Scheme::reuss,           Scheme::hs_lower,      Scheme::hs_upper};
   const material::Elastic solid = read_elastic(c);
   material::EffectiveMedium medium;
   medium.fluid_bulk_modulus = c.number("fluid_bulk_modulus_Pa", 0.0);
@@ -209,7 +213,8 @@ Json probe_element(Case& c) {
   const Mat3 R = turned ? solid::compute_rotation(F) : Mat3(Mat3::Identity());
   const double E = e.youngs_modulus;
   const double nu = e.poissons_ratio;
-  const Mat6 C = solid::make_isotropic_stiffness(E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu)));
+  const Mat6 C =
+      solid::make_isotropic_stiffness(E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu)));
   const solid::Mat34 force = solid::compute_element_force(tet, R, solid::compute_strain(F, R) - plastic, C);
   return {{"force", to_json(Eigen::MatrixXd(force.transpose()))},
           {"stiffness", to_json(solid::compute_element_stiffness(tet, R, C))}};
@@ -223,10 +228,12 @@ Json probe_plastic_update(Case& c) {
   law.creep_per_s = c.number("creep_per_s");
   law.max = c.number("max");
   law.deviatoric = c.flag("deviatoric", false);
-  law.form = c.word("form", {"rate", "literal"}, 0) == 0 ? material::FlowForm::rate : material::FlowForm::literal;
+  law.form =
+      c.word("form", {"rate", "literal"}, 0) == 0 ? material::FlowForm::rate : material::FlowForm::literal;
   law.norm = c.word("norm", {"frobenius", "voigt6"}, 0) == 0 ? material::StrainNorm::frobenius
-                                                            : material::StrainNorm::voigt6;
-  const Vec6 after = material::compute_plastic_strain(strain, plastic, c.number("yield"), law, c.number("step_s"));
+                                                             : material::StrainNorm::voigt6;
+  const Vec6 after =
+      material::compute_plastic_strain(strain, plastic, c.number("yield"), law, c.number("step_s"));
   if (as_matrix) return {{"plastic_strain", to_json(from_mandel(after))}};
   return {{"plastic_strain", std::vector<double>(after.data(), after.data() + 6)}};
 }
@@ -240,14 +247,15 @@ Json probe_clay_kernel(Case& c) {
 }
 
 using Kernel = Json (*)(Case&);
-constexpr std::array<std::pair<const char*, Kernel>, 8> kKernels = {{{"effective_medium", probe_effective_medium},
-                                                                     {"eshelby", probe_eshelby},
-                                                                     {"vertex_face", probe_vertex_face},
-                                                                     {"edge_edge", probe_edge_edge},
-                                                                     {"polar", probe_polar},
-                                                                     {"element", probe_element},
-                                                                     {"plastic_update", probe_plastic_update},
-                                                                     {"clay_kernel", probe_clay_kernel}}};
+constexpr std::array<std::pair<const char*, Kernel>, 8> kKernels = {
+    {{"effective_medium", probe_effective_medium},
+     {"eshelby", probe_eshelby},
+     {"vertex_face", probe_vertex_face},
+     {"edge_edge", probe_edge_edge},
+     {"polar", probe_polar},
+     {"element", probe_element},
+     {"plastic_update", probe_plastic_update},
+     {"clay_kernel", probe_clay_kernel}}};
 
 }  // namespace
 

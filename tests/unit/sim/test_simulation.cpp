@@ -1,0 +1,179 @@
+// The loop on a small block of clay: rates, modes, what is exchanged between tool and body.
+#include "sim/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include "contact/tool_shape.h"
+#include "support/block_mesh.h"
+
+namespace argil::sim {
+namespace {
+
+constexpr double kToolRadius = 0.008;
+
+Params make_params() {
+  Params p;
+  p.elastic = {1e5, 0.3};
+  p.plasticity.enabled = false;
+  p.kernel.form = material::KernelForm::off;
+  p.contact = {50.0, 50.0};
+  p.solid.solver = solid::SolverKind::cholesky;
+  p.water.diffusivity = 1e-6;
+  p.water.wetting_flux = 20.0;
+  p.water.drying_flux = 20.0;
+  p.device.max_force = 100.0;
+  p.device.max_force_rate = 1e9;
+  return p;
+}
+
+/// Block of 4 × 4 × 2 cm; its bottom may be fixed.
+Body make_body(bool fixed) {
+  Body body;
+  body.mesh = test::make_block(6, 6, 3, Vec3(0.04, 0.04, 0.02));
+  body.topology = mesh::make_topology(body.mesh);
+  if (fixed)
+    for (int v = 0; v < body.mesh.num_vertices(); ++v)
+      if (body.mesh.vertices(2, v) < 1e-9) body.fixed.push_back(v);
+  body.initial_saturation = Field::Zero(body.mesh.num_tets());
+  return body;
+}
+
+/// Hand over the middle of the block, the tool's lowest point `gap` above it.
+device::DeviceSample over(double gap, device::ToolMode mode) {
+  device::DeviceSample sample;
+  sample.position = {0.0211, 0.0197, 0.02 + kToolRadius + gap};
+  sample.mode = mode;
+  return sample;
+}
+
+Simulation make_simulation(const Params& params, bool fixed = true) {
+  return Simulation(make_body(fixed), contact::make_sphere_tool(kToolRadius, 2), params,
+                    over(0.001, device::ToolMode::push));
+}
+
+TEST(Simulation, BodyTakesUpTheMomentumThatTheHandGives) {
+  // Free body: d/dt Σ m v = −(force on the hand), exactly in backward Euler when the contact force is
+  // explicit.
+  Params params = make_params();
+  params.solid.implicit_contact = false;
+  Simulation simulation = make_simulation(params, false);
+  Vec3 impulse = Vec3::Zero();
+  for (int k = 1; k <= 60; ++k) {
+    ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k, device::ToolMode::push)).is_ok());
+    impulse -= params.rates.haptic_period * simulation.state().hand_force;
+  }
+  const Vec3 momentum = simulation.state().solid.v * simulation.solid().mass();
+  EXPECT_LT(momentum.z(), -1e-5);
+  EXPECT_LT((momentum - impulse).norm(), 1e-12 * impulse.norm() + 1e-17);
+}
+
+TEST(Simulation, PushSendsTheHandUpAndTheSurfaceDown) {
+  Simulation simulation = make_simulation(make_params());
+  for (int k = 1; k <= 60; ++k)
+    ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k, device::ToolMode::push)).is_ok());
+  EXPECT_GT(simulation.state().hand_force.z(), 0.01);
+  EXPECT_LT((simulation.state().solid.x - simulation.body().mesh.vertices).row(2).minCoeff(), -1e-5);
+}
+
+TEST(Simulation, PullSendsTheHandDownAndTheSurfaceUp) {
+  Params params = make_params();
+  params.contact = {2.0, 2.0};
+  Simulation simulation = make_simulation(params);
+  for (int k = 1; k <= 60; ++k)
+    ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k, device::ToolMode::pull)).is_ok());
+  EXPECT_LT(simulation.state().hand_force.z(), -1e-4);
+  EXPECT_GT((simulation.state().solid.x - simulation.body().mesh.vertices).row(2).maxCoeff(), 1e-8);
+}
+
+TEST(Simulation, WetToolIsFeltGivesWaterAndLeavesTheBodyAtRest) {
+  Simulation simulation = make_simulation(make_params());
+  for (int k = 1; k <= 100; ++k)
+    ASSERT_TRUE(simulation.tick(over(0.001 - 3e-5 * k, device::ToolMode::wet)).is_ok());
+  EXPECT_GT(simulation.state().hand_force.z(), 0.01);
+  // ∇N of the rest shape is rounded, so the rest strain is some 1e-16 and the body stirs by that much.
+  EXPECT_LT((simulation.state().solid.x - simulation.body().mesh.vertices).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_GT(simulation.pore_water().ledger().added, 1e-6);
+}
+
+TEST(Simulation, WaterLedgerClosesThroughWettingPressingAndDrying) {
+  Simulation simulation = make_simulation(make_params());
+  for (int k = 1; k <= 900; ++k) {
+    const device::ToolMode mode = k < 300   ? device::ToolMode::wet
+                                  : k < 600 ? device::ToolMode::push
+                                            : device::ToolMode::dry;
+    ASSERT_TRUE(simulation.tick(over(-0.001, mode)).is_ok());
+  }
+  const water::PoreWater& water = simulation.pore_water();
+  EXPECT_GT(water.ledger().added, 1e-6);
+  EXPECT_GT(water.ledger().removed, 1e-7);
+  EXPECT_LT(std::abs(water.ledger_error()), 1e-12);
+}
+
+TEST(Simulation, WetClayPushesBackLess) {
+  double force[2] = {};
+  for (const int wet : {0, 1}) {
+    Body body = make_body(true);
+    body.initial_saturation.setConstant(wet);
+    Simulation simulation(std::move(body), contact::make_sphere_tool(kToolRadius, 2), make_params(),
+                          over(0.001, device::ToolMode::push));
+    for (int k = 1; k <= 200; ++k)
+      ASSERT_TRUE(simulation.tick(over(0.001 - 3e-5 * std::min(k, 100), device::ToolMode::push)).is_ok());
+    force[wet] = simulation.state().hand_force.z();
+  }
+  EXPECT_LT(force[1], 0.9 * force[0]);
+}
+
+TEST(Simulation, HoldKeepsTheForceBetweenPhysicsStepsAndCountsItsAge) {
+  Params params = make_params();
+  params.rates.physics_period_ticks = 5;
+  params.rates.water_period_ticks = 10;
+  Simulation simulation = make_simulation(params);
+  Vec3 last = Vec3::Zero();
+  for (int k = 1; k <= 60; ++k) {
+    ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k, device::ToolMode::push)).is_ok());
+    EXPECT_EQ(simulation.state().force_age, k % 5);
+    if (k % 5 != 0) {
+      EXPECT_EQ(simulation.state().hand_force, last) << k;
+    }
+    last = simulation.state().hand_force;
+  }
+  EXPECT_GT(last.z(), 0.01);
+}
+
+TEST(Simulation, ReEvaluateFindsAForceEveryTick) {
+  Params params = make_params();
+  params.rates.physics_period_ticks = 5;
+  params.rates.between_frames = BetweenFrames::re_evaluate;
+  Simulation simulation = make_simulation(params);
+  Vec3 last = Vec3::Zero();
+  for (int k = 1; k <= 60; ++k) {
+    ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k, device::ToolMode::push)).is_ok());
+    EXPECT_EQ(simulation.state().force_age, 0);
+    if (k > 30) {
+      EXPECT_NE(simulation.state().hand_force, last) << k;
+    }
+    last = simulation.state().hand_force;
+  }
+}
+
+TEST(Simulation, NothingMovesWhileTheToolIsAway) {
+  Simulation simulation = make_simulation(make_params());
+  for (int k = 1; k <= 20; ++k) ASSERT_TRUE(simulation.tick(over(0.05, device::ToolMode::push)).is_ok());
+  // ∇N of the rest shape is rounded, so the rest strain is some 1e-16 and the body stirs by that much.
+  EXPECT_LT((simulation.state().solid.x - simulation.body().mesh.vertices).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_EQ(simulation.state().hand_force, Vec3(0, 0, 0));
+}
+
+TEST(Simulation, StateHashTellsTheLastBit) {
+  Simulation a = make_simulation(make_params());
+  Simulation b = make_simulation(make_params());
+  EXPECT_EQ(a.state_hash(), b.state_hash());
+  device::DeviceSample sample = over(-0.001, device::ToolMode::push);
+  ASSERT_TRUE(a.tick(sample).is_ok());
+  sample.position.z() = std::nextafter(sample.position.z(), 1.0);
+  ASSERT_TRUE(b.tick(sample).is_ok());
+  EXPECT_NE(a.state_hash(), b.state_hash());
+}
+
+}  // namespace
+}  // namespace argil::sim
