@@ -3,10 +3,17 @@
 #include <span>
 #include <vector>
 
-#include "mesh/topology.h"
-#include "water/parameters.h"
+#include "water/stencil.h"
 
 namespace argil::water {
+
+/// Sum that carries its rounding error along [Neumaier1974].
+struct CompensatedSum {
+  double sum = 0.0;
+  double error = 0.0;
+  void add(double x);
+  double value() const { return sum + error; }
+};
 
 /// Kilograms in and out since the start.
 struct WaterLedger {
@@ -15,10 +22,22 @@ struct WaterLedger {
   double removed = 0.0;  ///< [kg] taken by the tool
 };
 
-/// Water in the pores of every tet. Saturation S in [0, 1]; mass of a tet = ρ_w n V_rest S.
+/// All that a run must keep of the water to go on with the same bits.
+struct WaterState {
+  Field saturation;  ///< S per tet [–]
+  Field carry;  ///< what rounding kept out of S so far [–], |carry| ≤ half a unit in the last place of S
+  Field collected;  ///< S when collect_changed last named the tet
+  double initial = 0.0;
+  CompensatedSum added, removed;  ///< [kg]
+  bool nothing_collected = true;
+};
+
+/// Water in the pores of every tet. Saturation S in [0, 1]; mass of a tet = ρ_w n V_rest S. Serial: the bits
+/// depend on the calls alone.
 class PoreWater {
  public:
-  /// `initial_saturation`: one value per tet. Throws nothing; ranges were checked with the scenario.
+  /// `initial_saturation`: one value per tet, in [0, 1]. Ranges are checked with the scenario and asserted
+  /// here.
   PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, const WaterParams& params,
             const Field& initial_saturation);
 
@@ -27,56 +46,60 @@ class PoreWater {
   /// = 1, empties down to 0; what the tet cannot take stays with the tool. Every gram is booked.
   void exchange(std::span<const int> triangle, std::span<const double> area, int sign, double step_s);
 
-  /// Diffuses for `step_s` by two-point fluxes in explicit substeps within the monotone limit; conservative
-  /// to round-off. Only tets with water or a wet neighbour are touched. Returns the number of substeps.
+  /// Diffuses for `step_s` in explicit substeps within the monotone limit; the boundary is sealed.
+  /// Conservative to round-off; S stays between the smallest and the largest S around, bit for bit. Only tets
+  /// with water, or next to one that holds more than a trace (1e-12), are touched. Returns the number of
+  /// substeps.
   int diffuse(double step_s);
+
+  /// Substeps that `diffuse(step_s)` takes when there is water; for the scenario to refuse absurd ones.
+  double num_substeps(double step_s) const;
 
   /// Replaces `tets` by those whose saturation moved by more than `tolerance` since they were last collected,
   /// in increasing order; the first call collects all.
   void collect_changed(double tolerance, std::vector<int>& tets);
 
-  const Field& saturation() const { return m_saturation; }
+  const Field& saturation() const { return m_state.saturation; }
   double capacity(int tet) const { return m_capacity(tet); }  ///< mass at S = 1 [kg]
   double mass() const;                                        ///< Σ capacity·S [kg], compensated sum
   WaterLedger ledger() const;
   double ledger_error() const;  ///< (mass − initial − added + removed) / Σ capacity [–]
-  double monotone_step() const {
-    return m_monotone_step;
-  }  ///< longest substep [s] that keeps the maximum principle
-  int num_active() const {
-    return static_cast<int>(m_active.size());
-  }  ///< tets that are wet or next to a wet one
+
+  /// Longest substep [s] that keeps the maximum principle.
+  double monotone_step() const { return m_stencil.monotone_step; }
+  /// Tets that are or were wet, or next to such.
+  int num_active() const { return static_cast<int>(m_active.size()); }
+
+  const WaterState& state() const { return m_state; }
+  /// Goes on from `state`, made by a PoreWater of the same mesh and parameters.
+  void restore(const WaterState& state);
 
  private:
-  /// Sum that carries its rounding error along [Neumaier 1974].
-  struct CompensatedSum {
-    double sum = 0.0;
-    double error = 0.0;
-    void add(double x);
-    double value() const { return sum + error; }
-  };
-
   void activate(int tet);
   void activate_around(int tet);
+  void activate_all_wet();
+  void sort_active();
   void give(int tet, double mass);
+  bool passes(int a, int b) const;
+  void add(int tet, double change);
+  void compute_flow(double step_s);
+  void add_correction(double step_s);
+  void compute_correction(double step_s);
 
   WaterParams m_params;
-  Tets m_neighbours;
   std::vector<int> m_boundary_tet;
-  Eigen::Matrix4Xd
-      m_conductance;  // D·A_f/d_f across the face opposite to each corner [m³/s]; 0 at the boundary
-  Field m_volume;     // rest volume [m³]
-  Field m_capacity;
-  Field m_saturation;
-  Field m_flow;       // Σ of the flows into each active tet [m³/s of S]
-  Field m_collected;  // saturation when collect_changed last named the tet
+  Stencil m_stencil;
+  Field m_capacity;  // [kg]
+  WaterState m_state;
   std::vector<char> m_is_active;
-  std::vector<int> m_active;
-  std::vector<int> m_touched;
-  bool m_all_pending = true;
-  double m_monotone_step = 0.0;
-  double m_initial = 0.0;
-  CompensatedSum m_added, m_removed;
+  std::vector<int> m_active;      // sorted between calls
+  std::vector<int> m_merged;      // scratch of sort_active
+  std::size_t m_num_sorted = 0;   // how many of m_active are in order
+  std::vector<int> m_touched;     // scratch of exchange
+  Field m_change;                 // change of S in a substep
+  Points m_gradient;              // ∇S of each active tet [1/m]; this and the next two: corrected flux only
+  Eigen::Matrix4Xd m_correction;  // unlimited change of S by the correction across each face
+  Eigen::Matrix2Xd m_share;  // of the correction that raises (0) or lowers (1) S, how much is let through
 };
 
 }  // namespace argil::water

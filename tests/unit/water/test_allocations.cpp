@@ -1,0 +1,64 @@
+// No allocation in the calls of a water step. Counts operator new and Eigen's own route to the heap (malloc),
+// which glibc lets a program replace; sanitizers replace it themselves, so the test is left out there.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+
+#include "support/block_mesh.h"
+#include "water/water.h"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+namespace {
+std::size_t s_allocations = 0;
+}
+
+extern "C" void* __libc_malloc(std::size_t size);     // NOLINT: glibc's name
+extern "C" void* malloc(std::size_t size) noexcept {  // NOLINT
+  ++s_allocations;
+  return __libc_malloc(size);
+}
+
+namespace argil::water {
+namespace {
+
+TEST(PoreWater, AllocatesNothingOnceItIsMade) {
+  const mesh::TetMesh mesh = test::make_block(6, 6, 6, Vec3(0.1, 0.1, 0.1));
+  const mesh::Topology topology = mesh::make_topology(mesh);
+  for (const UptakeForm uptake : {UptakeForm::flux, UptakeForm::increment}) {
+    WaterParams params;
+    params.diffusivity = 5e-6;
+    params.uptake = uptake;
+    params.wetting_flux = 1.0;
+    params.saturation_increment = 0.1;
+    PoreWater water(mesh, topology, params, Field::Zero(mesh.num_tets()));
+    std::vector<int> changed;
+    water.collect_changed(1e-4, changed);  // names every tet: as long as the list can get
+    const int triangle[] = {5, 17};
+    const double area[] = {1e-4, 1e-4};
+    double mass = 0.0;
+    const std::size_t before = s_allocations;
+    for (int i = 0; i < 200; ++i) {
+      water.exchange(triangle, area, i < 100 ? 1 : -1, 0.01);
+      water.diffuse(2.0);
+      water.collect_changed(1e-4, changed);
+      mass += water.mass() + water.ledger_error();
+    }
+    EXPECT_EQ(s_allocations - before, 0U);
+    EXPECT_GT(mass, 0.0);
+    EXPECT_EQ(water.num_active(), mesh.num_tets());  // the front went through the whole body meanwhile
+  }
+}
+
+TEST(AllocationCount, SeesAnAllocation) {
+  const std::size_t before = s_allocations;
+  const Field field = Field::Zero(1000);
+  const std::vector<int> list(1000, 1);
+  EXPECT_GE(s_allocations - before, 2U);
+  EXPECT_EQ(field.sum() + list[3], 1.0);
+}
+
+}  // namespace
+}  // namespace argil::water
+
+#endif
