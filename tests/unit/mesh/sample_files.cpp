@@ -8,7 +8,6 @@ namespace {
 constexpr std::array<std::array<double, 3>, 5> kVertices = {
     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}};
 constexpr std::array<std::array<int, 4>, 2> kTets = {{{0, 1, 2, 3}, {1, 2, 3, 4}}};
-constexpr std::array<std::array<int, 3>, 4> kTriangles = {{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 // Labels with a gap, and an unused node 7: the geometry of a CAD model leaves such.
 constexpr std::array<int, 5> kLabels = {1, 2, 3, 5, 9};
 constexpr int kUnused = 7;
@@ -303,61 +302,6 @@ std::string make_vtu_raw() {
       "<AppendedData encoding=\"raw\">\n_" + raw + "\n</AppendedData>\n");
 }
 
-constexpr const char* kObj = R"(# a tetrahedron
-mtllib none.mtl
-v 0 0 0
-v 1.0 0 0 1.0
-vt 0.5 0.5
-vn 0 0 1
-v 0 1 0 0.5 0.5 0.5
-v 0 0 \
-  1
-usemtl none
-f 1 3 2
-f 1/1 2/1 4/1 # textured
-f 1//1 4//1 3//1
-f -3/1/1 -2/1/1 -1/1/1
-)";
-
-std::string make_stl_ascii() {
-  std::string text = "solid a tetrahedron\n";
-  for (const auto& triangle : kTriangles) {
-    text += "  facet normal nan nan nan\n    outer loop\n";
-    for (const int v : triangle) {
-      text += "      vertex";
-      for (const double c : kVertices[static_cast<std::size_t>(v)]) text += c > 0.0 ? " 1.0e0" : " -0.0";
-      text += "\n";
-    }
-    text += "    endloop\n  endfacet\n";
-  }
-  return text + "endsolid a tetrahedron\n";
-}
-
-constexpr const char* kPlyAscii = R"(ply
-format ascii 1.0
-comment a tetrahedron
-element vertex 4
-property float nx
-property double x
-property double y
-property double z
-element face 4
-property uchar red
-property list uchar int vertex_indices
-element edge 1
-property int vertex1
-end_header
-9 0 0 0
-9 1 0 0
-9 0 1 0
-9 0 0 1
-255 3 0 2 1
-255 3 0 1 3
-255 3 0 3 2
-255 3 1 2 3
-0
-)";
-
 }  // namespace
 
 mesh::TetMesh make_two_tets() {
@@ -436,35 +380,6 @@ std::string make_vtk_binary() {
   return text + "\n";
 }
 
-std::string make_stl_binary() {
-  std::string text = "solid, yet binary";
-  text.resize(80, ' ');
-  append_bytes(text, std::uint32_t{4});
-  for (const auto& triangle : kTriangles) {
-    for (int c = 0; c < 3; ++c) append_bytes(text, 0.0F);
-    for (const int v : triangle)
-      for (const double c : kVertices[static_cast<std::size_t>(v)]) append_bytes(text, static_cast<float>(c));
-    append_bytes(text, std::uint16_t{0});
-  }
-  return text;
-}
-
-std::string make_ply_binary(bool is_big) {
-  std::string text =
-      std::string("ply\nformat binary_") + (is_big ? "big" : "little") +
-      "_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-      "property uchar red\nelement face 4\nproperty list uchar ushort vertex_index\nend_header\n";
-  for (std::size_t v = 0; v < 4; ++v) {
-    for (const double c : kVertices[v]) append_bytes(text, static_cast<float>(c), is_big);
-    text += '\x0a';  // a colour that looks like a line break
-  }
-  for (const auto& triangle : kTriangles) {
-    text += '\x03';
-    for (const int v : triangle) append_bytes(text, static_cast<std::uint16_t>(v), is_big);
-  }
-  return text;
-}
-
 std::vector<SampleFile> make_tet_samples() {
   return {
       {"22_ascii.msh", kGmsh22, "", ""},
@@ -485,15 +400,6 @@ std::vector<SampleFile> make_tet_samples() {
        make_vtu("header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"", kVtuAppended, kAppendedBase64),
        "", ""},
       {"raw.vtu", make_vtu_raw(), "", ""}};
-}
-
-std::vector<SampleFile> make_surface_samples() {
-  return {{"text.obj", kObj, "", ""},
-          {"text.stl", make_stl_ascii(), "", ""},
-          {"binary.stl", make_stl_binary(), "", ""},
-          {"text.ply", kPlyAscii, "", ""},
-          {"little.ply", make_ply_binary(false), "", ""},
-          {"big.PLY", make_ply_binary(true), "", ""}};
 }
 
 }  // namespace argil::test
