@@ -28,6 +28,13 @@ double compute_extent(const PairPath& path) {
   return (high - low).maxCoeff();
 }
 
+/// Comparisons cannot tell where a point is that is not a number.
+bool is_finite(const PairPath& path) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < 4; ++i) sum += 0.0 * path.t0[i] + 0.0 * path.t1[i];
+  return sum == Vec3::Zero();
+}
+
 /// Number of points of the first feature; the others are the second's.
 std::size_t first_feature_size(PairKind kind) {
   return kind == PairKind::vertex_face ? 1 : 2;
@@ -128,6 +135,7 @@ double coplanarity_error_bound(const PairPath& path) {
 }
 
 std::optional<double> find_time_of_impact(PairKind kind, const PairPath& path) {
+  if (!is_finite(path)) return 0.0;
   if (are_boxes_apart(kind, path)) return {};
   const std::array<double, 4> c = compute_coplanarity(kind, path);
   const double coplanarity_error = coplanarity_error_bound(path);

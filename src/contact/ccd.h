@@ -19,7 +19,7 @@ enum class PairKind { vertex_face, edge_edge };
 
 /// Earliest time at which the vertex meets the triangle, or the edges meet. Safe: no meeting is missed and
 /// the time is never later than the true one. A hit may be reported for features that pass at a distance of
-/// some hundred roundings of their extent (about 1e-13 of it).
+/// some hundred roundings of their extent (about 1e-13 of it); a coordinate that is not finite is a hit at 0.
 ///
 /// First the swept boxes and the coplanarity cubic's Bernstein coefficients: with one sign throughout, the
 /// four points are never in one plane [Tang2010]. Then time goes forward as long as the features can be shown

@@ -1,10 +1,13 @@
 #include "contact/tool_shape.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
+
+#include "base/error.h"
 
 namespace argil::contact {
 namespace {
@@ -149,6 +152,42 @@ mesh::TriangleMesh make_stylus_tool(double tip_radius, double radius, double len
     profile.push_back({from.r + (to.r - from.r) * i / kAlong, from.z + (to.z - from.z) * i / kAlong});
   profile.push_back({0.0, length});
   return revolve(profile, segments);
+}
+
+void require_closed_tool(const mesh::TriangleMesh& tool, const std::string& file) {
+  if (tool.num_triangles() < 4)
+    throw InputError(file, "", "has " + std::to_string(tool.num_triangles()) + " triangles",
+                     "a tool is a closed surface of at least 4");
+  std::map<std::pair<int, int>, int> direction;  // half-edge → triangle
+  double volume = 0.0;
+  for (int t = 0; t < tool.num_triangles(); ++t) {
+    const std::string place = "triangle " + std::to_string(t);
+    const Eigen::Vector3i f = tool.triangles.col(t);
+    if (f.minCoeff() < 0 || f.maxCoeff() >= tool.num_vertices())
+      throw InputError(file, place, "uses a vertex that the file does not have", "give all vertices");
+    const Vec3 a = tool.vertices.col(f(0));
+    const Vec3 b = tool.vertices.col(f(1));
+    const Vec3 c = tool.vertices.col(f(2));
+    const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    constexpr double kFlat = 1e-12;  // height over length of a triangle that rounding cannot tell from a line
+    if (!((b - a).cross(c - a).norm() > kFlat * longest))
+      throw InputError(file, place, "has no area, or a coordinate that is not a number",
+                       "remove triangles without area and join vertices at the same place");
+    volume += a.dot(b.cross(c)) / 6.0;
+    for (int k = 0; k < 3; ++k)
+      if (!direction.emplace(std::pair(f(k), f((k + 1) % 3)), t).second)
+        throw InputError(file, "edge " + std::to_string(f(k)) + "-" + std::to_string(f((k + 1) % 3)),
+                         "is run along twice in the same direction",
+                         "let every edge belong to two triangles with the same outside");
+  }
+  for (const auto& [edge, t] : direction)
+    if (!direction.contains({edge.second, edge.first}))
+      throw InputError(file, "edge " + std::to_string(edge.first) + "-" + std::to_string(edge.second),
+                       "belongs to triangle " + std::to_string(t) + " only: the surface is open",
+                       "close the surface; a tool needs an inside");
+  if (!(volume > 0.0))
+    throw InputError(file, "", "encloses the volume " + std::to_string(volume) + " m3",
+                     "turn the triangles round so that their normals point out");
 }
 
 }  // namespace argil::contact

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "mesh/tet_mesh.h"
 
 namespace argil::contact {
@@ -15,5 +17,11 @@ mesh::TriangleMesh make_capsule_tool(double radius, double length, int segments)
 /// Stylus: a tip of `tip_radius` around the origin that widens as a cone to `radius` at (0, 0, length),
 /// closed flat.
 mesh::TriangleMesh make_stylus_tool(double tip_radius, double radius, double length, int segments);
+
+/// Throws InputError naming `file` and the first edge or triangle at fault unless the surface can be a tool:
+/// at least a tetrahedron, finite, every edge shared by two triangles that run along it in opposite
+/// directions (closed, manifold and oriented alike), no triangle without area, and normals pointing out
+/// (positive volume).
+void require_closed_tool(const mesh::TriangleMesh& tool, const std::string& file);
 
 }  // namespace argil::contact
