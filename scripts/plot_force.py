@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Draws the size of the force at the hand against time, one line a run, and a closer look at the strongest press.
 
-Usage: plot_force.py A.h5 [B.h5 ...] [--labels A B ...] [--align-press] [-o STEM]     → STEM.png, STEM.pdf
+Usage: plot_force.py A.h5 [B.h5 ...] [--labels A B ...] [--align-press] [--smooth SECONDS] [-o STEM]
 """
 import argparse
 from typing import NamedTuple
@@ -19,11 +19,21 @@ class Run(NamedTuple):
     deforming: np.ndarray  # the tool pushes or pulls
 
 
-def read_run(file, label, align_press):
+def moving_mean(time, values, window):
+    """Mean over `window` [s] around each sample, over what there is of it at the ends."""
+    width = 2 * round(0.5 * window / (time[1] - time[0])) + 1 if len(time) > 1 else 1
+    ones = np.ones(width)
+    return np.convolve(values, ones, "full")[width // 2:][:len(values)] / np.convolve(
+        np.ones(len(values)), ones, "full")[width // 2:][:len(values)]
+
+
+def read_run(file, label, align_press, smooth=0.0):
     with ap.open_result(file) as result:
         time, force, deforming = result["haptic/time"][:], ap.force_norm(result), ap.is_deforming(result)
     if len(time) == 0:
         ap.refuse(f"{file}: has no haptic ticks")
+    if smooth > 0.0:
+        force = moving_mean(time, force, smooth)
     if align_press:
         if not deforming.any():
             ap.refuse(f"{file}: the tool never pushes or pulls, so there is no press to align")
@@ -67,7 +77,7 @@ def draw_water_bands(axes, runs):
                 drawn.add(band)
 
 
-def draw(runs, align_press):
+def draw(runs, align_press, smooth):
     peak = find_peak(runs)
     time_label = "time since the push began [s]" if align_press else "time [s]"
     figure, panels = plt.subplots(1, 2 if peak else 1, figsize=(180 * ap.MILLIMETRES, 72 * ap.MILLIMETRES),
@@ -75,7 +85,7 @@ def draw(runs, align_press):
     whole = panels[0][0]
     draw_lines(whole, runs, time_label)
     draw_water_bands(whole, runs)
-    whole.set_ylabel("force at the hand [N]")
+    whole.set_ylabel("force at the hand [N]" + (f"\nmean over {smooth:g} s" if smooth > 0.0 else ""))
     whole.margins(x=0)
     whole.set_ylim(bottom=0, top=1.08 * max(1e-12, *(np.max(run.force, initial=0.0) for run in runs)))
     if peak:
@@ -100,11 +110,15 @@ def main():
     parser.add_argument("files", nargs="+", metavar="RESULT.h5")
     parser.add_argument("--labels", nargs="+", help="one a file; default: the files' names")
     parser.add_argument("--align-press", action="store_true", help="time counts from the first push or pull sample")
+    parser.add_argument("--smooth", type=float, default=0.0, metavar="SECONDS",
+                        help="draw the moving mean over so long; 0.1 takes out a hand's tremor")
     parser.add_argument("-o", "--output", default="force", metavar="STEM", help="default: force")
     options = parser.parse_args()
     labels = ap.labels_for(options.files, options.labels)
-    runs = [read_run(file, label, options.align_press) for file, label in zip(options.files, labels)]
-    ap.save(draw(runs, options.align_press), options.output)
+    if not options.smooth >= 0.0:
+        ap.refuse(f"--smooth {options.smooth:g}: give 0 or more seconds")
+    runs = [read_run(file, label, options.align_press, options.smooth) for file, label in zip(options.files, labels)]
+    ap.save(draw(runs, options.align_press, options.smooth), options.output)
 
 
 if __name__ == "__main__":

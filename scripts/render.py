@@ -401,7 +401,7 @@ def main():
     with display():
         images, top = render_rows(rows, options.field, options.zoom)
     figure = compose(images, rows, labels, options.field, top)
-    figure.savefig(options.output, dpi=200, facecolor=BACKGROUND, metadata={"Software": None})
+    figure.savefig(options.output, dpi=160, facecolor=BACKGROUND, metadata={"Software": None})
     print(options.output)
 
 

@@ -83,6 +83,10 @@ class Figures(unittest.TestCase):
         self.assertAlmostEqual(start, 0.060)
         self.assertAlmostEqual(end, 0.089)
 
+    def test_smoothing_is_the_mean_of_the_samples_around(self):
+        mean = plot_force.moving_mean(1e-3 * np.arange(6), np.array([1.0, 2, 3, 4, 5, 9]), 0.002)
+        np.testing.assert_allclose(mean, [1.5, 2, 3, 4, 6, 7])
+
     def test_a_run_without_contact_has_no_strongest_one(self):
         write_result(self.file("none.h5"), 0.0, touch=False)
         self.assertIsNone(plot_force.find_peak([plot_force.read_run(self.file("none.h5"), "none", False)]))
