@@ -28,6 +28,12 @@ std::string quote(std::string_view word) {
   return "\"" + text + (word.size() > kQuotedLength ? "…\"" : "\"");
 }
 
+// std::from_chars knows no plus sign. "+-1" stays as it is, which is no number.
+std::string_view drop_plus(std::string_view word) {
+  const bool is_positive = word.starts_with('+') && !word.starts_with("+-");
+  return is_positive ? word.substr(1) : word;
+}
+
 std::string read_bytes(const std::string& file) {
   const auto fail = [&](int code) {
     throw IoError(file, std::string("cannot be read: ") + std::strerror(code != 0 ? code : EIO));
@@ -164,8 +170,7 @@ void FileCursor::fail_truncated(std::string_view what) const {
 }
 
 double FileCursor::parse_number(std::string_view word, std::string_view what) const {
-  std::string_view digits = word;
-  if (digits.starts_with('+')) digits.remove_prefix(1);
+  const std::string_view digits = drop_plus(word);
   double value = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool is_whole_word = end == digits.data() + digits.size();
@@ -179,8 +184,7 @@ double FileCursor::parse_number(std::string_view word, std::string_view what) co
 }
 
 std::int64_t FileCursor::parse_integer(std::string_view word, std::string_view what) const {
-  std::string_view digits = word;
-  if (digits.starts_with('+')) digits.remove_prefix(1);
+  const std::string_view digits = drop_plus(word);
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size())

@@ -61,8 +61,10 @@ LabelIndex::LabelIndex(const std::vector<std::int64_t>& labels, const FileCursor
                        const std::string& kind) {
   if (labels.empty()) return;
   m_lowest = labels.front();
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    m_is_gapless = m_is_gapless && labels[i] - m_lowest == static_cast<std::int64_t>(i);
+  // No difference of labels: that of the two ends of the integers does not fit into one.
+  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
+  for (std::size_t i = 1; i < labels.size(); ++i)
+    m_is_gapless = m_is_gapless && labels[i - 1] != kLast && labels[i] == labels[i - 1] + 1;
   m_highest = labels.back();
   if (m_is_gapless) return;
   m_sorted.reserve(labels.size());

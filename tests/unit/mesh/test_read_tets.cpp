@@ -139,6 +139,7 @@ TEST(RefuseTets, GmshSaysWhere) {
       {"22_ascii.msh", "2 1 0 0", "2 1e999 0 0",
        "line 11: a node coordinate is \"1e999\", outside the range"},
       {"22_ascii.msh", "2 1 0 0", "2 1,5 0 0", "line 11: a node coordinate is \"1,5\", not a number"},
+      {"22_ascii.msh", "2 1 0 0", "2 +-1 0 0", "line 11: a node coordinate is \"+-1\", not a number"},
       {"22_ascii.msh", "2 1 0 0", "1 1 0 0", "vertex number 1 appears twice"},
       {"22_ascii.msh", "2 3 5 9", "2 3 5 8",
        "line 21: tet 3 names vertex 8; vertices run from 1 to 9 with gaps"},
@@ -280,6 +281,23 @@ TEST(RefuseTets, NamesThatCannotBeRead) {
   std::filesystem::create_directory(folder / "folder.msh");
   ARGIL_EXPECT_THROW_WITH(read_tet_mesh(folder / "folder.msh"), IoError, "Is a directory");
   ARGIL_EXPECT_THROW_WITH(read_tet_mesh(folder.write("empty.msh", "")), InputError, "line 1: does not begin");
+}
+
+// The difference of these labels is no 64-bit integer.
+TEST(ReadTets, LabelsMayLieAtBothEndsOfTheIntegers) {
+  const test::TempFolder folder;
+  SampleFile sample = find_sample("22_ascii.msh");
+  const auto rename = [&](const std::string& from, const std::string& to) {
+    const std::size_t at = sample.content.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    sample.content.replace(at, from.size(), to);
+  };
+  rename("\n1 0 0 0", "\n-9223372036854775808 0 0 0");
+  rename("\n9 1 1 1", "\n9223372036854775807 1 1 1");
+  rename("\n1 2 2 1 1 1 3 2", "\n1 2 2 1 1 5 3 2");  // the surface triangle
+  rename("\n2 4 2 1 1 1 2", "\n2 4 2 1 1 -9223372036854775808 2");
+  rename("2 3 5 9\n", "2 3 5 9223372036854775807\n");
+  expect_two_tets(read_sample(folder, sample), sample.name);
 }
 
 TEST(RefuseTets, CoordinatesThatOverflowInMetres) {
