@@ -9,8 +9,10 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "base/rng.h"
 #include "sample_files.h"
 #include "support/block_mesh.h"
+#include "support/mesh_measures.h"
 #include "support/temp_folder.h"
 
 namespace argil::mesh {
@@ -77,6 +79,20 @@ TEST(Quality, ALowPyramidHasFlatAndObtuseAngles) {
   EXPECT_NEAR(report.max_dihedral_degrees, std::acos(cosine) * kDegrees, 1e-10);
 }
 
+// Seeded: angles by the normals of faces against angles in the plane across each edge.
+TEST(Quality, DihedralAnglesAgreeWithASecondFormula) {
+  Rng rng(11, "dihedral");
+  for (int trial = 0; trial < 200; ++trial) {
+    TetMesh mesh = make_corner_tet();
+    for (Eigen::Index i = 0; i < mesh.vertices.size(); ++i) mesh.vertices.data()[i] = rng.uniform(-1.0, 1.0);
+    const test::AngleRange expected = test::compute_dihedral_range(mesh);
+    const QualityReport report = compute_quality(mesh);
+    // Rounding, enlarged by the thinness of the worst of the random tets.
+    EXPECT_NEAR(report.min_dihedral_degrees, expected.smallest, 1e-9);
+    EXPECT_NEAR(report.max_dihedral_degrees, expected.largest, 1e-9);
+  }
+}
+
 TEST(Quality, ABlockIsCleanAndItsVolumeIsThatOfTheBox) {
   const TetMesh mesh = test::make_block(3, 2, 4, Vec3(0.3, 0.2, 0.4));
   const QualityReport report = compute_quality(mesh);
@@ -125,6 +141,35 @@ TEST(Quality, FlatTetsAreFlatAtAnyPlaceAndSize) {
   EXPECT_EQ(compute_quality(twice).min_dihedral_degrees, 0.0);
   ARGIL_EXPECT_THROW_WITH(require_usable(compute_quality(twice), "a.msh"), InputError,
                           "a.msh: tets: 1 of 1 have no volume beyond round-off: 0");
+}
+
+// Turned and moved away, four points of a plane are on it only to round-off, and either sign of volume comes
+// out.
+TEST(Quality, APlaneHitOnlyToRoundOffIsFlatAndNotInverted) {
+  Rng rng(12, "plane");
+  int num_negative = 0;
+  constexpr int kTrials = 100;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Quat turn(Eigen::AngleAxisd(rng.uniform(0.0, 6.0), Vec3(1.0, 2.0, rng.uniform()).normalized()));
+    const Vec3 away = 1000.0 * Vec3(1.0, -0.3, rng.uniform());
+    TetMesh mesh = make_tet(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0.3, 0.3, 0));
+    for (int v = 0; v < 4; ++v) mesh.vertices.col(v) = turn * Vec3(mesh.vertices.col(v)) + away;
+    const QualityReport report = compute_quality(mesh);
+    EXPECT_EQ(report.flat, std::vector<int>{0}) << "trial " << trial << " volume " << report.volume;
+    EXPECT_TRUE(report.inverted.empty());
+    num_negative += report.volume < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(num_negative, 0);  // else the trials ask nothing
+  EXPECT_LT(num_negative, kTrials);
+}
+
+TEST(Quality, AThinTetIsNotFlat) {
+  for (const double size : {1e-6, 1.0, 1e6}) {
+    // Height over width 1e-9, far above the 1e-16 of rounding.
+    const TetMesh thin = make_tet(Vec3(0, 0, 0), Vec3(size, 0, 0), Vec3(0, size, 0), Vec3(0, 0, 1e-9 * size));
+    EXPECT_TRUE(compute_quality(thin).flat.empty()) << size;
+    EXPECT_TRUE(compute_quality(thin).inverted.empty()) << size;
+  }
 }
 
 TEST(Quality, OrphanVerticesAreNamedAndRefused) {
