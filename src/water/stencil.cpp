@@ -49,8 +49,8 @@ void set_face(const mesh::TetMesh& mesh, double D, int t, int corner, int other,
   stencil.conductance(corner, t) = stencil.conductance(its_corner, other) = D * size / distance;
   if (stencil.tangent.cols() == 0) return;
   const Vec3 tangent = D * (area - size / distance * across);
-  stencil.tangent.col(t).segment<3>(3 * corner) = tangent;
-  stencil.tangent.col(other).segment<3>(3 * its_corner) = -tangent;
+  stencil.tangent.col(t).segment<3>(row_of(corner)) = tangent;
+  stencil.tangent.col(other).segment<3>(row_of(its_corner)) = -tangent;
 }
 
 /// Least-squares gradient from the four faces: d·∇S = S_o − S_t inside, n·∇S = 0 at the sealed boundary,
@@ -68,7 +68,7 @@ void set_gradient(const mesh::TetMesh& mesh, int t, Stencil& stencil) {
   }
   const Eigen::Matrix<double, 3, 4> inverse = rows.completeOrthogonalDecomposition().pseudoInverse();
   for (int corner = 0; corner < 4; ++corner)
-    stencil.gradient.col(t).segment<3>(3 * corner) = scale(corner) * inverse.col(corner);
+    stencil.gradient.col(t).segment<3>(row_of(corner)) = scale(corner) * inverse.col(corner);
 }
 
 }  // namespace

@@ -20,6 +20,11 @@ struct Stencil {
   double monotone_step = 0.0;  ///< min V_t/Σ conductance [s]: longest explicit step with a maximum principle
 };
 
+/// Row where the three entries of a corner begin.
+inline Eigen::Index row_of(int corner) {
+  return Eigen::Index{3} * corner;
+}
+
 /// `tangent` and `gradient` stay empty for FluxForm::two_point. Tets must have positive volume (asserted).
 Stencil make_stencil(const mesh::TetMesh& mesh, const mesh::Topology& topology, double diffusivity,
                      FluxForm form);

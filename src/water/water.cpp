@@ -160,7 +160,7 @@ void PoreWater::compute_flow(double step_s) {
       if (other < 0) continue;
       const double rise = S(other) - S(t);
       if (passes(t, other)) flow += m_stencil.conductance(corner, t) * rise;
-      if (corrected) gradient += rise * m_stencil.gradient.col(t).segment<3>(3 * corner);
+      if (corrected) gradient += rise * m_stencil.gradient.col(t).segment<3>(row_of(corner));
     }
     m_change(t) = step_s * flow / m_stencil.volume(t);
     if (corrected) m_gradient.col(t) = gradient;
@@ -182,7 +182,7 @@ void PoreWater::compute_correction(double step_s) {
       m_correction(corner, t) = 0.0;
       if (!passes(t, other)) continue;
       const Vec3 mean = 0.5 * (m_gradient.col(t) + m_gradient.col(other));
-      const double flow = step_s * m_stencil.tangent.col(t).segment<3>(3 * corner).dot(mean);
+      const double flow = step_s * m_stencil.tangent.col(t).segment<3>(row_of(corner)).dot(mean);
       m_correction(corner, t) = flow;
       (flow > 0.0 ? raise : lower) += std::abs(flow) / m_stencil.volume(t);
       const double its_low_order = S(other) + m_change(other);
