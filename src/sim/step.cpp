@@ -67,7 +67,8 @@ StepStatus Simulation::physics_step() {
   {
     const StageScope scope(m_observer, Stage::solve);
     ARGIL_TRY(m_solid.solve(solid, m_clock.tick));  // A v = b
-    apply_clay_kernel(h);                           // v ← G_d^{h/h_ref} v
+    m_solid.apply_contact_stiffness(solid.v, m_contact_stiffness, h, m_state.contact_force);
+    apply_clay_kernel(h);  // v ← G_d^{h/h_ref} v
     m_x_before = solid.x;
     solid.x += h * solid.v;
     m_state.contact_work += m_state.contact_force.cwiseProduct(solid.x - m_x_before).sum();

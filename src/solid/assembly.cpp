@@ -94,4 +94,17 @@ void Solid::add_contacts(std::span<const PointStiffness> contacts, double step_s
   }
 }
 
+void Solid::apply_contact_stiffness(const Points& velocity, std::span<const PointStiffness> contacts,
+                                    double step_s, Points& force) const {
+  if (!m_params.implicit_contact) return;
+  for (const PointStiffness& contact : contacts) {
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t i = 0; i < 3 && contact.vertex[i] >= 0; ++i)
+      mean += contact.weight[i] * velocity.col(contact.vertex[i]);
+    const Vec3 change = -step_s * contact.stiffness * contact.normal.dot(mean) * contact.normal;
+    for (std::size_t i = 0; i < 3 && contact.vertex[i] >= 0; ++i)
+      force.col(contact.vertex[i]) += contact.weight[i] * change;
+  }
+}
+
 }  // namespace argil::solid

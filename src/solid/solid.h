@@ -67,6 +67,11 @@ class Solid {
   /// Solves A v = b on the free vertices; fixed ones get v = 0.
   StepStatus solve(SolidState& state, Tick tick);
 
+  /// Turns the force that was given to assemble() into the one that acted: backward Euler takes a contact's
+  /// force at the end of the step, f − h k (n·v) n. `velocity`: as solved.
+  void apply_contact_stiffness(const Points& velocity, std::span<const PointStiffness> contacts,
+                               double step_s, Points& force) const;
+
   const TensorField& strain() const { return m_strain; }  ///< ε (Mandel) of the last kinematics
   const Field& volume() const { return m_volume; }        ///< rest volumes [m³]
   const Field& mass() const { return m_mass; }            ///< lumped, per vertex [kg]
