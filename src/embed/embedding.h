@@ -9,13 +9,13 @@ namespace argil::embed {
 
 /// Where each embedded point lies in the cage.
 struct Embedding {
-  std::vector<int> tet;              ///< containing cage tet of each point
-  Eigen::Matrix4Xd weights;          ///< barycentric weights in it, sum 1, in [0, 1] up to round-off
+  std::vector<int> tet;      ///< containing cage tet of each point
+  Eigen::Matrix4Xd weights;  ///< barycentric weights in it, sum 1, in [0, 1] up to round-off
   int num_points() const { return static_cast<int>(tet.size()); }
 };
 
-/// Finds the containing tet of every point (on a shared face: the lowest tet). Throws InputError naming `file`,
-/// the first outside points and their distance when the cage does not enclose all of them.
+/// Finds the containing tet of every point (on a shared face: the lowest tet). Throws InputError naming
+/// `file`, the first outside points and their distance when the cage does not enclose all of them.
 Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const std::string& file);
 
 /// Positions of the embedded points for cage vertices `x`: Σ wᵢ xᵢ. `out` is resized once.

@@ -13,7 +13,8 @@ enum class ShapeKind { sphere, cylinder, box, dinosaur, figure };
 
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
-  double size = 0.1;  ///< [m] sphere: diameter; cylinder: height (diameter = half); box: edge; dinosaur: length; figure: height
+  double size = 0.1;  ///< [m] sphere: diameter; cylinder: height (diameter = half); box: edge; dinosaur:
+                      ///< length; figure: height
 };
 
 /// Signed distance-like function of a shape, z up, feet or bottom at z = 0, centred in x and y.

@@ -17,8 +17,8 @@ struct TriangleMesh {
 
 /// Tetrahedral body at rest, with the fields its file carried.
 struct TetMesh {
-  Points vertices;  ///< 3×n rest positions [m]
-  Tets tets;        ///< 4×m vertex numbers; det(x1−x0, x2−x0, x3−x0) > 0
+  Points vertices;                           ///< 3×n rest positions [m]
+  Tets tets;                                 ///< 4×m vertex numbers; det(x1−x0, x2−x0, x3−x0) > 0
   std::map<std::string, Field> cell_fields;  ///< scalar data per tet found in the file, by its name there
   int num_vertices() const { return static_cast<int>(vertices.cols()); }
   int num_tets() const { return static_cast<int>(tets.cols()); }

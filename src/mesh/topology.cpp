@@ -72,8 +72,8 @@ Topology make_topology(const TetMesh& mesh) {
 Field compute_volumes(const Points& vertices, const Tets& tets) {
   Field volumes(tets.cols());
   for (Eigen::Index t = 0; t < tets.cols(); ++t)
-    volumes(t) = compute_tet_volume(vertices.col(tets(0, t)), vertices.col(tets(1, t)), vertices.col(tets(2, t)),
-                                    vertices.col(tets(3, t)));
+    volumes(t) = compute_tet_volume(vertices.col(tets(0, t)), vertices.col(tets(1, t)),
+                                    vertices.col(tets(2, t)), vertices.col(tets(3, t)));
   return volumes;
 }
 

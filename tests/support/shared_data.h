@@ -15,6 +15,6 @@ inline std::string shared_data(const std::string& relative) {
 }  // namespace argil::test
 
 /// Skips the running test, with a word, when a file of the public data folder is absent.
-#define ARGIL_NEED_SHARED_DATA(relative)                                       \
-  if (!std::filesystem::exists(::argil::test::shared_data(relative)))          \
+#define ARGIL_NEED_SHARED_DATA(relative)                              \
+  if (!std::filesystem::exists(::argil::test::shared_data(relative))) \
   GTEST_SKIP() << "needs " << (relative) << " of the public data folder, which is not beside the project"

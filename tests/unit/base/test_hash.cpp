@@ -12,8 +12,9 @@ TEST(Sha256, MatchesThePublishedDigestOfAbc) {
 }
 
 TEST(Sha256, MatchesThePublishedDigestOfTwoBlocks) {
-  EXPECT_EQ(Sha256().add(std::string("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")).hex_digest(),
-            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(
+      Sha256().add(std::string("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")).hex_digest(),
+      "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 
 TEST(Sha256, MatchesThePublishedDigestOfAMillionLettersAddedInUnevenPieces) {

@@ -1,4 +1,5 @@
-// Solvers against the closed-form solution of a 1-D Laplacian and against Eigen's dense LDLᵀ, which shares no code with them.
+// Solvers against the closed-form solution of a 1-D Laplacian and against Eigen's dense LDLᵀ, which shares no
+// code with them.
 #include <Eigen/Cholesky>
 
 #include <gtest/gtest.h>
@@ -23,7 +24,8 @@ BlockMatrix make_laplacian(int rows) {
   BlockMatrix a = make_chain(rows);
   const double h = 1.0 / (rows + 1);
   for (int r = 0; r < rows; ++r)
-    for (int b = a.row_begin[static_cast<std::size_t>(r)]; b < a.row_begin[static_cast<std::size_t>(r) + 1]; ++b)
+    for (int b = a.row_begin[static_cast<std::size_t>(r)]; b < a.row_begin[static_cast<std::size_t>(r) + 1];
+         ++b)
       a.block(b) = Mat3::Identity() * ((a.column[static_cast<std::size_t>(b)] == r ? 2.0 : -1.0) / (h * h));
   return a;
 }
@@ -47,7 +49,8 @@ BlockMatrix make_random_spd(int rows, std::uint64_t seed) {
 Eigen::MatrixXd to_dense(const BlockMatrix& a) {
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * a.num_rows(), 3 * a.num_rows());
   for (int r = 0; r < a.num_rows(); ++r)
-    for (int b = a.row_begin[static_cast<std::size_t>(r)]; b < a.row_begin[static_cast<std::size_t>(r) + 1]; ++b)
+    for (int b = a.row_begin[static_cast<std::size_t>(r)]; b < a.row_begin[static_cast<std::size_t>(r) + 1];
+         ++b)
       dense.block<3, 3>(3 * r, 3 * a.column[static_cast<std::size_t>(b)]) = a.block(b);
   return dense;
 }

@@ -1,4 +1,5 @@
-// Topology of two tets that share a face, and of a cube cut into five, whose counts follow from Euler's formula.
+// Topology of two tets that share a face, and of a cube cut into five, whose counts follow from Euler's
+// formula.
 #include "mesh/topology.h"
 
 #include <gtest/gtest.h>

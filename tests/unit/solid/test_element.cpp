@@ -1,5 +1,5 @@
-// One tet: the polar decomposition against its definition, force and stiffness against affine closed forms and against the
-// derivative of the energy.
+// One tet: the polar decomposition against its definition, force and stiffness against affine closed forms
+// and against the derivative of the energy.
 #include "solid/element.h"
 
 #include <Eigen/Eigenvalues>
@@ -62,12 +62,13 @@ TEST(ComputeStrain, IsObjective) {
   Rng rng(3);
   const Mat3 F = Mat3::Identity() + make_random_matrix(rng, 0.2);
   const Mat3 Q = make_random_rotation(rng);
-  EXPECT_LT((compute_strain(F, compute_rotation(F)) - compute_strain(Q * F, compute_rotation(Q * F))).norm(), 1e-14);
+  EXPECT_LT((compute_strain(F, compute_rotation(F)) - compute_strain(Q * F, compute_rotation(Q * F))).norm(),
+            1e-14);
 }
 
 TEST(ComputeElementForce, OfUniaxialStressIsStressTimesAreaOverThree) {
-  // Unit right tet stretched along x by e and contracted sideways by ν e: σ_xx = E e, all other stresses zero. The face
-  // x = 0 has area ½; its three corners share the force −σ_xx/2.
+  // Unit right tet stretched along x by e and contracted sideways by ν e: σ_xx = E e, all other stresses
+  // zero. The face x = 0 has area ½; its three corners share the force −σ_xx/2.
   const double E = 2e5;
   const double nu = 0.3;
   const double e = 1e-3;
@@ -116,7 +117,8 @@ TEST(ComputeElementForce, IsTheDerivativeOfTheEnergyOverTheDisplacementForAKeptR
 TEST(ComputeElementStiffness, HasTheSixRigidModesAndNoNegativeOnes) {
   Rng rng(5);
   const TetGeometry tet = make_tet_geometry(make_random_tet(rng));
-  const Mat12 K = compute_element_stiffness(tet, make_random_rotation(rng), make_isotropic_stiffness(3.0, 2.0));
+  const Mat12 K =
+      compute_element_stiffness(tet, make_random_rotation(rng), make_isotropic_stiffness(3.0, 2.0));
   const Eigen::VectorXd eigen = K.selfadjointView<Eigen::Lower>().eigenvalues();
   EXPECT_LT(eigen.head<6>().cwiseAbs().maxCoeff(), 1e-13 * eigen(11));
   EXPECT_GT(eigen(6), 1e-3 * eigen(11));

@@ -1,4 +1,5 @@
-// The implicit step on small meshes against closed forms: free fall, a damped oscillator, uniaxial tension, a rigid turn.
+// The implicit step on small meshes against closed forms: free fall, a damped oscillator, uniaxial tension, a
+// rigid turn.
 #include "solid/solid.h"
 
 #include <Eigen/Eigenvalues>
@@ -58,7 +59,8 @@ TEST_P(EverySolver, FreeFallFollowsBackwardEulerExactly) {
 }
 
 TEST_P(EverySolver, UniaxialTensionReachesHookesLaw) {
-  // Bar under end traction, held without lateral constraint: u = F L/(E A), contraction −ν u/L. P1 is exact for it.
+  // Bar under end traction, held without lateral constraint: u = F L/(E A), contraction −ν u/L. P1 is exact
+  // for it.
   const double E = 1e6;
   const double nu = 0.35;
   const Vec3 size(0.2, 0.05, 0.05);
@@ -66,7 +68,8 @@ TEST_P(EverySolver, UniaxialTensionReachesHookesLaw) {
   SolidParams params = make_params(GetParam());
   params.model = StrainModel::linear;
   params.rayleigh_mass = 300.0;
-  // The face x = 0 may slide in its plane; with symmetric corner loads on both ends no support is needed at all.
+  // The face x = 0 may slide in its plane; with symmetric corner loads on both ends no support is needed at
+  // all.
   Scene scene(std::move(mesh), {}, params, E, nu);
   const double stress = 1e3;
   const mesh::Topology topology = mesh::make_topology(scene.mesh);
@@ -87,11 +90,12 @@ TEST_P(EverySolver, UniaxialTensionReachesHookesLaw) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver,
-                         testing::Values(SolverKind::cholesky, SolverKind::pcg_cholesky, SolverKind::pcg_jacobi));
+                         testing::Values(SolverKind::cholesky, SolverKind::pcg_cholesky,
+                                         SolverKind::pcg_jacobi));
 
 TEST(Solid, OscillatorLosesAmplitudeAsBackwardEulerPredicts) {
-  // One free vertex is a linear oscillator in each eigendirection of its 3×3 stiffness: |z_{n+1}| = |z_n|/√(1+(hω)²),
-  // where z = ωu + iv.
+  // One free vertex is a linear oscillator in each eigendirection of its 3×3 stiffness: |z_{n+1}| =
+  // |z_n|/√(1+(hω)²), where z = ωu + iv.
   mesh::TetMesh mesh = test::make_block(1, 1, 1, Vec3(1, 1, 1));
   std::vector<int> fixed = {0, 1, 2, 3, 4, 5, 6};
   SolidParams params = make_params(SolverKind::cholesky);
@@ -131,16 +135,19 @@ TEST(Solid, RigidTurnProducesNoForceInTheCorotationalModelAndTheKnownStrainInThe
     const Points x = Q * scene.mesh.vertices;
     ASSERT_TRUE(scene.solid.update_kinematics(x, 0).is_ok());
     // sym(Q) − 1 = (cos θ − 1)(1 − a⊗a): norm √2 (1 − cos θ)
-    const double expected = model == StrainModel::linear ? std::numbers::sqrt2 * (1.0 - std::cos(angle)) : 0.0;
+    const double expected =
+        model == StrainModel::linear ? std::numbers::sqrt2 * (1.0 - std::cos(angle)) : 0.0;
     for (int t = 0; t < scene.mesh.num_tets(); ++t)
       EXPECT_NEAR(scene.solid.strain().col(t).norm(), expected, 1e-13);
   }
 }
 
 TEST(Solid, FreeBodyKeepsItsMomentum) {
-  Scene scene(test::make_block(3, 2, 2, Vec3(0.15, 0.1, 0.1)), {}, make_params(SolverKind::pcg_cholesky), 1e5, 0.3);
+  Scene scene(test::make_block(3, 2, 2, Vec3(0.15, 0.1, 0.1)), {}, make_params(SolverKind::pcg_cholesky), 1e5,
+              0.3);
   for (Eigen::Index v = 0; v < scene.state.v.cols(); ++v)
-    scene.state.v.col(v) = Vec3(0.3, -0.1, 0.2) + 0.2 * std::sin(7.0 * static_cast<double>(v)) * Vec3(1, 1, -1);
+    scene.state.v.col(v) =
+        Vec3(0.3, -0.1, 0.2) + 0.2 * std::sin(7.0 * static_cast<double>(v)) * Vec3(1, 1, -1);
   const Vec3 before = scene.state.v * scene.solid.mass();
   for (int k = 0; k < 50; ++k) ASSERT_TRUE(scene.step(1e-3).is_ok());
   const Vec3 after = scene.state.v * scene.solid.mass();
@@ -148,13 +155,15 @@ TEST(Solid, FreeBodyKeepsItsMomentum) {
 }
 
 TEST(Solid, LumpedMassIsDensityTimesVolume) {
-  Scene scene(test::make_block(3, 2, 2, Vec3(0.3, 0.2, 0.1)), {}, make_params(SolverKind::cholesky), 1e5, 0.3);
+  Scene scene(test::make_block(3, 2, 2, Vec3(0.3, 0.2, 0.1)), {}, make_params(SolverKind::cholesky), 1e5,
+              0.3);
   EXPECT_NEAR(scene.solid.mass().sum(), 1500.0 * 0.3 * 0.2 * 0.1, 1e-12);
 }
 
 TEST(Solid, PlasticStrainIsTheStressFreeShape) {
   // A body whose total strain equals its plastic strain is at rest in the deformed place.
-  Scene scene(test::make_block(2, 2, 2, Vec3(0.1, 0.1, 0.1)), {}, make_params(SolverKind::cholesky), 1e5, 0.3);
+  Scene scene(test::make_block(2, 2, 2, Vec3(0.1, 0.1, 0.1)), {}, make_params(SolverKind::cholesky), 1e5,
+              0.3);
   const Mat3 stretch = Vec3(1.1, 0.95, 1.0).asDiagonal();
   scene.state.x = stretch * scene.mesh.vertices;
   ASSERT_TRUE(scene.solid.update_kinematics(scene.state.x, 0).is_ok());
@@ -182,7 +191,8 @@ TEST(Solid, NanInThePositionsStopsTheStep) {
 }
 
 TEST(Solid, ContactStiffnessActsAsASpringBetweenBodyAndTool) {
-  // One free vertex of mass m, spring k at velocity v along n: (m + h²k) v' = m v when nothing else acts (E tiny).
+  // One free vertex of mass m, spring k at velocity v along n: (m + h²k) v' = m v when nothing else acts (E
+  // tiny).
   mesh::TetMesh mesh = test::make_block(1, 1, 1, Vec3(1, 1, 1));
   Scene scene(std::move(mesh), {0, 1, 2, 3, 4, 5, 6}, make_params(SolverKind::cholesky), 1e-9, 0.0);
   const double h = 0.01;
