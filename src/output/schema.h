@@ -77,7 +77,7 @@ inline constexpr hdf5::Label kPlasticStrain{"1",
 inline constexpr hdf5::Label kPlasticNorm{"1", "Frobenius norm of the plastic strain of each tet"};
 inline constexpr hdf5::Label kSkinPosition{"m", "positions of the skin's vertices"};
 inline constexpr hdf5::Label kSkinSaturation{"1", "water saturation at the skin's vertices, 0 to 1"};
-inline constexpr hdf5::Label kSkinInfluence{"1",
-                                            "the tool's region of influence at the skin's vertices, 0 to 1"};
+inline constexpr hdf5::Label kSkinInfluence{
+    "1", "the tool's region of influence at the skin's vertices, 0 to 1; 0 without a clay kernel"};
 
 }  // namespace argil::output::schema

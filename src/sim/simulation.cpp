@@ -151,8 +151,11 @@ Frame Simulation::make_frame() const {
     embed::interpolate_positions(m_body.skin_embedding, m_body.mesh.tets, m_state.solid.x,
                                  frame.skin_position);
     embed::interpolate_tet_field(m_body.skin_embedding, m_water.saturation(), frame.skin_saturation);
-    embed::compute_region_of_influence(frame.skin_position, m_state.tool.position, m_params.kernel.radius,
-                                       frame.skin_influence);
+    if (m_params.kernel.form == material::KernelForm::off)
+      frame.skin_influence.setZero(frame.skin_position.cols());
+    else
+      embed::compute_region_of_influence(frame.skin_position, m_state.tool.position,
+                                         m_params.kernel.radius, frame.skin_influence);
   }
   frame.state_hash = state_hash();
   return frame;
