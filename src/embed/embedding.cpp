@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "embed/tet_locator.h"
 #include "embed/triangle_tree.h"
+#include "mesh/quadratic.h"
 #include "mesh/topology.h"
 
 namespace argil::embed {
@@ -52,12 +53,18 @@ Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const 
   return embedding;
 }
 
-void interpolate_positions(const Embedding& embedding, const Tets& tets, const Points& x, Points& out) {
-  out.resize(3, embedding.num_points());
+void interpolate_positions(const Embedding& embedding, const Eigen::MatrixXi& nodes, const Points& x,
+                           Points& out) {
+  out.setZero(3, embedding.num_points());
+  const bool is_quadratic = nodes.rows() == 10;
+  Eigen::Matrix<double, 10, 1> shape;
   for (int i = 0; i < embedding.num_points(); ++i) {
-    const int t = embedding.tet[static_cast<std::size_t>(i)];
-    out.col(i) = embedding.weights(0, i) * x.col(tets(0, t)) + embedding.weights(1, i) * x.col(tets(1, t)) +
-                 embedding.weights(2, i) * x.col(tets(2, t)) + embedding.weights(3, i) * x.col(tets(3, t));
+    const auto node = nodes.col(embedding.tet[static_cast<std::size_t>(i)]);
+    if (is_quadratic)
+      shape = mesh::compute_quadratic_shape(embedding.weights.col(i));
+    else
+      shape.head<4>() = embedding.weights.col(i);
+    for (Eigen::Index k = 0; k < node.size(); ++k) out.col(i) += shape(k) * x.col(node(k));
   }
 }
 

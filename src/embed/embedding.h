@@ -18,8 +18,10 @@ struct Embedding {
 /// `file`, the first outside points and their distance when the cage does not enclose all of them.
 Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const std::string& file);
 
-/// Positions of the embedded points for cage vertices `x`: Σ wᵢ xᵢ. `out` is resized once.
-void interpolate_positions(const Embedding& embedding, const Tets& tets, const Points& x, Points& out);
+/// Positions of the embedded points for cage nodes `x`: Σ Nᵢ(w) xᵢ. `nodes`: 4×m (N = w) or 10×m (quadratic)
+/// node numbers of the cage's tets. `out` is resized once.
+void interpolate_positions(const Embedding& embedding, const Eigen::MatrixXi& nodes, const Points& x,
+                           Points& out);
 
 /// A per-tet field (saturation) seen at the embedded points: the value of the containing tet (the paper).
 void interpolate_tet_field(const Embedding& embedding, const Field& per_tet, Field& out);

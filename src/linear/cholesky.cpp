@@ -19,9 +19,9 @@ struct CholeskyFactor::Impl {
   cholmod_dense* work_e = nullptr;
   std::vector<int> source;  // for each stored scalar: its place in BlockMatrix::values
 
-  Impl() {
+  explicit Impl(FactorKind kind) {
     cholmod_start(&common);
-    common.supernodal = CHOLMOD_SIMPLICIAL;
+    common.supernodal = kind == FactorKind::supernodal ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
     common.final_ll = 0;
     common.print = 0;
     common.nmethods = 1;
@@ -44,7 +44,8 @@ CholeskyFactor::~CholeskyFactor() = default;
 CholeskyFactor::CholeskyFactor(CholeskyFactor&&) noexcept = default;
 CholeskyFactor& CholeskyFactor::operator=(CholeskyFactor&&) noexcept = default;
 
-CholeskyFactor::CholeskyFactor(const BlockMatrix& pattern) : m_impl(std::make_unique<Impl>()) {
+CholeskyFactor::CholeskyFactor(const BlockMatrix& pattern, FactorKind kind)
+    : m_impl(std::make_unique<Impl>(kind)) {
   Impl& impl = *m_impl;
   const int rows = pattern.num_rows();
   // Block row r of the stored matrix is block column r of the lower triangle because the matrix is symmetric.
@@ -87,6 +88,7 @@ bool CholeskyFactor::factorise(const BlockMatrix& matrix) {
   for (std::size_t s = 0; s < impl.source.size(); ++s) values[s] = from[impl.source[s]];
   cholmod_factorize(impl.lower, impl.factor, &impl.common);
   if (impl.common.status != CHOLMOD_OK || impl.factor->minor != impl.factor->n) return false;
+  if (impl.factor->is_super) return true;
   // LDLᵀ of an indefinite matrix succeeds; its D shows it.
   const double* l = static_cast<double*>(impl.factor->x);
   const int* p = static_cast<int*>(impl.factor->p);
@@ -103,6 +105,10 @@ void CholeskyFactor::solve(const Points& b, Points& x) {
   ARGIL_ASSERT(solved == 1, impl.common.status);
   x.resize(3, b.cols());
   std::copy_n(static_cast<const double*>(impl.solution->x), b.size(), x.data());
+}
+
+double CholeskyFactor::num_entries() const {
+  return m_impl->common.lnz;
 }
 
 }  // namespace argil::linear

@@ -6,11 +6,15 @@
 
 namespace argil::linear {
 
-/// CHOLMOD's simplicial LDLᵀ of a symmetric positive definite block matrix. The ordering is found once for a
-/// pattern; bits depend on the matrix alone (no BLAS is called).
+enum class FactorKind {
+  simplicial,  ///< LDLᵀ without BLAS: bits depend on the matrix alone
+  supernodal,  ///< LLᵀ by BLAS: faster on large matrices, bits depend on the BLAS that is installed
+};
+
+/// CHOLMOD's factor of a symmetric positive definite block matrix. The ordering is found once for a pattern.
 class CholeskyFactor {
  public:
-  explicit CholeskyFactor(const BlockMatrix& pattern);
+  explicit CholeskyFactor(const BlockMatrix& pattern, FactorKind kind = FactorKind::simplicial);
   ~CholeskyFactor();
   CholeskyFactor(CholeskyFactor&&) noexcept;
   CholeskyFactor& operator=(CholeskyFactor&&) noexcept;
@@ -21,6 +25,9 @@ class CholeskyFactor {
 
   /// x = A⁻¹ b with the last factor. No allocation after the first call.
   void solve(const Points& b, Points& x);
+
+  /// Numbers stored in the factor: what one triangular solve reads.
+  double num_entries() const;
 
  private:
   struct Impl;

@@ -32,9 +32,8 @@ void BlockJacobi::apply(const Points& r, Points& z) {
   for (Eigen::Index i = 0; i < r.cols(); ++i) z.col(i).noalias() = m_inverse.middleCols<3>(3 * i) * r.col(i);
 }
 
-SolveReport ConjugateGradients::solve(const BlockMatrix& matrix, Preconditioner& preconditioner,
-                                      const Points& b, double tolerance, int max_iterations, int threads,
-                                      Points& x) {
+SolveReport ConjugateGradients::solve(Operator& matrix, Preconditioner& preconditioner, const Points& b,
+                                      double tolerance, int max_iterations, Points& x) {
   m_r.resize(3, b.cols());
   m_z.resize(3, b.cols());
   m_p.resize(3, b.cols());
@@ -46,7 +45,7 @@ SolveReport ConjugateGradients::solve(const BlockMatrix& matrix, Preconditioner&
     report.converged = true;
     return report;
   }
-  multiply(matrix, x, m_q, threads);
+  matrix.multiply(x, m_q);
   m_r.noalias() = b - m_q;
   report.relative_residual = std::sqrt(dot(m_r, m_r)) / b_norm;
   double rz = 0.0;
@@ -59,7 +58,7 @@ SolveReport ConjugateGradients::solve(const BlockMatrix& matrix, Preconditioner&
     else
       m_p = m_z + (rz_next / rz) * m_p;
     rz = rz_next;
-    multiply(matrix, m_p, m_q, threads);
+    matrix.multiply(m_p, m_q);
     const double alpha = rz / dot(m_p, m_q);
     x.noalias() += alpha * m_p;
     m_r.noalias() -= alpha * m_q;

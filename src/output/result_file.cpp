@@ -206,6 +206,7 @@ void ResultFile::append(const sim::PhysicsRecord& record) {
   table.put(record.water_mass);
   table.put(record.water_added);
   table.put(record.water_removed);
+  table.put(record.newton_iterations);
   table.put(record.iterations);
   table.put(record.factorisations);
   table.put(record.residual);

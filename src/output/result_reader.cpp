@@ -163,6 +163,7 @@ std::vector<sim::PhysicsRecord> ResultReader::read_physics() const {
   read_reals("water_mass", &Record::water_mass);
   read_reals("water_added", &Record::water_added);
   read_reals("water_removed", &Record::water_removed);
+  read_counts("newton_iterations", &Record::newton_iterations);
   read_counts("iterations", &Record::iterations);
   read_counts("factorisations", &Record::factorisations);
   read_reals("residual", &Record::residual);

@@ -49,6 +49,7 @@ inline constexpr std::array kPhysics = {
     Column{"water_mass", real64, 1, {"kg", "water in the body"}},
     Column{"water_added", real64, 1, {"kg", "water given by the tool since the start"}},
     Column{"water_removed", real64, 1, {"kg", "water taken by the tool since the start"}},
+    Column{"newton_iterations", int32, 1, {"1", "linearisations of this step"}},
     Column{"iterations", int32, 1, {"1", "iterations of the linear solver in this step"}},
     Column{"factorisations", int32, 1, {"1", "factorisations of the system matrix since the start"}},
     Column{"residual", real64, 1, {"1", "relative residual of the linear solve"}},

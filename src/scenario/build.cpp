@@ -85,10 +85,10 @@ void require_vertices(const Scenario& s, const std::string& pointer, const std::
 
 void fix_and_load(const Scenario& s, sim::Body& body) {
   for (std::size_t i = 0; i < s.body.fixed.size(); ++i) {
-    const solid::Region& region = s.body.fixed[i];
+    const solid::Region& region = s.body.fixed[i].region;
     const std::string pointer = "/body/fixed/" + std::to_string(i);
     require_vertices(s, pointer + "/nodes", region.nodes, body.mesh.num_vertices());
-    if (solid::find_vertices(body.mesh.vertices, std::span(&region, 1)).empty()) {
+    if (solid::find_nodes(body.mesh.vertices, std::span(&region, 1)).empty()) {
       const Vec3 low = body.mesh.vertices.rowwise().minCoeff();
       const Vec3 high = body.mesh.vertices.rowwise().maxCoeff();
       std::ostringstream text;
@@ -96,14 +96,18 @@ void fix_and_load(const Scenario& s, sim::Body& body) {
       throw InputError(s.file, pointer, "holds no vertex of the body", text.str());
     }
   }
-  body.fixed = solid::find_vertices(body.mesh.vertices, s.body.fixed);
-  if (s.body.nodal_loads.empty()) return;
-  body.nodal_force.setZero(3, body.mesh.num_vertices());
-  for (std::size_t i = 0; i < s.body.nodal_loads.size(); ++i) {
-    const NodalLoad& load = s.body.nodal_loads[i];
-    require_vertices(s, "/body/loads/nodal/" + std::to_string(i) + "/nodes", load.nodes,
+  body.supports = s.body.fixed;
+  body.loads = s.body.loads;
+  for (std::size_t i = 0; i < s.body.loads.nodal.size(); ++i)
+    require_vertices(s, "/body/loads/nodal/" + std::to_string(i) + "/nodes", s.body.loads.nodal[i].nodes,
                      body.mesh.num_vertices());
-    for (const int v : load.nodes) body.nodal_force.col(v) += load.force;
+  for (std::size_t i = 0; i < s.body.loads.pressure.size(); ++i) {
+    const solid::Region& region = s.body.loads.pressure[i].region;
+    const std::string pointer = "/body/loads/pressure/" + std::to_string(i);
+    require_vertices(s, pointer + "/nodes", region.nodes, body.mesh.num_vertices());
+    if (solid::find_faces(body.mesh.vertices, body.topology.boundary, region).empty())
+      throw InputError(s.file, pointer, "holds no boundary face of the body",
+                       "widen it so that all three corners of a face lie in it");
   }
 }
 

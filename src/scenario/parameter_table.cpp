@@ -17,6 +17,7 @@ void describe_region(Binder& b, solid::Region& r) {
                  {{Kind::box, "box"},
                   {Kind::sphere, "sphere"},
                   {Kind::half_space, "half_space"},
+                  {Kind::plane, "plane"},
                   {Kind::nodes, "nodes"}},
                  "Which vertices at rest are meant.")
       .required = true;
@@ -25,14 +26,35 @@ void describe_region(Binder& b, solid::Region& r) {
   b.vector("/upper_m", r.upper, "m", "box: highest corner.").applies = only(Kind::box);
   b.vector("/centre_m", r.centre, "m", "sphere: centre.").applies = only(Kind::sphere);
   b.number("/radius_m", r.radius, not_negative(), "m", "sphere: radius.").applies = only(Kind::sphere);
-  b.vector("/normal", r.normal, "", "half_space: vertices with normal·x ≤ offset.").applies =
-      only(Kind::half_space);
-  b.number("/offset_m", r.offset, any_finite(), "m", "half_space: offset along the normal.").applies =
-      only(Kind::half_space);
+  const auto has_normal = [&r] { return r.kind == Kind::half_space || r.kind == Kind::plane; };
+  b.vector("/normal", r.normal, "", "half_space: vertices with normal·x ≤ offset; plane: with both equal.")
+      .applies = has_normal;
+  b.number("/offset_m", r.offset, any_finite(), "m", "half_space, plane: offset along the normal.").applies =
+      has_normal;
+  b.number("/thickness_m", r.thickness, not_negative(), "m", "plane: how far off a vertex may lie.").applies =
+      only(Kind::plane);
   b.integers("/nodes", r.nodes, not_negative(), "nodes: vertex numbers from 0.").applies = only(Kind::nodes);
 }
 
-void describe_load(Binder& b, NodalLoad& load) {
+void describe_support(Binder& b, solid::Support& support) {
+  describe_region(b, support.region);
+  b.boolean("/fixes_x", support.fixes[0], "Hold the x component; false: it is free.");
+  b.boolean("/fixes_y", support.fixes[1], "Hold the y component.");
+  b.boolean("/fixes_z", support.fixes[2], "Hold the z component.");
+  b.vector("/displacement_m", support.displacement, "m", "Where the held components go, from rest.");
+  b.number("/ramp_start_s", support.ramp_start, not_negative(), "s", "When they start to.");
+  b.number("/ramp_end_s", support.ramp_end, not_negative(), "s",
+           "When they are there; not after the start: at once.");
+}
+
+void describe_pressure(Binder& b, solid::PressureLoad& load) {
+  describe_region(b, load.region);
+  b.number("/pressure_Pa", load.pressure, any_finite(), "Pa",
+           "Pressure on boundary faces whose corners all lie in the region, inward positive.")
+      .required = true;
+}
+
+void describe_load(Binder& b, solid::NodalLoad& load) {
   b.integers("/nodes", load.nodes, not_negative(), "Vertex numbers from 0.").required = true;
   b.vector("/force_N", load.force, "N", "Force on each of them.").required = true;
 }
@@ -78,9 +100,11 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
       .applies = only(BodyKind::surface);
   b.number("/body/initial_saturation", p.water.initial_saturation, between(0, 1), "",
            "Saturation of every tet at the start.");
-  b.objects("/body/fixed", body.fixed, describe_region, "Vertices that do not move.");
+  b.objects("/body/fixed", body.fixed, describe_support,
+            "Vertices that are held or moved; where two overlap, the later one counts.");
   b.vector("/body/loads/gravity_m_per_s2", p.solid.gravity, "m/s²", "Acceleration of gravity.");
-  b.objects("/body/loads/nodal", body.nodal_loads, describe_load, "Constant forces on vertices.");
+  b.objects("/body/loads/nodal", body.loads.nodal, describe_load, "Constant forces on vertices.");
+  b.objects("/body/loads/pressure", body.loads.pressure, describe_pressure, "Constant pressures.");
 }
 
 void bind_material(Binder& b, sim::Params& p) {
@@ -229,19 +253,43 @@ void bind_dynamics(Binder& b, Scenario& s) {
   solid::SolidParams& d = s.params.solid;
   b.choice<solid::StrainModel>(
       "/dynamics/model", d.model,
-      {{solid::StrainModel::corotational, "corotational"}, {solid::StrainModel::linear, "linear"}},
-      "Strain; linear is the paper's.");
-  b.choice<solid::SolverKind>(
-      "/dynamics/solver/kind", d.solver,
-      {{solid::SolverKind::pcg_cholesky, "pcg_cholesky"},
-       {solid::SolverKind::pcg_jacobi, "pcg_jacobi"},
-       {solid::SolverKind::cholesky, "cholesky"}},
-      "Conjugate gradients over a kept factor, over diagonal blocks, or a factorisation every step.");
-  b.number("/dynamics/solver/tolerance", d.solver_tolerance, inside(0, 1), "",
+      {{solid::StrainModel::corotational, "corotational"},
+       {solid::StrainModel::linear, "linear"},
+       {solid::StrainModel::neo_hookean, "neo_hookean"}},
+      "Elastic law; linear is the paper's, neo_hookean the reference for large strain.");
+  b.choice<solid::ElementKind>(
+      "/dynamics/element", d.element,
+      {{solid::ElementKind::p1, "p1"},
+       {solid::ElementKind::p1_nodal, "p1_nodal"},
+       {solid::ElementKind::p2, "p2"}},
+      "4-node tets, the same without locking (volume averaged at nodes), 10-node tets.");
+  b.choice<solid::Integrator>("/dynamics/integrator", d.integrator,
+                              {{solid::Integrator::backward_euler, "backward_euler"},
+                               {solid::Integrator::bdf2, "bdf2"},
+                               {solid::Integrator::newmark, "newmark"},
+                               {solid::Integrator::symplectic_euler, "symplectic_euler"}},
+                              "Step in time; newmark: average acceleration; symplectic_euler: explicit.");
+  b.choice<solid::Iteration>("/dynamics/iteration", d.iteration,
+                             {{solid::Iteration::one, "one"}, {solid::Iteration::newton, "newton"}},
+                             "One linearised solve a step, or Newton's method with line search.");
+  b.number("/dynamics/newton/tolerance", d.newton_tolerance, inside(0, 1), "",
+           "newton: residual over the sum of the norms of its parts.");
+  b.integer("/dynamics/newton/max_iterations", d.newton_max_iterations, between(1, 1e6),
+            "newton: iterations after which the run stops.");
+  using linear::SolverKind;
+  b.choice<SolverKind>("/dynamics/solver/kind", d.solver.kind,
+                       {{SolverKind::pcg_cholesky, "pcg_cholesky"},
+                        {SolverKind::pcg_jacobi, "pcg_jacobi"},
+                        {SolverKind::pcg_matrix_free, "pcg_matrix_free"},
+                        {SolverKind::cholesky, "cholesky"},
+                        {SolverKind::supernodal, "supernodal"}},
+                       "Conjugate gradients over a kept factor, over diagonal blocks, the same without a "
+                       "stored matrix; or a factor of every new matrix, simplicial or supernodal.");
+  b.number("/dynamics/solver/tolerance", d.solver.tolerance, inside(0, 1), "",
            "Relative residual of the linear solve.");
-  b.integer("/dynamics/solver/max_iterations", d.solver_max_iterations, between(1, 1e6),
+  b.integer("/dynamics/solver/max_iterations", d.solver.max_iterations, between(1, 1e6),
             "Iterations after which the run stops.");
-  b.integer("/dynamics/solver/refactor_iterations", d.refactor_iterations, between(1, 1e6),
+  b.integer("/dynamics/solver/refactor_iterations", d.solver.refactor_iterations, between(1, 1e6),
             "pcg_cholesky: a solve with more iterations has the factor renewed.");
   b.number("/dynamics/rayleigh_mass_per_s", d.rayleigh_mass, not_negative(), "1/s", "a in D = a M + b K.");
   b.number("/dynamics/rayleigh_stiffness_s", d.rayleigh_stiffness, not_negative(), "s",

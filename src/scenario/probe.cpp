@@ -205,19 +205,27 @@ Json probe_element(Case& c) {
   const solid::Mat34 rest = Eigen::Map<const solid::Mat34>(rest_list.data());
   const solid::Mat34 deformed = Eigen::Map<const solid::Mat34>(deformed_list.data());
   const material::Elastic e = read_elastic(c);
-  const bool turned = c.word("model", {"corotational", "linear"}, 0) == 0;
+  using solid::StrainModel;
+  constexpr std::array<StrainModel, 3> kModels = {StrainModel::corotational, StrainModel::linear,
+                                                  StrainModel::neo_hookean};
+  const StrainModel model = kModels[c.word("model", {"corotational", "linear", "neo_hookean"}, 0)];
   const Vec6 plastic = c.tensor("plastic_strain", true);
   const solid::TetGeometry tet = solid::make_tet_geometry(rest);
   if (!(tet.volume > 0.0)) c.refuse_range("rest", "tets of positive volume");
-  const Mat3 F = solid::compute_deformation_gradient(deformed, tet.gradient);
-  const Mat3 R = turned ? solid::compute_rotation(F) : Mat3(Mat3::Identity());
+  const solid::PointMotion motion =
+      solid::make_motion(model, solid::compute_deformation_gradient(deformed, tet.gradient));
   const double E = e.youngs_modulus;
   const double nu = e.poissons_ratio;
-  const Mat6 C =
-      solid::make_isotropic_stiffness(E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu)));
-  const solid::Mat34 force = solid::compute_element_force(tet, R, solid::compute_strain(F, R) - plastic, C);
+  const solid::Elasticity elasticity{E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))};
+  const solid::Mat34 force = solid::compute_element_force(tet, model, motion, plastic, elasticity);
+  const Mat6 C = solid::make_isotropic_stiffness(elasticity.lambda, elasticity.mu);
+  const solid::Mat12 stiffness =
+      model == StrainModel::neo_hookean
+          ? solid::compute_element_stiffness(tet, solid::compute_tangent(model, motion, plastic, elasticity))
+          : solid::compute_element_stiffness(tet, motion.R, C);
   return {{"force", to_json(Eigen::MatrixXd(force.transpose()))},
-          {"stiffness", to_json(solid::compute_element_stiffness(tet, R, C))}};
+          {"energy_J", tet.volume * solid::compute_energy_density(model, motion, plastic, elasticity)},
+          {"stiffness", to_json(stiffness)}};
 }
 
 Json probe_plastic_update(Case& c) {

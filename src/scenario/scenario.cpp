@@ -121,19 +121,40 @@ void check_effective_medium(Scenario& s) {
     nu = std::max(
         nu, compute_poissons_ratio(material::compute_effective_medium(s.params.elastic, m.medium, phi_max)));
   }
-  if (nu > kLockingPoissonsRatio && !s.allow_locking) {
+  if (nu > kLockingPoissonsRatio && s.params.solid.element == solid::ElementKind::p1 && !s.allow_locking) {
     std::ostringstream text;
     text << "Poisson's ratio reaches " << nu << ", and 4-node tets lock above " << kLockingPoissonsRatio
          << ": the body would feel too stiff";
-    throw InputError(s.file,
-                     m.medium.fluid_bulk_modulus > 0.0 ? "/material/effective_medium/fluid_bulk_modulus_Pa"
-                                                       : "/material/poissons_ratio",
-                     text.str(),
-                     "use drained water (0 Pa), a smaller ratio, or set /dynamics/allow_locking to true");
+    throw InputError(
+        s.file,
+        m.medium.fluid_bulk_modulus > 0.0 ? "/material/effective_medium/fluid_bulk_modulus_Pa"
+                                          : "/material/poissons_ratio",
+        text.str(),
+        "use drained water (0 Pa), /dynamics/element p1_nodal or p2, or set /dynamics/allow_locking to true");
   }
 }
 
+/// What the elements and laws cannot do together.
+void check_solid(const Scenario& s) {
+  const solid::SolidParams& p = s.params.solid;
+  const bool needs_isotropy =
+      p.model == solid::StrainModel::neo_hookean || p.element == solid::ElementKind::p1_nodal;
+  const material::EffectiveMedium& medium = s.params.moisture.medium;
+  if (needs_isotropy && s.params.moisture.law == material::MoistureLaw::effective_medium &&
+      s.params.moisture.softens_elasticity && medium.orientation == material::Orientation::aligned &&
+      medium.aspect != 1.0)
+    throw InputError(s.file,
+                     p.model == solid::StrainModel::neo_hookean ? "/dynamics/model" : "/dynamics/element",
+                     "takes isotropic stiffness only, but the pores are aligned spheroids",
+                     "use the corotational or linear model with p1 or p2, or orientation random");
+  if (p.element == solid::ElementKind::p1_nodal && s.params.plasticity.enabled &&
+      !s.params.plasticity.deviatoric)
+    throw InputError(s.file, "/dynamics/element", "p1_nodal needs plastic flow that keeps the volume",
+                     "set /material/plasticity/deviatoric to true, or use p1 or p2");
+}
+
 void check_combinations(Scenario& s) {
+  check_solid(s);
   check_rates(s);
   check_tables(s);
   check_effective_medium(s);

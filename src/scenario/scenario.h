@@ -6,6 +6,7 @@
 #include "device/trace.h"
 #include "mesh/shapes.h"
 #include "sim/params.h"
+#include "solid/loads.h"
 
 namespace argil::scenario {
 
@@ -20,12 +21,6 @@ enum class Preset {
           ///< hold
 };
 
-/// Constant force on some vertices.
-struct NodalLoad {
-  std::vector<int> nodes;
-  Vec3 force = Vec3::Zero();  ///< [N] on each
-};
-
 /// Where the body comes from. Exactly one kind is given.
 struct BodySpec {
   BodyKind kind = BodyKind::shape;
@@ -37,8 +32,8 @@ struct BodySpec {
   int skin_triangles = 20000;    ///< shape: at least so many; 0: no skin
   std::string saturation_field;  ///< mesh: cell data with the initial saturation; empty: uniform
   std::string modulus_field;     ///< mesh: cell data with Young's modulus [Pa]; empty: the material's
-  std::vector<solid::Region> fixed;
-  std::vector<NodalLoad> nodal_loads;
+  std::vector<solid::Support> fixed;
+  solid::Loads loads;
 };
 
 struct ToolSpec {

@@ -33,6 +33,7 @@ struct PhysicsRecord {
   double water_mass = 0.0;           ///< [kg]
   double water_added = 0.0;          ///< [kg] since the start
   double water_removed = 0.0;        ///< [kg] since the start
+  int newton_iterations = 0;         ///< linearisations of the last physics step
   int iterations = 0;                ///< of the linear solver
   int factorisations = 0;            ///< since the start
   double residual = 0.0;             ///< relative, of the linear solve

@@ -15,21 +15,22 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
     : m_params(params),
       m_body(std::move(body)),
       m_moisture(params.elastic, params.plasticity.yield, params.moisture, params.water.porosity),
-      m_solid(m_body.mesh, m_body.topology, m_body.fixed, params.solid, params.threads),
+      m_solid(m_body.mesh, m_body.topology, m_body.supports, params.solid, params.threads),
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation),
-      m_detector(m_body.topology.boundary, m_body.mesh.num_vertices(), tool, params.contact),
+      m_detector(m_solid.elements().surface, m_solid.elements().num_nodes(), tool, params.contact),
       m_gate(params.device, params.rates.haptic_period) {
   m_clock.period = params.rates.haptic_period;
-  const Eigen::Index n = m_body.mesh.num_vertices();
+  const Eigen::Index n = m_solid.elements().num_nodes();
   m_state.tool = {start.position, start.orientation};
   m_state.mode = start.mode;
   m_state.contact_tool = m_state.tool;
-  m_state.contact_x = m_body.mesh.vertices;
+  m_state.solid = m_solid.make_rest_state();
+  m_state.contact_x = m_state.solid.x;
   m_state.contact_force.setZero(3, n);
-  m_state.solid = {m_body.mesh.vertices, Points::Zero(3, n), TensorField::Zero(6, m_body.mesh.num_tets())};
+  m_load_force = solid::compute_load_force(m_solid.elements(), m_body.topology.boundary, m_body.loads);
   m_external_force.setZero(3, n);
-  m_x_before = m_body.mesh.vertices;
-  m_dissipation.setZero(m_body.mesh.num_tets());
+  m_x_before = m_state.solid.x;
+  m_dissipation.setZero(m_solid.elements().num_points());
   refresh_materials(-1.0);
   const StepStatus rest = m_solid.update_kinematics(m_state.solid.x, 0);
   ARGIL_ASSERT(rest.is_ok());
@@ -74,20 +75,38 @@ void Simulation::apply_clay_kernel(double step_s) {
 void Simulation::apply_plastic_flow(double step_s) {
   if (!m_params.plasticity.enabled) return;
   TensorField& plastic = m_state.solid.plastic_strain;
-  parallel_for(plastic.cols(), m_params.threads, [&](std::ptrdiff_t t) {
-    const int tet = static_cast<int>(t);
-    const Vec6 before = plastic.col(t);
-    const Vec6 after = material::compute_plastic_strain(
-        m_solid.strain().col(t), before, m_solid.material(tet).yield, m_params.plasticity, step_s);
-    m_dissipation(t) = 0.0;
+  parallel_for(plastic.cols(), m_params.threads, [&](std::ptrdiff_t p) {
+    const int point = static_cast<int>(p);
+    const double yield = m_solid.material(m_solid.elements().tet_of_point(point)).yield;
+    const Vec6 before = plastic.col(p);
+    const Vec6 after =
+        material::compute_plastic_strain(m_solid.strain().col(p), before, yield, m_params.plasticity, step_s);
+    m_dissipation(p) = 0.0;
     if ((after.array() == before.array()).all()) return;
     // At fixed strain, the elastic energy that flow releases is what it dissipates.
-    m_dissipation(t) =
-        m_solid.compute_elastic_energy(tet, before) - m_solid.compute_elastic_energy(tet, after);
-    plastic.col(t) = after;
+    m_dissipation(p) =
+        m_solid.compute_elastic_energy(point, before) - m_solid.compute_elastic_energy(point, after);
+    plastic.col(p) = after;
   });
   m_state.plastic_dissipation +=
-      ordered_sum(m_dissipation.size(), [&](std::ptrdiff_t t) { return m_dissipation(t); });
+      ordered_sum(m_dissipation.size(), [&](std::ptrdiff_t p) { return m_dissipation(p); });
+}
+
+/// Water through the touched part of every boundary face; a quadratic tet's face is touched as four
+/// triangles.
+void Simulation::exchange_water(int sign, double step_s) {
+  const int per_face = m_solid.elements().surface_per_face;
+  m_touched_face.clear();
+  m_touched_area.clear();
+  for (std::size_t i = 0; i < m_contacts.touched_triangle.size(); ++i) {
+    const int face = m_contacts.touched_triangle[i] / per_face;
+    if (m_touched_face.empty() || m_touched_face.back() != face) {
+      m_touched_face.push_back(face);
+      m_touched_area.push_back(0.0);
+    }
+    m_touched_area.back() += m_contacts.touched_area[i];
+  }
+  m_water.exchange(m_touched_face, m_touched_area, sign, step_s);
 }
 
 /// Gives the solid the moduli and yield of every tet whose saturation moved by more than `tolerance` since
@@ -125,14 +144,15 @@ PhysicsRecord Simulation::physics_record() const {
   record.tick = m_clock.tick;
   record.time = static_cast<double>(m_clock.tick) * m_clock.period;
   record.kinetic_energy = m_solid.compute_kinetic_energy(m_state.solid);
-  record.elastic_energy = m_solid.compute_elastic_energy(m_state.solid);
+  record.elastic_energy = m_solid.compute_elastic_energy(m_state.solid.plastic_strain);
   record.plastic_dissipation = m_state.plastic_dissipation;
   record.contact_work = m_state.contact_work;
   record.water_mass = m_water.mass();
   record.water_added = m_water.ledger().added;
   record.water_removed = m_water.ledger().removed;
-  record.iterations = m_solid.counters().iterations;
-  record.factorisations = m_solid.counters().factorisations;
+  record.iterations = m_solid.counters().linear_iterations;
+  record.newton_iterations = m_solid.counters().newton_iterations;
+  record.factorisations = m_solid.solver_cost().factorisations;
   record.residual = m_solid.counters().residual;
   record.active_nodes = m_solid.num_free();
   record.min_volume_ratio = m_solid.min_volume_ratio();
@@ -140,22 +160,33 @@ PhysicsRecord Simulation::physics_record() const {
   return record;
 }
 
+/// ε_p of each tet: the mean of its points, whose weights are equal.
+TensorField Simulation::mean_plastic_strain() const {
+  const TensorField& at_points = m_state.solid.plastic_strain;
+  const int Q = m_solid.elements().points_per_tet;
+  if (Q == 1) return at_points;
+  TensorField mean(6, m_body.mesh.num_tets());
+  for (Eigen::Index t = 0; t < mean.cols(); ++t)
+    mean.col(t) = at_points.middleCols(Q * t, Q).rowwise().mean();
+  return mean;
+}
+
 Frame Simulation::make_frame() const {
   Frame frame;
   frame.tick = m_clock.tick;
   frame.time = static_cast<double>(m_clock.tick) * m_clock.period;
-  frame.position = m_state.solid.x;
+  frame.position = m_state.solid.x.leftCols(m_body.mesh.num_vertices());
   frame.saturation = m_water.saturation();
-  frame.plastic_strain = m_state.solid.plastic_strain;
+  frame.plastic_strain = mean_plastic_strain();
   if (m_body.skin_embedding.num_points() > 0) {
-    embed::interpolate_positions(m_body.skin_embedding, m_body.mesh.tets, m_state.solid.x,
+    embed::interpolate_positions(m_body.skin_embedding, m_solid.elements().nodes, m_state.solid.x,
                                  frame.skin_position);
     embed::interpolate_tet_field(m_body.skin_embedding, m_water.saturation(), frame.skin_saturation);
     if (m_params.kernel.form == material::KernelForm::off)
       frame.skin_influence.setZero(frame.skin_position.cols());
     else
-      embed::compute_region_of_influence(frame.skin_position, m_state.tool.position,
-                                         m_params.kernel.radius, frame.skin_influence);
+      embed::compute_region_of_influence(frame.skin_position, m_state.tool.position, m_params.kernel.radius,
+                                         frame.skin_influence);
   }
   frame.state_hash = state_hash();
   return frame;
@@ -175,6 +206,8 @@ std::string Simulation::state_hash() const {
   add(m_state.solid.x);
   add(m_state.solid.v);
   add(m_state.solid.plastic_strain);
+  add(m_state.solid.x_before);
+  add(m_state.solid.v_before);
   add(m_water.saturation());
   return hash.hex_digest();
 }

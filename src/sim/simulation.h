@@ -54,6 +54,8 @@ class Simulation {
   void apply_plastic_flow(double step_s);
 
   void spread_contact_force(int ticks);
+  void exchange_water(int sign, double step_s);
+  TensorField mean_plastic_strain() const;
   void refresh_materials(double tolerance);
 
   Params m_params;
@@ -68,10 +70,13 @@ class Simulation {
   device::OutputGate m_gate;
   device::GatedForce m_gated;
   std::vector<solid::PointStiffness> m_contact_stiffness;
+  std::vector<int> m_touched_face;  // boundary faces under the tool, and how much of each
+  std::vector<double> m_touched_area;
   std::vector<int> m_changed_tets;
+  Points m_load_force;  // 3×n, constant
   Points m_external_force;
   Points m_x_before;
-  Field m_dissipation;  // of each tet in the last physics step [J]
+  Field m_dissipation;  // of each point in the last physics step [J]
   StageObserver* m_observer = nullptr;
 };
 

@@ -5,6 +5,7 @@
 #include "device/sample.h"
 #include "embed/embedding.h"
 #include "mesh/topology.h"
+#include "solid/loads.h"
 #include "solid/solid.h"
 #include "water/water.h"
 
@@ -14,11 +15,11 @@ namespace argil::sim {
 struct Body {
   mesh::TetMesh mesh;
   mesh::Topology topology;
-  std::vector<int> fixed;    ///< vertices that do not move
-  Field initial_saturation;  ///< per tet [–]
-  Field modulus_scale;       ///< per tet: modulus over the material's [–]; empty: 1 everywhere
-  Points nodal_force;        ///< 3×n constant loads [N]; empty: none
-  mesh::TriangleMesh skin;   ///< empty without a skin
+  std::vector<solid::Support> supports;  ///< where its motion is prescribed
+  Field initial_saturation;              ///< per tet [–]
+  Field modulus_scale;                   ///< per tet: modulus over the material's [–]; empty: 1 everywhere
+  solid::Loads loads;
+  mesh::TriangleMesh skin;  ///< empty without a skin
   embed::Embedding skin_embedding;
 };
 

@@ -48,29 +48,33 @@ void Simulation::water_step() {
   const StageScope scope(m_observer, Stage::water);
   const double h = m_clock.seconds(m_params.rates.water_period_ticks);
   const bool wet = m_state.mode == device::ToolMode::wet;
-  if (wet || m_state.mode == device::ToolMode::dry)
-    m_water.exchange(m_contacts.touched_triangle, m_contacts.touched_area, wet ? 1 : -1, h);
+  if (wet || m_state.mode == device::ToolMode::dry) exchange_water(wet ? 1 : -1, h);
   m_water.diffuse(h);
   refresh_materials(m_params.moisture.refresh_tolerance);
 }
 
-/// Eq. 2 by one linearised backward Euler step: solve, scale the velocity (eq. 9), move, then plastic flow.
+/// Eq. 2 by one implicit step: solve, scale the velocity (eq. 9), move, then plastic flow.
 StepStatus Simulation::physics_step() {
   const double h = m_clock.seconds(m_params.rates.physics_period_ticks);
   solid::SolidState& solid = m_state.solid;
-  {
-    const StageScope scope(m_observer, Stage::assemble);
-    m_external_force = m_state.contact_force;
-    if (m_body.nodal_force.size() > 0) m_external_force += m_body.nodal_force;
-    m_solid.assemble(solid, m_external_force, m_contact_stiffness, h);  // A, b from the kept F, R, ε
+  m_external_force = m_state.contact_force + m_load_force;
+  const solid::StepLoads loads{m_external_force, m_contact_stiffness};
+  ARGIL_TRY(m_solid.begin_step(solid, loads, h, m_clock.time_at_end(), m_clock.tick));
+  for (bool solved = false; !solved;) {
+    {
+      const StageScope scope(m_observer, Stage::assemble);
+      solved = m_solid.assemble(loads);  // A, b from F, R, ε
+    }
+    const StageScope scope(m_observer, Stage::solve);
+    if (!solved) ARGIL_TRY(m_solid.solve(loads, m_clock.tick, solved));  // A δv = b
   }
   {
     const StageScope scope(m_observer, Stage::solve);
-    ARGIL_TRY(m_solid.solve(solid, m_clock.tick));  // A v = b
-    m_solid.apply_contact_stiffness(solid.v, m_contact_stiffness, h, m_state.contact_force);
+    m_solid.apply_contact_stiffness(m_contact_stiffness, m_state.contact_force);
+    m_solid.finish_step(solid);
     apply_clay_kernel(h);  // v ← G_d^{h/h_ref} v
     m_x_before = solid.x;
-    solid.x += h * solid.v;
+    m_solid.move(solid);
     m_state.contact_work += m_state.contact_force.cwiseProduct(solid.x - m_x_before).sum();
     m_state.contact_force.setZero();
   }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "base/mandel.h"
+#include "solid/law.h"
+#include "solid/polar.h"
 
 namespace argil::solid {
 
@@ -21,21 +22,18 @@ inline Mat3 compute_deformation_gradient(const Mat34& deformed, const Mat34& gra
   return deformed * gradient.transpose();
 }
 
-/// The rotation nearest to F, det R = +1 also when F is inverted or flat.  F = R S with S symmetric.
-/// Newton's iteration X ← ½(γX + (γX)⁻ᵀ) with the scaling of [Higham1986] where F is well conditioned and not
-/// inverted, else the singular value decomposition with the smallest direction turned.
-Mat3 compute_rotation(const Mat3& F);
+/// fᵢ = V P ∇Nᵢ = ∂W/∂xᵢ [N].
+Mat34 compute_element_force(const TetGeometry& tet, StrainModel model, const PointMotion& motion,
+                            const Vec6& plastic_strain, const Elasticity& e);
 
-/// Small strain in the turned frame: ε = sym(RᵀF) − 1 (Mandel). R = 1 gives the paper's Cauchy strain.
-Vec6 compute_strain(const Mat3& F, const Mat3& R);
-
-/// Isotropic stiffness in Mandel form [Pa].
-Mat6 make_isotropic_stiffness(double lambda, double mu);
-
-/// fᵢ = V R σ ∇Nᵢ with σ = C (ε − ε_p): the derivative of the elastic energy by the corners with R kept, [N].
-Mat34 compute_element_force(const TetGeometry& tet, const Mat3& R, const Vec6& elastic_strain, const Mat6& C);
-
-/// K = ∂f/∂x with R kept: blocks V R BᵢᵀC Bⱼ Rᵀ (12×12) [N/m]; symmetric, positive semi-definite.
+/// K with the rotation kept: blocks V R BᵢᵀC Bⱼ Rᵀ (12×12) [N/m]; symmetric, positive semi-definite. The
+/// one-step matrix of the linear and corotational models.
 Mat12 compute_element_stiffness(const TetGeometry& tet, const Mat3& R, const Mat6& C);
+
+/// K from ∂P/∂F: blocks V ∇Nᵢ·A·∇Nⱼ (12×12) [N/m].
+Mat12 compute_element_stiffness(const TetGeometry& tet, const Mat9& tangent);
+
+/// Block g_iᵀ A g_j of a tangent: (r, s) = Σ_cd g_i(c) A(3c+r, 3d+s) g_j(d).
+Mat3 compute_tangent_block(const Vec3& g_i, const Mat9& A, const Vec3& g_j);
 
 }  // namespace argil::solid

@@ -1,44 +1,47 @@
 #pragma once
 
-#include <vector>
-
 #include "base/types.h"
+#include "linear/solver.h"
 
 namespace argil::solid {
 
 enum class StrainModel {
   corotational,  ///< small strain in the frame turned by the polar decomposition
   linear,        ///< the paper's Cauchy strain
+  neo_hookean,   ///< stable neo-Hookean law, isotropic: the reference for large strain [Smith2018]
 };
 
-enum class SolverKind {
-  pcg_cholesky,  ///< conjugate gradients preconditioned by a kept CHOLMOD factor
-  pcg_jacobi,    ///< conjugate gradients preconditioned by the 3×3 diagonal blocks
-  cholesky,      ///< CHOLMOD simplicial LDLᵀ every step
+enum class ElementKind {
+  p1,        ///< 4-node tets (eq. 1)
+  p1_nodal,  ///< 4-node tets whose bulk stiffness above that of ν = 0.3 acts on volume changes averaged at
+             ///< nodes
+  p2,        ///< 10-node tets, four points
 };
 
-/// Part of space whose vertices at rest are meant; the kinds of SPEC's regions.
-struct Region {
-  enum class Kind { box, sphere, half_space, nodes } kind = Kind::box;
-  Vec3 lower = Vec3::Zero();    ///< box [m]
-  Vec3 upper = Vec3::Zero();    ///< box [m]
-  Vec3 centre = Vec3::Zero();   ///< sphere [m]
-  double radius = 0.0;          ///< sphere [m]
-  Vec3 normal = Vec3::UnitZ();  ///< half_space: vertices with normal·x ≤ offset
-  double offset = 0.0;          ///< half_space [m]
-  std::vector<int> nodes;       ///< nodes
+enum class Integrator {
+  backward_euler,    ///< first order, damps
+  bdf2,              ///< second order, damps what the step does not resolve
+  newmark,           ///< average acceleration: second order, no damping of its own
+  symplectic_euler,  ///< explicit, stable below the step 2/ω_max
+};
+
+enum class Iteration {
+  one,     ///< one linearised step, rotations kept [Baraff1998]
+  newton,  ///< to convergence, with line search on the incremental potential
 };
 
 struct SolidParams {
   StrainModel model = StrainModel::corotational;
+  ElementKind element = ElementKind::p1;
+  Integrator integrator = Integrator::backward_euler;
+  Iteration iteration = Iteration::one;
+  double newton_tolerance = 1e-10;  ///< of the residual over the sum of the norms of its parts
+  int newton_max_iterations = 50;
   double density = 1500.0;          ///< of dry clay [kg/m³]
   double rayleigh_mass = 0.0;       ///< a [1/s] in D = a M + b K
   double rayleigh_stiffness = 0.0;  ///< b [s]
   Vec3 gravity = Vec3::Zero();      ///< [m/s²]
-  SolverKind solver = SolverKind::pcg_cholesky;
-  double solver_tolerance = 1e-8;  ///< relative residual at which the iteration stops
-  int solver_max_iterations = 500;
-  int refactor_iterations = 12;   ///< pcg_cholesky: factorise anew after a solve with more iterations
+  linear::SolverParams solver;
   bool implicit_contact = true;   ///< contact stiffness enters the implicit solve
   double min_volume_ratio = 0.0;  ///< det F at or below which the run stops
 };

@@ -9,111 +9,93 @@
 #include "base/parallel.h"
 
 namespace argil::solid {
-namespace {
 
-bool contains(const Region& region, const Vec3& x) {
-  switch (region.kind) {
-    case Region::Kind::box:
-      return (x.array() >= region.lower.array()).all() && (x.array() <= region.upper.array()).all();
-    case Region::Kind::sphere:
-      return (x - region.centre).norm() <= region.radius;
-    case Region::Kind::half_space:
-      return region.normal.dot(x) <= region.offset;
-    case Region::Kind::nodes:
-      return false;
-  }
-  return false;
-}
+Solid::~Solid() = default;
+Solid::Solid(Solid&&) noexcept = default;
 
-std::vector<std::vector<int>> find_free_neighbours(const Tets& tets, const std::vector<int>& row_of_vertex,
-                                                   std::size_t num_rows) {
-  std::vector<std::vector<int>> neighbours(num_rows);
-  for (Eigen::Index t = 0; t < tets.cols(); ++t)
-    for (int i = 0; i < 4; ++i) {
-      const int row = row_of_vertex[static_cast<std::size_t>(tets(i, t))];
-      if (row < 0) continue;
-      for (int j = 0; j < 4; ++j) {
-        const int column = row_of_vertex[static_cast<std::size_t>(tets(j, t))];
-        if (column >= 0) neighbours[static_cast<std::size_t>(row)].push_back(column);
-      }
-    }
-  for (auto& list : neighbours) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-  return neighbours;
-}
-
-}  // namespace
-
-std::vector<int> find_vertices(const Points& rest, std::span<const Region> regions) {
-  std::vector<int> found;
-  for (const Region& region : regions) {
-    found.insert(found.end(), region.nodes.begin(), region.nodes.end());
-    for (int v = 0; v < rest.cols(); ++v)
-      if (contains(region, rest.col(v))) found.push_back(v);
-  }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  return found;
-}
-
-Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vector<int> fixed,
+Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vector<Support> supports,
              const SolidParams& params, int threads)
     : m_params(params),
       m_threads(threads),
-      m_tets(mesh.tets),
-      m_vertex_begin(topology.vertex_begin),
-      m_vertex_corners(topology.vertex_corners) {
-  const Eigen::Index num_tets = mesh.num_tets();
-  const Eigen::Index num_vertices = mesh.num_vertices();
-  m_volume.resize(num_tets);
-  m_gradient.resize(3, 4 * num_tets);
-  m_mass.setZero(num_vertices);
-  for (Eigen::Index t = 0; t < num_tets; ++t) {
-    Mat34 corners;
-    for (int i = 0; i < 4; ++i) corners.col(i) = mesh.vertices.col(m_tets(i, t));
-    const TetGeometry tet = make_tet_geometry(corners);
-    ARGIL_ASSERT(tet.volume > 0.0, t, tet.volume);
-    m_volume(t) = tet.volume;
-    m_gradient.middleCols<4>(4 * t) = tet.gradient;
-    for (int i = 0; i < 4; ++i) m_mass(m_tets(i, t)) += 0.25 * params.density * tet.volume;
-  }
-  m_material.resize(static_cast<std::size_t>(num_tets));
-  m_rotation.resize(3, 3 * num_tets);
-  m_strain.setZero(6, num_tets);
-  m_volume_ratio.setOnes(num_tets);
-  m_turned_gradient.resize(3, 4 * num_tets);
-  m_corner_force.setZero(3, 4 * num_tets);
-  m_internal_force.setZero(3, num_vertices);
-
-  m_row_of_vertex.assign(static_cast<std::size_t>(num_vertices), 0);
-  for (const int v : fixed) m_row_of_vertex[static_cast<std::size_t>(v)] = -1;
-  for (int v = 0; v < num_vertices; ++v) {
-    int& row = m_row_of_vertex[static_cast<std::size_t>(v)];
-    if (row < 0) continue;
-    row = static_cast<int>(m_vertex_of_row.size());
-    m_vertex_of_row.push_back(v);
-  }
-  m_matrix = linear::make_block_matrix(find_free_neighbours(m_tets, m_row_of_vertex, m_vertex_of_row.size()));
-  m_block_of_corner_pair.resize(static_cast<std::size_t>(16 * num_tets));
-  for (int t = 0; t < num_tets; ++t)
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) {
-        const int row = m_row_of_vertex[static_cast<std::size_t>(m_tets(i, t))];
-        const int column = m_row_of_vertex[static_cast<std::size_t>(m_tets(j, t))];
-        m_block_of_corner_pair[static_cast<std::size_t>(16 * t + 4 * i + j)] =
-            row < 0 || column < 0 ? -1 : linear::find_block(m_matrix, row, column);
-      }
+      m_elements(make_elements(mesh, topology, params.element)),
+      m_supports(std::move(supports)),
+      m_constraints(find_constraints(m_elements.rest, m_supports)),
+      m_mass(params.density * m_elements.node_volume),
+      m_solver(linear::make_solver(params.solver)) {
+  const Eigen::Index num_points = m_elements.num_points();
+  const Eigen::Index num_nodes = m_elements.num_nodes();
+  m_material.resize(static_cast<std::size_t>(m_elements.num_tets()));
+  m_deformation.resize(3, 3 * num_points);
+  m_rotation.resize(3, 3 * num_points);
+  m_strain.setZero(6, num_points);
+  m_volume_ratio.setOnes(num_points);
+  m_turned_gradient.resize(3, m_elements.gradient.cols());
+  m_corner_force.setZero(3, m_elements.nodes.size());
+  m_internal_force.setZero(3, num_nodes);
+  m_product.setZero(3, num_nodes);
+  number_rows();
+  m_x_hat = m_x = m_held_x = m_x_start = m_elements.rest;
+  m_v_hat.setZero(3, num_nodes);
+  m_v = m_v_base = m_v_start = m_zero = m_v_hat;
   m_rhs.setZero(3, num_free());
-  m_velocity.setZero(3, num_free());
+  m_delta.setZero(3, num_free());
+}
+
+/// Rows of the free nodes and the matrix's pattern.
+void Solid::number_rows() {
+  const int N = m_elements.nodes_per_tet;
+  m_row_of_node.assign(static_cast<std::size_t>(m_elements.num_nodes()), -1);
+  for (int n = 0; n < m_elements.num_nodes(); ++n) {
+    if (m_constraints.is_held(n)) continue;
+    const int row = num_free();
+    m_row_of_node[static_cast<std::size_t>(n)] = row;
+    m_node_of_row.push_back(n);
+    if (!m_constraints.is_free(n)) m_held_rows.push_back(row);
+  }
+  if (m_params.element == ElementKind::p1_nodal)
+    m_nodal = std::make_unique<NodalVolume>(m_elements, m_row_of_node);
+
+  const bool only_diagonal = m_params.solver.kind == linear::SolverKind::pcg_matrix_free;
+  std::vector<std::vector<int>> rows(m_node_of_row.size());
+  if (only_diagonal) {
+    for (std::size_t row = 0; row < rows.size(); ++row) rows[row] = {static_cast<int>(row)};
+  } else if (m_nodal) {
+    rows = m_nodal->find_row_neighbours();
+  } else {
+    const auto neighbours = find_node_neighbours(m_elements);
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      for (const int node : neighbours[static_cast<std::size_t>(m_node_of_row[row])])
+        if (m_row_of_node[static_cast<std::size_t>(node)] >= 0)
+          rows[row].push_back(m_row_of_node[static_cast<std::size_t>(node)]);
+  }
+  m_matrix = linear::make_block_matrix(rows);
+  if (m_nodal && !only_diagonal) m_nodal->connect(m_matrix);
+  m_block_of_corner_pair.reserve(static_cast<std::size_t>(N * N) * m_material.size());
+  for (int t = 0; t < m_elements.num_tets(); ++t)
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) {
+        const int row = m_row_of_node[static_cast<std::size_t>(m_elements.nodes(i, t))];
+        const int column = m_row_of_node[static_cast<std::size_t>(m_elements.nodes(j, t))];
+        m_block_of_corner_pair.push_back(row < 0 || column < 0 ? -1
+                                                               : linear::find_block(m_matrix, row, column));
+      }
+}
+
+SolidState Solid::make_rest_state() const {
+  SolidState state;
+  state.x = m_elements.rest;
+  state.v.setZero(3, m_elements.num_nodes());
+  state.plastic_strain.setZero(6, m_elements.num_points());
+  return state;
 }
 
 void Solid::set_material(int tet, const TetMaterial& material) {
   m_material[static_cast<std::size_t>(tet)] = material;
+  m_excess_changed = true;
 }
 
 void Solid::set_anisotropic_stiffness(int tet, const Mat6& C) {
+  ARGIL_ASSERT(m_params.model != StrainModel::neo_hookean && !m_nodal);
   if (m_stiffness.empty()) {
     m_stiffness.resize(m_material.size());
     for (std::size_t t = 0; t < m_material.size(); ++t)
@@ -122,46 +104,88 @@ void Solid::set_anisotropic_stiffness(int tet, const Mat6& C) {
   m_stiffness[static_cast<std::size_t>(tet)] = C;
 }
 
-StepStatus Solid::update_kinematics(const Points& x, Tick tick) {
-  const bool turned = m_params.model == StrainModel::corotational;
-  parallel_for(m_tets.cols(), m_threads, [&](std::ptrdiff_t t) {
-    Mat34 corners;
-    for (int i = 0; i < 4; ++i) corners.col(i) = x.col(m_tets(i, t));
-    const Mat34 gradient = m_gradient.middleCols<4>(4 * t);
-    const Mat3 F = compute_deformation_gradient(corners, gradient);
-    const Mat3 R = turned ? compute_rotation(F) : Mat3(Mat3::Identity());
-    m_rotation.middleCols<3>(3 * t) = R;
-    m_turned_gradient.middleCols<4>(4 * t) = R * gradient;
-    m_strain.col(t) = compute_strain(F, R);
-    m_volume_ratio(t) = F.determinant();
+/// Moduli of a tet; for p1_nodal split into its own part and what acts on the nodes' mean volume change.
+Elasticity Solid::elasticity(int tet) const {
+  const TetMaterial& material = m_material[static_cast<std::size_t>(tet)];
+  Elasticity e{material.lambda, material.mu};
+  if (!m_stiffness.empty()) e.C = &m_stiffness[static_cast<std::size_t>(tet)];
+  if (!m_nodal) return e;
+  const double own_bulk = NodalVolume::kOwnBulkOverShear * e.mu;
+  e.excess_bulk = std::max(0.0, e.lambda + 2.0 / 3.0 * e.mu - own_bulk);
+  e.lambda -= e.excess_bulk;
+  if (m_volume_change.size() > 0) e.volume_change = m_volume_change(tet);
+  return e;
+}
+
+PointMotion Solid::motion(int point) const {
+  return {m_deformation.middleCols<3>(3 * static_cast<Eigen::Index>(point)),
+          m_rotation.middleCols<3>(3 * static_cast<Eigen::Index>(point))};
+}
+
+template <int N>
+void Solid::set_motion(const Points& x) {
+  parallel_for(m_elements.num_points(), m_threads, [&](std::ptrdiff_t p) {
+    const int tet = m_elements.tet_of_point(static_cast<int>(p));
+    const Eigen::Matrix<double, 3, N> gradient = m_elements.gradient.middleCols<N>(N * p);
+    Eigen::Matrix<double, 3, N> corners;
+    for (int i = 0; i < N; ++i) corners.col(i) = x.col(m_elements.nodes(i, tet));
+    const Mat3 F = corners * gradient.transpose();
+    const PointMotion at = make_motion(m_params.model, F);
+    m_deformation.middleCols<3>(3 * p) = F;
+    m_rotation.middleCols<3>(3 * p) = at.R;
+    m_turned_gradient.middleCols<N>(N * p) = at.R * gradient;
+    m_strain.col(p) = compute_strain(F, at.R);
+    m_volume_ratio(p) = F.determinant();
   });
+}
+
+StepStatus Solid::update_kinematics(const Points& x, Tick tick) {
+  if (m_elements.nodes_per_tet == 4)
+    set_motion<4>(x);
+  else
+    set_motion<10>(x);
   Eigen::Index worst = 0;
   m_min_volume_ratio = m_volume_ratio.minCoeff(&worst);
   const bool finite = m_volume_ratio.allFinite();  // minCoeff may pass over a NaN
-  if (finite && m_min_volume_ratio > m_params.min_volume_ratio) return StepStatus::ok();
+  // Strain of the linear model has no inside to turn out; in statics its solution is what was asked for.
+  const bool may_invert = m_is_static && m_params.model == StrainModel::linear;
+  if (finite && (may_invert || m_min_volume_ratio > m_params.min_volume_ratio)) return StepStatus::ok();
   if (!finite)
     for (worst = 0; std::isfinite(m_volume_ratio(worst));) ++worst;
-  return StepStatus::failed({tick, "solid", static_cast<int>(worst), "volume ratio det F of a tet",
-                             m_volume_ratio(worst), m_params.min_volume_ratio});
+  return StepStatus::failed({tick, "solid", m_elements.tet_of_point(static_cast<int>(worst)),
+                             "volume ratio det F of a tet", m_volume_ratio(worst),
+                             m_params.min_volume_ratio});
 }
 
-Vec6 Solid::compute_stress(std::size_t tet, const Vec6& elastic_strain) const {
-  if (!m_stiffness.empty()) return m_stiffness[tet] * elastic_strain;
-  const TetMaterial& material = m_material[tet];
-  Vec6 sigma = 2.0 * material.mu * elastic_strain;
-  sigma.head<3>().array() += material.lambda * elastic_strain.head<3>().sum();
-  return sigma;
+Field Solid::compute_volume_changes(const TensorField& plastic_strain) const {
+  Field change(m_elements.num_tets());
+  for (int t = 0; t < m_elements.num_tets(); ++t)
+    change(t) = compute_volume_change(m_params.model, motion(t), plastic_strain.col(t));
+  return change;
 }
 
-double Solid::compute_elastic_energy(int tet, const Vec6& plastic_strain) const {
-  const Vec6 elastic = m_strain.col(tet) - plastic_strain;
-  return 0.5 * m_volume(tet) * elastic.dot(compute_stress(static_cast<std::size_t>(tet), elastic));
+/// p1_nodal: the nodes' mean volume change at the present kinematics.
+void Solid::update_volume_change(const TensorField& plastic_strain) {
+  if (!m_nodal) return;
+  if (m_excess_changed) {
+    Field excess(m_elements.num_tets());
+    for (int t = 0; t < m_elements.num_tets(); ++t) excess(t) = elasticity(t).excess_bulk;
+    m_nodal->set_excess(excess);
+    m_excess_changed = false;
+  }
+  m_nodal->average(compute_volume_changes(plastic_strain), m_volume_change);
 }
 
-double Solid::compute_elastic_energy(const SolidState& state) const {
-  return ordered_sum(m_tets.cols(), [&](std::ptrdiff_t t) {
-    return compute_elastic_energy(static_cast<int>(t), state.plastic_strain.col(t));
+double Solid::compute_elastic_energy(int point, const Vec6& plastic_strain) const {
+  return m_elements.weight(point) * compute_energy_density(m_params.model, motion(point), plastic_strain,
+                                                           elasticity(m_elements.tet_of_point(point)));
+}
+
+double Solid::compute_elastic_energy(const TensorField& plastic_strain) const {
+  const double own = ordered_sum(m_elements.num_points(), [&](std::ptrdiff_t p) {
+    return compute_elastic_energy(static_cast<int>(p), plastic_strain.col(p));
   });
+  return m_nodal ? own + m_nodal->compute_energy(compute_volume_changes(plastic_strain)) : own;
 }
 
 double Solid::compute_kinetic_energy(const SolidState& state) const {

@@ -6,23 +6,24 @@
 #include <vector>
 
 #include "base/status.h"
-#include "linear/pcg.h"
-#include "mesh/topology.h"
-#include "solid/element.h"
-#include "solid/parameters.h"
+#include "solid/elements.h"
+#include "solid/law.h"
+#include "solid/nodal_volume.h"
+#include "solid/supports.h"
 
 namespace argil::solid {
 
 /// Motion and history of the body; what a checkpoint must hold.
 struct SolidState {
-  Points x;                    ///< 3×n positions [m]
+  Points x;                    ///< 3×n positions of the nodes [m]
   Points v;                    ///< 3×n velocities [m/s]
-  TensorField plastic_strain;  ///< 6×m ε_p in each tet's turned frame, Mandel
+  TensorField plastic_strain;  ///< 6×p ε_p at each point in its turned frame, Mandel
+  Points x_before, v_before;   ///< a step earlier, bdf2 only; empty before the first step
 };
 
-/// Stiffness that a penalty contact adds between its vertices: k·wᵢwⱼ n⊗n.
+/// Stiffness that a penalty contact adds between its nodes: k·wᵢwⱼ n⊗n.
 struct PointStiffness {
-  std::array<int, 3> vertex = {-1, -1, -1};  ///< −1 beyond the last; all on one boundary triangle
+  std::array<int, 3> vertex = {-1, -1, -1};  ///< −1 beyond the last; all on one surface triangle
   std::array<double, 3> weight = {};
   Vec3 normal = Vec3::Zero();
   double stiffness = 0.0;  ///< k [N/m]
@@ -35,23 +36,31 @@ struct TetMaterial {
   double yield = 0.0;   ///< elastic strain norm [–]
 };
 
-/// The linear solves of a run so far.
-struct SolverCounters {
-  int iterations = 0;      ///< of the last solve
-  int factorisations = 0;  ///< since the start
-  double residual = 0.0;   ///< relative, of the last solve
+/// What the last step took.
+struct StepCounters {
+  int newton_iterations = 0;
+  int linear_iterations = 0;
+  double residual = 0.0;  ///< relative, of the last linear solve
 };
 
-/// Regions → fixed vertices, increasing, without repeats.
-std::vector<int> find_vertices(const Points& rest, std::span<const Region> regions);
+/// What acts on the body during a step.
+struct StepLoads {
+  const Points& force;                            ///< 3×n external forces [N] without gravity
+  std::span<const PointStiffness> contacts = {};  ///< and how those of contacts grow as the body moves on
+};
 
-/// Corotational finite elements on 4-node tets with lumped mass and one linearised backward Euler step
-/// [Baraff & Witkin 1998; Müller & Gross 2004]: stages in the order in which sim/step.cpp calls them. Bits do
-/// not depend on `threads`; no allocation after the first step unless the solver factorises.
+/// Finite elements in time. A step in the order in which sim/step.cpp calls its stages: begin_step, then
+/// assemble and solve until solved, finish_step, move, update_kinematics. Every implicit integrator is
+///   x' = x̂ + τ v',  M (v' − v̂) = τ (f_ext − f_int(x') − D v')
+/// with its own x̂, v̂ and τ. Bits do not depend on `threads`.
 class Solid {
  public:
-  Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vector<int> fixed,
+  Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vector<Support> supports,
         const SolidParams& params, int threads);
+  ~Solid();
+  Solid(Solid&&) noexcept;
+
+  SolidState make_rest_state() const;
 
   /// Stiffness and yield of one tet; `C` (Mandel) only for anisotropic laws.
   void set_material(int tet, const TetMaterial& material);
@@ -60,68 +69,139 @@ class Solid {
   /// F → R → ε at positions x. Fails when det F is not above the bound of the parameters.
   StepStatus update_kinematics(const Points& x, Tick tick);
 
-  /// A = (1 + ha)M + (h² + hb)K + h²K_contact and b = M v + h(f_ext − f_int), eq. 2 by backward Euler.
-  void assemble(const SolidState& state, const Points& external_force,
-                std::span<const PointStiffness> contacts, double step_s);
+  /// x̂, v̂ and τ of a step of h seconds that ends at `time`; prescribed nodes go to where they are then.
+  /// Kinematics must be those of state.x.
+  StepStatus begin_step(const SolidState& state, const StepLoads& loads, double step_s, double time,
+                        Tick tick);
+  /// Residual and matrix at the present iterate. True when Newton's residual is small enough.
+  bool assemble(const StepLoads& loads);
+  /// One linear solve and, for Newton's method, its line search. Sets `solved` when no other is wanted.
+  StepStatus solve(const StepLoads& loads, Tick tick, bool& solved);
+  void finish_step(SolidState& state);  ///< v ← v', and what bdf2 must remember
+  void move(SolidState& state) const;   ///< x ← x̂ + τ v; prescribed components go where they must
 
-  /// Solves A v = b on the free vertices; fixed ones get v = 0.
-  StepStatus solve(SolidState& state, Tick tick);
+  /// Turns the contact forces that were given to the step into those that acted: an implicit step takes them
+  /// at its end, f − k n n·(x' − x).
+  void apply_contact_stiffness(std::span<const PointStiffness> contacts, Points& force) const;
 
-  /// Turns the force that was given to assemble() into the one that acted: backward Euler takes a contact's
-  /// force at the end of the step, f − h k (n·v) n. `velocity`: as solved.
-  void apply_contact_stiffness(const Points& velocity, std::span<const PointStiffness> contacts,
-                               double step_s, Points& force) const;
+  /// Static equilibrium under `loads` from state.x on, by Newton's method. Loads and prescribed displacements
+  /// are applied in shares where they do not converge at once; state.x then holds the last share that did.
+  StepStatus find_equilibrium(SolidState& state, const StepLoads& loads);
 
-  const TensorField& strain() const { return m_strain; }  ///< ε (Mandel) of the last kinematics
-  const Field& volume() const { return m_volume; }        ///< rest volumes [m³]
-  const Field& mass() const { return m_mass; }            ///< lumped, per vertex [kg]
+  const Elements& elements() const { return m_elements; }
+  const Constraints& constraints() const { return m_constraints; }
+  const TensorField& strain() const { return m_strain; }  ///< ε (Mandel) of each point, last kinematics
+  const Field& mass() const { return m_mass; }            ///< lumped, per node [kg]
   const TetMaterial& material(int tet) const { return m_material[static_cast<std::size_t>(tet)]; }
-  const SolverCounters& counters() const { return m_counters; }
+  const StepCounters& counters() const { return m_counters; }
+  const linear::SolverCost& solver_cost() const { return m_solver->cost(); }
   double min_volume_ratio() const { return m_min_volume_ratio; }
-  int num_free() const { return static_cast<int>(m_vertex_of_row.size()); }
+  int num_free() const { return static_cast<int>(m_node_of_row.size()); }
   const Points& internal_force() const { return m_internal_force; }  ///< of the last assembly [N]
 
-  /// ½ V ε_e:C:ε_e of one tet for the given plastic strain [J].
-  double compute_elastic_energy(int tet, const Vec6& plastic_strain) const;
-  double compute_elastic_energy(const SolidState& state) const;
+  /// Elastic energy of one point for the given plastic strain [J], without what nodes share (p1_nodal).
+  double compute_elastic_energy(int point, const Vec6& plastic_strain) const;
+  /// Of the body at the present kinematics [J].
+  double compute_elastic_energy(const TensorField& plastic_strain) const;
   double compute_kinetic_energy(const SolidState& state) const;
 
  private:
-  void assemble_tets(const SolidState& state);
-  void assemble_rows(const SolidState& state, const Points& external_force, double step_s);
-  void add_contacts(std::span<const PointStiffness> contacts, double step_s);
-  bool factorise();
-  Vec6 compute_stress(std::size_t tet, const Vec6& elastic_strain) const;
+  class Product;  // A x of the present matrix, stored or not
+
+  /// How often M, the stiffness with kept rotations and the tangent ∂P/∂F enter the matrix.
+  struct MatrixShares {
+    double mass = 0.0;
+    double kept = 0.0;
+    double exact = 0.0;
+  };
+
+  // solid.cpp
+  void number_rows();
+  template <int N>
+  void set_motion(const Points& x);
+  Elasticity elasticity(int tet) const;
+  PointMotion motion(int point) const;
+  Field compute_volume_changes(const TensorField& plastic_strain) const;
+  void update_volume_change(const TensorField& plastic_strain);
+
+  // assembly.cpp
+  bool needs_tangents() const;
+  MatrixShares shares() const;
+  void assemble_internal_force();
+  void assemble_tangents();
+  void assemble_matrix(std::span<const PointStiffness> contacts);
+  template <int N>
+  void assemble_rows();
+  template <int N>
+  void set_corner_forces();
+  template <int N>
+  void set_corner_products(const Points& u, double kept, double exact);
+  void compute_stiffness_product(const Points& u, double kept, double exact, Points& force);
+  Mat3 volume_gradient(int tet) const;
+  void add_contacts(std::span<const PointStiffness> contacts);
+  void mask_rows();
+  void gather(Points& force) const;
+  void add_contact_change(const Points& to, const Points& from, std::span<const PointStiffness> contacts,
+                          double scale, Points& force) const;
+  static double compute_gap_change(const PointStiffness& contact, const Points& to, const Points& from);
+  void clear_held(Points& u) const;
+  bool has_only_diagonal() const { return m_params.solver.kind == linear::SolverKind::pcg_matrix_free; }
+
+  // step.cpp
+  void predict(const SolidState& state, const StepLoads& loads, double step_s);
+  bool place_supports(double time, double share);
+  void compute_residual(const StepLoads& loads);
+  double compute_potential(const StepLoads& loads);
+  StepStatus search_line(const StepLoads& loads, Tick tick);
+  void set_iterate(double share);
+  bool is_newton() const { return m_is_static || m_params.iteration == Iteration::newton; }
+  StepStatus iterate_static(const SolidState& state, const StepLoads& loads);
 
   SolidParams m_params;
   int m_threads;
-  Tets m_tets;
-  std::vector<int> m_vertex_begin, m_vertex_corners;  // topology's vertex → corners
-
-  Field m_volume, m_mass;
-  Eigen::Matrix3Xd m_gradient;  // ∇N, 4 columns a tet
+  Elements m_elements;
+  std::vector<Support> m_supports;
+  Constraints m_constraints;
+  Field m_mass;
   std::vector<TetMaterial> m_material;
   std::vector<Mat6> m_stiffness;  // empty while every tet is isotropic
 
-  Eigen::Matrix3Xd m_rotation;  // R, 3 columns a tet
+  Eigen::Matrix3Xd m_deformation;  // F, 3 columns a point
+  Eigen::Matrix3Xd m_rotation;     // R, 3 columns a point
   TensorField m_strain;
   Field m_volume_ratio;  // det F
   double m_min_volume_ratio = 1.0;
+  Field m_volume_change;  // p1_nodal: θ of each tet's nodes, their mean
 
-  Eigen::Matrix3Xd m_turned_gradient;  // R ∇N, 4 columns a tet
-  Eigen::Matrix3Xd m_corner_force;     // internal force on each corner
+  Eigen::Matrix3Xd m_turned_gradient;                   // R ∇N, N columns a point
+  Eigen::Matrix<double, 81, Eigen::Dynamic> m_tangent;  // ∂P/∂F of each point, where it is wanted
+  Eigen::Matrix3Xd m_corner_force;                      // N columns a tet
   Points m_internal_force;
 
-  std::vector<int> m_row_of_vertex;  // −1: fixed
-  std::vector<int> m_vertex_of_row;
-  std::vector<int> m_block_of_corner_pair;  // 16 a tet: place of block (i, j), −1 where either is fixed
+  std::vector<int> m_row_of_node;  // −1: held in all directions
+  std::vector<int> m_node_of_row;
+  std::vector<int> m_held_rows;             // rows with a held component
+  std::vector<int> m_block_of_corner_pair;  // N² a tet: place of block (i, j), −1 where there is none
   linear::BlockMatrix m_matrix;
-  Points m_rhs, m_velocity;
-  linear::ConjugateGradients m_cg;
-  linear::BlockJacobi m_jacobi;
-  std::unique_ptr<linear::CholeskyFactor> m_factor;
-  bool m_factor_valid = false;
-  SolverCounters m_counters;
+  std::unique_ptr<linear::Solver> m_solver;
+  std::unique_ptr<NodalVolume> m_nodal;  // p1_nodal
+  bool m_excess_changed = true;
+
+  // Of the present step.
+  bool m_is_static = false;
+  double m_load_share = 1.0;  // statics: part of the loads that is applied
+  double m_tau = 0.0;
+  Points m_x_hat, m_v_hat;                        // 3×n
+  Points m_x_start;                               // where the step began and contacts were found
+  Points m_held_x;                                // where prescribed components are at the step's end
+  Points m_x, m_v, m_v_base;                      // iterate, and where its line search began
+  Points m_v_start;                               // v at the step's start: first guess of the solve
+  const TensorField* m_plastic_strain = nullptr;  // the state's, during a step
+  Points m_product, m_direction, m_zero;          // working arrays, 3×n; the last one stays zero
+  Points m_rhs, m_delta;                          // a column a row
+  double m_residual_scale = 0.0;
+  double m_potential = 0.0, m_potential_scale = 0.0;
+  StepCounters m_counters;
 };
 
 }  // namespace argil::solid

@@ -1,53 +1,92 @@
-#include "base/check.h"
+#include <cmath>
+
 #include "solid/solid.h"
 
 namespace argil::solid {
 
-bool Solid::factorise() {
-  if (!m_factor) m_factor = std::make_unique<linear::CholeskyFactor>(m_matrix);
-  ++m_counters.factorisations;
-  m_factor_valid = m_factor->factorise(m_matrix);
-  return m_factor_valid;
-}
+/// A x for the present matrix: by its blocks, or tet by tet where the solver wants none stored.
+class Solid::Product final : public linear::Operator {
+ public:
+  Product(Solid& solid, std::span<const PointStiffness> contacts) : m_solid(solid), m_contacts(contacts) {}
 
-StepStatus Solid::solve(SolidState& state, Tick tick) {
-  if (num_free() == 0) return StepStatus::ok();
-  for (int row = 0; row < num_free(); ++row)
-    m_velocity.col(row) = state.v.col(m_vertex_of_row[static_cast<std::size_t>(row)]);
-
-  const auto not_positive = [&] {
-    return StepStatus::failed({tick, "solid", -1, "system matrix is not positive definite, pivot", 0.0, 0.0});
-  };
-  linear::SolveReport report;
-  switch (m_params.solver) {
-    case SolverKind::cholesky:
-      if (!factorise()) return not_positive();
-      m_factor->solve(m_rhs, m_velocity);
-      report = {true, 1, 0.0};
-      break;
-    case SolverKind::pcg_jacobi:
-      m_jacobi.update(m_matrix);
-      report = m_cg.solve(m_matrix, m_jacobi, m_rhs, m_params.solver_tolerance,
-                          m_params.solver_max_iterations, m_threads, m_velocity);
-      break;
-    case SolverKind::pcg_cholesky: {
-      // The kept factor is renewed when the last solve with it was slow: the matrix has moved away from it.
-      if ((!m_factor_valid || m_counters.iterations > m_params.refactor_iterations) && !factorise())
-        return not_positive();
-      linear::StaleCholesky stale(*m_factor);
-      report = m_cg.solve(m_matrix, stale, m_rhs, m_params.solver_tolerance, m_params.solver_max_iterations,
-                          m_threads, m_velocity);
-      break;
+  void multiply(const Points& x, Points& y) override {
+    if (!m_solid.has_only_diagonal()) {
+      linear::multiply(m_solid.m_matrix, x, y, m_solid.m_threads);
+      return;
+    }
+    const MatrixShares share = m_solid.shares();
+    Points& u = m_solid.m_direction;
+    Points& force = m_solid.m_product;
+    u.setZero(3, m_solid.m_elements.num_nodes());
+    for (int row = 0; row < m_solid.num_free(); ++row)
+      u.col(m_solid.m_node_of_row[static_cast<std::size_t>(row)]) = x.col(row);
+    m_solid.clear_held(u);
+    force.setZero(3, u.cols());
+    m_solid.compute_stiffness_product(u, share.kept, share.exact, force);
+    if (!m_solid.m_is_static && m_solid.m_params.implicit_contact)
+      m_solid.add_contact_change(u, m_solid.m_zero, m_contacts, m_solid.m_tau * m_solid.m_tau, force);
+    for (int row = 0; row < m_solid.num_free(); ++row) {
+      const int n = m_solid.m_node_of_row[static_cast<std::size_t>(row)];
+      y.col(row) = share.mass * m_solid.m_mass(n) * x.col(row) + force.col(n);
+    }
+    for (const int row : m_solid.m_held_rows) {
+      const int n = m_solid.m_node_of_row[static_cast<std::size_t>(row)];
+      for (int k = 0; k < 3; ++k)
+        if (m_solid.m_constraints.support(k, n) >= 0)
+          y(k, row) = m_solid.m_matrix.block(m_solid.m_matrix.diagonal[static_cast<std::size_t>(row)])(k, k) *
+                      x(k, row);
     }
   }
-  m_counters.iterations = report.iterations;
-  m_counters.residual = report.relative_residual;
-  if (!report.converged)
-    return StepStatus::failed({tick, "solid", -1, "relative residual of the linear solve",
-                               report.relative_residual, m_params.solver_tolerance});
-  for (int row = 0; row < num_free(); ++row)
-    state.v.col(m_vertex_of_row[static_cast<std::size_t>(row)]) = m_velocity.col(row);
-  return StepStatus::ok();
+
+ private:
+  Solid& m_solid;
+  std::span<const PointStiffness> m_contacts;
+};
+
+void Solid::clear_held(Points& u) const {
+  for (const int row : m_held_rows) {
+    const int n = m_node_of_row[static_cast<std::size_t>(row)];
+    for (int k = 0; k < 3; ++k)
+      if (m_constraints.support(k, n) >= 0) u(k, n) = 0.0;
+  }
+}
+
+StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
+  m_v_base = m_v;
+  solved = !is_newton();
+  if (m_params.integrator == Integrator::symplectic_euler && !m_is_static) {
+    for (int row = 0; row < num_free(); ++row)
+      m_delta.col(row) = m_rhs.col(row) / m_mass(m_node_of_row[static_cast<std::size_t>(row)]);
+    set_iterate(1.0);
+    return StepStatus::ok();
+  }
+  // First guess: the body goes on as before.
+  const bool is_first = m_counters.newton_iterations++ == 0;
+  for (int row = 0; row < num_free(); ++row) {
+    const int n = m_node_of_row[static_cast<std::size_t>(row)];
+    for (int k = 0; k < 3; ++k)
+      m_delta(k, row) = is_first && m_constraints.support(k, n) < 0 ? m_v_start(k, n) - m_v(k, n) : 0.0;
+  }
+  if (num_free() > 0) {
+    Product product(*this, loads.contacts);
+    const linear::SolveReport report = m_solver->solve(m_matrix, product, m_rhs, m_delta);
+    m_counters.linear_iterations += report.iterations;
+    m_counters.residual = report.relative_residual;
+    if (!report.converged && std::isinf(report.relative_residual))
+      return StepStatus::failed(
+          {tick, "solid", -1, "system matrix is not positive definite, pivot", 0.0, 0.0});
+    if (!report.converged)
+      return StepStatus::failed({tick, "solid", -1, "relative residual of the linear solve",
+                                 report.relative_residual, m_params.solver.tolerance});
+  }
+  if (!is_newton()) {
+    set_iterate(1.0);
+    return StepStatus::ok();
+  }
+  if (m_counters.newton_iterations > m_params.newton_max_iterations)
+    return StepStatus::failed({tick, "solid", -1, "Newton's relative residual",
+                               m_rhs.norm() / m_residual_scale, m_params.newton_tolerance});
+  return search_line(loads, tick);
 }
 
 }  // namespace argil::solid

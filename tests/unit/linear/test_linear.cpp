@@ -6,7 +6,7 @@
 
 #include "base/rng.h"
 #include "linear/cholesky.h"
-#include "linear/pcg.h"
+#include "linear/solver.h"
 
 namespace argil::linear {
 namespace {
@@ -62,6 +62,12 @@ Points make_random_vector(int rows, std::uint64_t seed) {
   return b;
 }
 
+SolveReport solve(ConjugateGradients& cg, const BlockMatrix& a, Preconditioner& preconditioner,
+                  const Points& b, double tolerance, int max_iterations, int threads, Points& x) {
+  MatrixOperator product(a, threads);
+  return cg.solve(product, preconditioner, b, tolerance, max_iterations, x);
+}
+
 TEST(CholeskyFactor, SolvesTheOneDimensionalLaplacianExactly) {
   const int rows = 99;
   const BlockMatrix a = make_laplacian(rows);
@@ -100,7 +106,7 @@ TEST(ConjugateGradients, BlockJacobiReachesTheToleranceOfATrueResidual) {
   jacobi.update(a);
   ConjugateGradients cg;
   Points x = Points::Zero(3, 200);
-  const SolveReport report = cg.solve(a, jacobi, b, 1e-10, 200, 1, x);
+  const SolveReport report = solve(cg, a, jacobi, b, 1e-10, 200, 1, x);
   EXPECT_TRUE(report.converged);
   EXPECT_LT((to_dense(a) * x.reshaped() - b.reshaped()).norm(), 1.01e-10 * b.norm());
 }
@@ -116,9 +122,9 @@ TEST(ConjugateGradients, ExactFactorConvergesInOneIterationAndAStaleOneInFew) {
   StaleCholesky stale(factor);
   ConjugateGradients cg;
   Points x = Points::Zero(3, 100);
-  EXPECT_EQ(cg.solve(a, stale, b, 1e-10, 50, 1, x).iterations, 1);
+  EXPECT_EQ(solve(cg, a, stale, b, 1e-10, 50, 1, x).iterations, 1);
   x.setZero();
-  EXPECT_LE(cg.solve(later, stale, b, 1e-10, 50, 1, x).iterations, 8);
+  EXPECT_LE(solve(cg, later, stale, b, 1e-10, 50, 1, x).iterations, 8);
   EXPECT_LT((to_dense(later) * x.reshaped() - b.reshaped()).norm(), 1.01e-10 * b.norm());
 }
 
@@ -128,7 +134,7 @@ TEST(ConjugateGradients, ReportsWhenItDoesNotConverge) {
   jacobi.update(a);
   ConjugateGradients cg;
   Points x = Points::Zero(3, 300);
-  const SolveReport report = cg.solve(a, jacobi, Points::Ones(3, 300), 1e-12, 5, 1, x);
+  const SolveReport report = solve(cg, a, jacobi, Points::Ones(3, 300), 1e-12, 5, 1, x);
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(report.iterations, 5);
 }
@@ -140,12 +146,83 @@ TEST(ConjugateGradients, GivesEqualBitsOnAnyNumberOfThreads) {
   const Points b = make_random_vector(500, 8);
   Points first = Points::Zero(3, 500);
   ConjugateGradients cg;
-  static_cast<void>(cg.solve(a, jacobi, b, 1e-10, 700, 1, first));
+  static_cast<void>(solve(cg, a, jacobi, b, 1e-10, 700, 1, first));
   for (const int threads : {2, 4, 7}) {
     Points x = Points::Zero(3, 500);
-    static_cast<void>(cg.solve(a, jacobi, b, 1e-10, 700, threads, x));
+    static_cast<void>(solve(cg, a, jacobi, b, 1e-10, 700, threads, x));
     EXPECT_TRUE((x.array() == first.array()).all()) << threads << " threads";
   }
+}
+
+class EverySolver : public testing::TestWithParam<SolverKind> {};
+
+TEST_P(EverySolver, SolvesAgainAndAgainWhileTheMatrixChanges) {
+  if (GetParam() == SolverKind::pcg_matrix_free) GTEST_SKIP() << "its matrix holds diagonal blocks only";
+  SolverParams params;
+  params.kind = GetParam();
+  params.tolerance = 1e-12;
+  const auto solver = make_solver(params);
+  BlockMatrix a = make_random_spd(120, 9);
+  for (int step = 0; step < 6; ++step) {
+    for (int r = 0; r < 120; ++r) a.block(a.diagonal[static_cast<std::size_t>(r)]) *= 1.0 + 0.1 * (r % 3);
+    const Points b = make_random_vector(120, 10 + static_cast<std::uint64_t>(step));
+    MatrixOperator product(a, 1);
+    Points x = Points::Zero(3, 120);
+    const SolveReport report = solver->solve(a, product, b, x);
+    ASSERT_TRUE(report.converged) << step;
+    EXPECT_LT((to_dense(a) * x.reshaped() - b.reshaped()).norm(), 2e-12 * b.norm()) << step;
+    EXPECT_LT(report.relative_residual, 1.01e-12);
+  }
+  EXPECT_EQ(solver->cost().solves, 6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EverySolver,
+                         testing::Values(SolverKind::pcg_cholesky, SolverKind::pcg_jacobi,
+                                         SolverKind::cholesky, SolverKind::supernodal));
+
+TEST(DirectSolver, FactorisesOnlyWhenTheMatrixChanged) {
+  const auto solver = make_solver({SolverKind::cholesky});
+  BlockMatrix a = make_random_spd(30, 11);
+  MatrixOperator product(a, 1);
+  Points x = Points::Zero(3, 30);
+  const Points b = make_random_vector(30, 12);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(solver->solve(a, product, b, x).converged);
+  EXPECT_EQ(solver->cost().factorisations, 1);
+  a.block(a.diagonal[7])(0, 0) = std::nextafter(a.block(a.diagonal[7])(0, 0), 100.0);
+  ASSERT_TRUE(solver->solve(a, product, b, x).converged);
+  EXPECT_EQ(solver->cost().factorisations, 2);
+}
+
+TEST(DirectSolver, RefusesAnIndefiniteMatrixInBothForms) {
+  BlockMatrix a = make_random_spd(30, 13);
+  a.block(a.diagonal[4])(1, 1) = -20.0;
+  for (const SolverKind kind : {SolverKind::cholesky, SolverKind::supernodal, SolverKind::pcg_cholesky}) {
+    const auto solver = make_solver({kind});
+    MatrixOperator product(a, 1);
+    Points x = Points::Zero(3, 30);
+    EXPECT_FALSE(solver->solve(a, product, make_random_vector(30, 14), x).converged);
+  }
+}
+
+TEST(KeptFactorSolver, RenewsItsFactorAfterASlowSolveOnly) {
+  SolverParams params;
+  params.refactor_iterations = 3;
+  const auto solver = make_solver(params);
+  BlockMatrix a = make_random_spd(100, 15);
+  MatrixOperator product(a, 1);
+  const Points b = make_random_vector(100, 16);
+  Points x = Points::Zero(3, 100);
+  for (int i = 0; i < 4; ++i) {
+    x.setZero();
+    ASSERT_TRUE(solver->solve(a, product, b, x).converged);
+  }
+  EXPECT_EQ(solver->cost().factorisations, 1);
+  for (int r = 0; r < 100; r += 2) a.block(a.diagonal[static_cast<std::size_t>(r)]) *= 10.0;
+  x.setZero();
+  EXPECT_GT(solver->solve(a, product, b, x).iterations, 3);
+  x.setZero();
+  EXPECT_LE(solver->solve(a, product, b, x).iterations, 1);
+  EXPECT_EQ(solver->cost().factorisations, 2);
 }
 
 }  // namespace

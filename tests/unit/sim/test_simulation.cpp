@@ -17,7 +17,7 @@ Params make_params() {
   p.plasticity.enabled = false;
   p.kernel.form = material::KernelForm::off;
   p.contact = {50.0, 50.0};
-  p.solid.solver = solid::SolverKind::cholesky;
+  p.solid.solver.kind = linear::SolverKind::cholesky;
   p.water.diffusivity = 1e-6;
   p.water.wetting_flux = 20.0;
   p.water.drying_flux = 20.0;
@@ -31,9 +31,12 @@ Body make_body(bool fixed) {
   Body body;
   body.mesh = test::make_block(6, 6, 3, Vec3(0.04, 0.04, 0.02));
   body.topology = mesh::make_topology(body.mesh);
-  if (fixed)
-    for (int v = 0; v < body.mesh.num_vertices(); ++v)
-      if (body.mesh.vertices(2, v) < 1e-9) body.fixed.push_back(v);
+  if (fixed) {
+    solid::Support bottom;
+    bottom.region.kind = solid::Region::Kind::half_space;
+    bottom.region.offset = 1e-9;
+    body.supports.push_back(bottom);
+  }
   body.initial_saturation = Field::Zero(body.mesh.num_tets());
   return body;
 }

@@ -20,31 +20,61 @@ struct Scene {
   Solid solid;
   SolidState state;
   Points load;
+  double time = 0.0;
 
-  Scene(mesh::TetMesh m, std::vector<int> fixed, const SolidParams& p, double E, double nu, int threads = 1)
-      : mesh(std::move(m)), params(p), solid(mesh, mesh::make_topology(mesh), std::move(fixed), p, threads) {
-    state = {mesh.vertices, Points::Zero(3, mesh.num_vertices()), TensorField::Zero(6, mesh.num_tets())};
-    load.setZero(3, mesh.num_vertices());
+  Scene(mesh::TetMesh m, const std::vector<int>& fixed, const SolidParams& p, double E, double nu,
+        int threads = 1)
+      : mesh(std::move(m)),
+        params(p),
+        solid(mesh, mesh::make_topology(mesh), hold(fixed), p, threads),
+        state(solid.make_rest_state()) {
+    load.setZero(3, state.x.cols());
     for (int t = 0; t < mesh.num_tets(); ++t)
       solid.set_material(t, {E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu)), 1.0});
     EXPECT_TRUE(solid.update_kinematics(state.x, 0).is_ok());
   }
+  static std::vector<Support> hold(const std::vector<int>& nodes) {
+    Support support;
+    support.region.kind = Region::Kind::nodes;
+    support.region.nodes = nodes;
+    return {support};
+  }
+  /// Velocities of the next step, before the body moves.
+  StepStatus solve(double h, std::span<const PointStiffness> contacts = {}) {
+    const StepLoads loads{load, contacts};
+    ARGIL_TRY(solid.begin_step(state, loads, h, time += h, 0));
+    for (bool solved = false; !solved;) {
+      solved = solid.assemble(loads);
+      if (!solved) ARGIL_TRY(solid.solve(loads, 0, solved));
+    }
+    solid.finish_step(state);
+    return StepStatus::ok();
+  }
   StepStatus step(double h) {
-    solid.assemble(state, load, {}, h);
-    ARGIL_TRY(solid.solve(state, 0));
-    state.x += h * state.v;
+    ARGIL_TRY(solve(h));
+    solid.move(state);
     return solid.update_kinematics(state.x, 0);
+  }
+  /// Internal forces at positions x.
+  Points compute_force(const Points& x) {
+    SolidState moved = state;
+    moved.x = x;
+    EXPECT_TRUE(solid.update_kinematics(x, 0).is_ok());
+    const StepLoads loads{load};
+    EXPECT_TRUE(solid.begin_step(moved, loads, 1e-3, 0.0, 0).is_ok());
+    solid.assemble(loads);
+    return solid.internal_force();
   }
 };
 
-SolidParams make_params(SolverKind solver) {
+SolidParams make_params(linear::SolverKind solver) {
   SolidParams params;
-  params.solver = solver;
-  params.solver_tolerance = 1e-13;
+  params.solver.kind = solver;
+  params.solver.tolerance = 1e-13;
   return params;
 }
 
-class EverySolver : public testing::TestWithParam<SolverKind> {};
+class EverySolver : public testing::TestWithParam<linear::SolverKind> {};
 
 TEST_P(EverySolver, FreeFallFollowsBackwardEulerExactly) {
   SolidParams params = make_params(GetParam());
@@ -90,25 +120,23 @@ TEST_P(EverySolver, UniaxialTensionReachesHookesLaw) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver,
-                         testing::Values(SolverKind::cholesky, SolverKind::pcg_cholesky,
-                                         SolverKind::pcg_jacobi));
+                         testing::Values(linear::SolverKind::cholesky, linear::SolverKind::pcg_cholesky,
+                                         linear::SolverKind::pcg_jacobi));
 
 TEST(Solid, OscillatorLosesAmplitudeAsBackwardEulerPredicts) {
   // One free vertex is a linear oscillator in each eigendirection of its 3×3 stiffness: |z_{n+1}| =
   // |z_n|/√(1+(hω)²), where z = ωu + iv.
   mesh::TetMesh mesh = test::make_block(1, 1, 1, Vec3(1, 1, 1));
   std::vector<int> fixed = {0, 1, 2, 3, 4, 5, 6};
-  SolidParams params = make_params(SolverKind::cholesky);
+  SolidParams params = make_params(linear::SolverKind::cholesky);
   params.model = StrainModel::linear;
   Scene scene(std::move(mesh), fixed, params, 1e5, 0.0);
   // Stiffness of the free vertex from the force of unit displacements (linear model).
   Mat3 K;
   for (int k = 0; k < 3; ++k) {
-    SolidState moved = scene.state;
-    moved.x(k, 7) += 1.0;
-    ASSERT_TRUE(scene.solid.update_kinematics(moved.x, 0).is_ok());
-    scene.solid.assemble(moved, scene.load, {}, 1e-3);
-    K.col(k) = scene.solid.internal_force().col(7);
+    Points x = scene.state.x;
+    x(k, 7) += 1.0;
+    K.col(k) = scene.compute_force(x).col(7);
   }
   const double m = scene.solid.mass()(7);
   const Eigen::SelfAdjointEigenSolver<Mat3> modes(K);
@@ -128,7 +156,7 @@ TEST(Solid, RigidTurnProducesNoForceInTheCorotationalModelAndTheKnownStrainInThe
   const double angle = 2.0;
   const Mat3 Q = Eigen::AngleAxisd(angle, Vec3(1, 2, 2) / 3.0).toRotationMatrix();
   for (const StrainModel model : {StrainModel::corotational, StrainModel::linear}) {
-    SolidParams params = make_params(SolverKind::cholesky);
+    SolidParams params = make_params(linear::SolverKind::cholesky);
     params.model = model;
     params.min_volume_ratio = -10.0;
     Scene scene(test::make_block(2, 1, 1, Vec3(0.2, 0.1, 0.1)), {}, params, 1e5, 0.3);
@@ -143,8 +171,8 @@ TEST(Solid, RigidTurnProducesNoForceInTheCorotationalModelAndTheKnownStrainInThe
 }
 
 TEST(Solid, FreeBodyKeepsItsMomentum) {
-  Scene scene(test::make_block(3, 2, 2, Vec3(0.15, 0.1, 0.1)), {}, make_params(SolverKind::pcg_cholesky), 1e5,
-              0.3);
+  Scene scene(test::make_block(3, 2, 2, Vec3(0.15, 0.1, 0.1)), {},
+              make_params(linear::SolverKind::pcg_cholesky), 1e5, 0.3);
   for (Eigen::Index v = 0; v < scene.state.v.cols(); ++v)
     scene.state.v.col(v) =
         Vec3(0.3, -0.1, 0.2) + 0.2 * std::sin(7.0 * static_cast<double>(v)) * Vec3(1, 1, -1);
@@ -155,15 +183,15 @@ TEST(Solid, FreeBodyKeepsItsMomentum) {
 }
 
 TEST(Solid, LumpedMassIsDensityTimesVolume) {
-  Scene scene(test::make_block(3, 2, 2, Vec3(0.3, 0.2, 0.1)), {}, make_params(SolverKind::cholesky), 1e5,
-              0.3);
+  Scene scene(test::make_block(3, 2, 2, Vec3(0.3, 0.2, 0.1)), {}, make_params(linear::SolverKind::cholesky),
+              1e5, 0.3);
   EXPECT_NEAR(scene.solid.mass().sum(), 1500.0 * 0.3 * 0.2 * 0.1, 1e-12);
 }
 
 TEST(Solid, PlasticStrainIsTheStressFreeShape) {
   // A body whose total strain equals its plastic strain is at rest in the deformed place.
-  Scene scene(test::make_block(2, 2, 2, Vec3(0.1, 0.1, 0.1)), {}, make_params(SolverKind::cholesky), 1e5,
-              0.3);
+  Scene scene(test::make_block(2, 2, 2, Vec3(0.1, 0.1, 0.1)), {}, make_params(linear::SolverKind::cholesky),
+              1e5, 0.3);
   const Mat3 stretch = Vec3(1.1, 0.95, 1.0).asDiagonal();
   scene.state.x = stretch * scene.mesh.vertices;
   ASSERT_TRUE(scene.solid.update_kinematics(scene.state.x, 0).is_ok());
@@ -173,7 +201,8 @@ TEST(Solid, PlasticStrainIsTheStressFreeShape) {
 }
 
 TEST(Solid, InvertedTetStopsTheStepAndIsNamed) {
-  Scene scene(test::make_block(1, 1, 1, Vec3(1, 1, 1)), {}, make_params(SolverKind::cholesky), 1e5, 0.3);
+  Scene scene(test::make_block(1, 1, 1, Vec3(1, 1, 1)), {}, make_params(linear::SolverKind::cholesky), 1e5,
+              0.3);
   Points x = scene.mesh.vertices;
   x.col(7) = Vec3(-1, -1, -1);
   const StepStatus status = scene.solid.update_kinematics(x, 42);
@@ -184,7 +213,8 @@ TEST(Solid, InvertedTetStopsTheStepAndIsNamed) {
 }
 
 TEST(Solid, NanInThePositionsStopsTheStep) {
-  Scene scene(test::make_block(1, 1, 1, Vec3(1, 1, 1)), {}, make_params(SolverKind::cholesky), 1e5, 0.3);
+  Scene scene(test::make_block(1, 1, 1, Vec3(1, 1, 1)), {}, make_params(linear::SolverKind::cholesky), 1e5,
+              0.3);
   Points x = scene.mesh.vertices;
   x(1, 3) = std::nan("");
   EXPECT_FALSE(scene.solid.update_kinematics(x, 0).is_ok());
@@ -194,22 +224,21 @@ TEST(Solid, ContactStiffnessActsAsASpringBetweenBodyAndTool) {
   // One free vertex of mass m, spring k at velocity v along n: (m + h²k) v' = m v when nothing else acts (E
   // tiny).
   mesh::TetMesh mesh = test::make_block(1, 1, 1, Vec3(1, 1, 1));
-  Scene scene(std::move(mesh), {0, 1, 2, 3, 4, 5, 6}, make_params(SolverKind::cholesky), 1e-9, 0.0);
+  Scene scene(std::move(mesh), {0, 1, 2, 3, 4, 5, 6}, make_params(linear::SolverKind::cholesky), 1e-9, 0.0);
   const double h = 0.01;
   const double m = scene.solid.mass()(7);
   const double k = 3.0 * m / (h * h);
   scene.state.v.col(7) = Vec3(0, 0, -2);
   const PointStiffness contact{{7, -1, -1}, {1.0, 0.0, 0.0}, Vec3::UnitZ(), k};
-  scene.solid.assemble(scene.state, scene.load, std::span(&contact, 1), h);
-  ASSERT_TRUE(scene.solid.solve(scene.state, 0).is_ok());
+  ASSERT_TRUE(scene.solve(h, std::span(&contact, 1)).is_ok());
   EXPECT_NEAR(scene.state.v(2, 7), -0.5, 1e-9);
 }
 
 TEST(Solid, EqualBitsOnAnyNumberOfThreads) {
   Points first;
   for (const int threads : {1, 2, 4, 7}) {
-    SolidParams params = make_params(SolverKind::pcg_cholesky);
-    params.solver_tolerance = 1e-6;
+    SolidParams params = make_params(linear::SolverKind::pcg_cholesky);
+    params.solver.tolerance = 1e-6;
     Scene scene(test::make_block(4, 3, 3, Vec3(0.2, 0.1, 0.1)), {0, 1, 2}, params, 1e5, 0.4, threads);
     scene.load.col(60) = Vec3(0.2, -0.5, 1.0);
     for (int k = 0; k < 30; ++k) ASSERT_TRUE(scene.step(1e-3).is_ok());
@@ -218,7 +247,7 @@ TEST(Solid, EqualBitsOnAnyNumberOfThreads) {
   }
 }
 
-TEST(FindVertices, CollectsEveryRegionOnceInOrder) {
+TEST(FindNodes, CollectsEveryRegionOnceInOrder) {
   const mesh::TetMesh mesh = test::make_block(2, 2, 2, Vec3(1, 1, 1));
   Region bottom;
   bottom.kind = Region::Kind::half_space;
@@ -230,7 +259,7 @@ TEST(FindVertices, CollectsEveryRegionOnceInOrder) {
   one.kind = Region::Kind::nodes;
   one.nodes = {26, 3};
   const std::vector<Region> regions = {one, bottom, corner};
-  EXPECT_EQ(find_vertices(mesh.vertices, regions), (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 26}));
+  EXPECT_EQ(find_nodes(mesh.vertices, regions), (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 26}));
 }
 
 }  // namespace

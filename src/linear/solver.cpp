@@ -1,0 +1,140 @@
+#include "linear/solver.h"
+
+#include <limits>
+#include <optional>
+
+namespace argil::linear {
+namespace {
+
+constexpr double kNotPositive = std::numeric_limits<double>::infinity();
+
+double count_entries(const BlockMatrix& matrix) {
+  return 9.0 * matrix.num_blocks();
+}
+
+double compute_relative_residual(Operator& product, const Points& b, const Points& x, Points& work) {
+  const double b_norm = b.norm();
+  if (b_norm == 0.0) return 0.0;
+  work.resize(3, b.cols());
+  product.multiply(x, work);
+  return (b - work).norm() / b_norm;
+}
+
+/// A factor of the very matrix: renewed when any number in it changed.
+class DirectSolver final : public Solver {
+ public:
+  explicit DirectSolver(FactorKind kind) : m_kind(kind) {}
+
+  SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) override {
+    if (!m_factor) m_factor.emplace(matrix, m_kind);
+    const bool is_same =
+        m_factorised.size() == matrix.values.size() && (m_factorised.array() == matrix.values.array()).all();
+    if (!is_same) {
+      m_factorised = matrix.values;
+      ++m_cost.factorisations;
+      if (!m_factor->factorise(matrix)) {
+        m_factorised.resize(3, 0);
+        return {false, 0, kNotPositive};
+      }
+    }
+    m_factor->solve(b, x);
+    ++m_cost.solves;
+    m_cost.multiplications += 2.0 * m_factor->num_entries();
+    return {true, 0, compute_relative_residual(product, b, x, m_work)};
+  }
+
+ private:
+  FactorKind m_kind;
+  std::optional<CholeskyFactor> m_factor;
+  Eigen::Matrix3Xd m_factorised;  // values that the factor stands for
+  Points m_work;
+};
+
+class JacobiSolver final : public Solver {
+ public:
+  explicit JacobiSolver(const SolverParams& params) : m_params(params) {}
+
+  SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) override {
+    m_jacobi.update(matrix);
+    const SolveReport report =
+        m_iteration.solve(product, m_jacobi, b, m_params.tolerance, m_params.max_iterations, x);
+    ++m_cost.solves;
+    m_cost.iterations += report.iterations;
+    m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
+    return report;
+  }
+
+ private:
+  SolverParams m_params;
+  BlockJacobi m_jacobi;
+  ConjugateGradients m_iteration;
+};
+
+/// The factor of an earlier matrix preconditions; it is renewed when the last solve with it was slow, for
+/// then the matrix has moved away from it, and at once when a solve with it fails.
+class KeptFactorSolver final : public Solver {
+ public:
+  explicit KeptFactorSolver(const SolverParams& params) : m_params(params) {}
+
+  SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) override {
+    const bool is_slow = m_last_iterations > m_params.refactor_iterations;
+    if ((!m_is_valid || is_slow) && !factorise(matrix)) return {false, 0, kNotPositive};
+    const bool was_fresh = m_is_fresh;
+    m_guess = x;
+    SolveReport report = iterate(product, b, x);
+    if (!report.converged && !was_fresh) {
+      if (!factorise(matrix)) return {false, 0, kNotPositive};
+      x = m_guess;
+      report = iterate(product, b, x);
+    }
+    m_cost.multiplications +=
+        (report.iterations + 1.0) * (count_entries(matrix) + 2.0 * m_factor->num_entries());
+    ++m_cost.solves;
+    m_cost.iterations += report.iterations;
+    return report;
+  }
+
+ private:
+  bool factorise(const BlockMatrix& matrix) {
+    if (!m_factor) m_factor.emplace(matrix);
+    ++m_cost.factorisations;
+    m_is_valid = m_factor->factorise(matrix);
+    m_is_fresh = true;
+    return m_is_valid;
+  }
+  SolveReport iterate(Operator& product, const Points& b, Points& x) {
+    StaleCholesky kept(*m_factor);
+    const SolveReport report =
+        m_iteration.solve(product, kept, b, m_params.tolerance, m_params.max_iterations, x);
+    m_last_iterations = report.iterations;
+    m_is_fresh = false;
+    return report;
+  }
+
+  SolverParams m_params;
+  std::optional<CholeskyFactor> m_factor;
+  ConjugateGradients m_iteration;
+  Points m_guess;
+  bool m_is_valid = false;
+  bool m_is_fresh = false;
+  int m_last_iterations = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_solver(const SolverParams& params) {
+  switch (params.kind) {
+    case SolverKind::cholesky:
+      return std::make_unique<DirectSolver>(FactorKind::simplicial);
+    case SolverKind::supernodal:
+      return std::make_unique<DirectSolver>(FactorKind::supernodal);
+    case SolverKind::pcg_jacobi:
+    case SolverKind::pcg_matrix_free:
+      return std::make_unique<JacobiSolver>(params);
+    case SolverKind::pcg_cholesky:
+      break;
+  }
+  return std::make_unique<KeptFactorSolver>(params);
+}
+
+}  // namespace argil::linear

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+
+#include "linear/pcg.h"
+
+namespace argil::linear {
+
+enum class SolverKind {
+  pcg_cholesky,     ///< conjugate gradients preconditioned by a kept simplicial factor
+  pcg_jacobi,       ///< conjugate gradients preconditioned by the 3×3 diagonal blocks
+  pcg_matrix_free,  ///< the same; the matrix holds its diagonal blocks only and the operator multiplies
+  cholesky,         ///< simplicial LDLᵀ, renewed whenever the matrix changed: the bit-exact reference
+  supernodal,       ///< supernodal LLᵀ by BLAS, renewed likewise
+};
+
+struct SolverParams {
+  SolverKind kind = SolverKind::pcg_cholesky;
+  double tolerance = 1e-8;       ///< relative residual at which an iteration stops
+  int max_iterations = 500;      ///< of one solve
+  int refactor_iterations = 12;  ///< pcg_cholesky: factorise anew after a solve with more iterations
+};
+
+/// What the solves of a run have cost so far.
+struct SolverCost {
+  int solves = 0;
+  int iterations = 0;
+  int factorisations = 0;
+  double multiplications = 0.0;  ///< about; of products and triangular solves, factorisations left out
+};
+
+/// One way to solve A x = b. The matrix's pattern is the same in every call.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  /// `product` multiplies by A; `matrix` stores it (pcg_matrix_free: its diagonal blocks alone). x holds the
+  /// first guess. Not converged with an infinite residual: the matrix is not positive definite.
+  virtual SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) = 0;
+
+  const SolverCost& cost() const { return m_cost; }
+
+ protected:
+  SolverCost m_cost;
+};
+
+std::unique_ptr<Solver> make_solver(const SolverParams& params);
+
+}  // namespace argil::linear

@@ -1,0 +1,107 @@
+#include "solid/elements.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "mesh/quadratic.h"
+#include "solid/element.h"
+
+namespace argil::solid {
+namespace {
+
+/// Four points of degree 2 [Hammer1956]: one barycentric coordinate is a, the others are b.
+const double kPointFar = (5.0 + 3.0 * std::sqrt(5.0)) / 20.0;
+const double kPointNear = (5.0 - std::sqrt(5.0)) / 20.0;
+
+void lay_out_linear(const mesh::TetMesh& mesh, const mesh::Topology& topology, Elements& e) {
+  e.rest = mesh.vertices;
+  e.nodes = mesh.tets;
+  e.surface = topology.boundary;
+  e.node_begin = topology.vertex_begin;
+  e.node_corners = topology.vertex_corners;
+}
+
+void lay_out_quadratic(const mesh::TetMesh& mesh, const mesh::Topology& topology, Elements& e) {
+  e.nodes_per_tet = 10;
+  e.points_per_tet = 4;
+  mesh::QuadraticMesh quadratic = mesh::make_quadratic_mesh(mesh, topology);
+  e.rest = std::move(quadratic.nodes);
+  e.nodes = quadratic.tets;
+  e.surface_per_face = 4;
+  e.surface.resize(3, 4 * quadratic.boundary.cols());
+  for (Eigen::Index f = 0; f < quadratic.boundary.cols(); ++f) {
+    const auto n = quadratic.boundary.col(f);
+    e.surface.col(4 * f) << n(0), n(3), n(5);
+    e.surface.col(4 * f + 1) << n(3), n(1), n(4);
+    e.surface.col(4 * f + 2) << n(5), n(4), n(2);
+    e.surface.col(4 * f + 3) << n(3), n(4), n(5);
+  }
+  std::vector<int> count(static_cast<std::size_t>(e.num_nodes()) + 1, 0);
+  for (const int node : e.nodes.reshaped()) ++count[static_cast<std::size_t>(node) + 1];
+  for (std::size_t n = 1; n < count.size(); ++n) count[n] += count[n - 1];
+  e.node_begin = count;
+  e.node_corners.resize(static_cast<std::size_t>(e.nodes.size()));
+  for (int t = 0; t < e.num_tets(); ++t)
+    for (int k = 0; k < 10; ++k)
+      e.node_corners[static_cast<std::size_t>(count[static_cast<std::size_t>(e.nodes(k, t))]++)] = 10 * t + k;
+}
+
+/// ∇N of the ten shape functions where the barycentric coordinates are L, from those of the four.
+void set_quadratic_gradient(const Mat34& g, const Vec4& L, Eigen::Ref<Eigen::Matrix<double, 3, 10>> out) {
+  for (int i = 0; i < 4; ++i) out.col(i) = (4.0 * L(i) - 1.0) * g.col(i);
+  for (int k = 0; k < 6; ++k) {
+    const int a = mesh::kTetEdges[k][0];
+    const int b = mesh::kTetEdges[k][1];
+    out.col(4 + k) = 4.0 * (L(a) * g.col(b) + L(b) * g.col(a));
+  }
+}
+
+}  // namespace
+
+Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology, ElementKind kind) {
+  Elements e;
+  if (kind == ElementKind::p2)
+    lay_out_quadratic(mesh, topology, e);
+  else
+    lay_out_linear(mesh, topology, e);
+  const int N = e.nodes_per_tet;
+  const int Q = e.points_per_tet;
+  e.weight.resize(static_cast<Eigen::Index>(Q) * mesh.num_tets());
+  e.gradient.resize(3, N * e.weight.size());
+  e.node_volume.setZero(e.num_nodes());
+  for (Eigen::Index t = 0; t < mesh.num_tets(); ++t) {
+    Mat34 corners;
+    for (int i = 0; i < 4; ++i) corners.col(i) = mesh.vertices.col(mesh.tets(i, t));
+    const TetGeometry tet = make_tet_geometry(corners);
+    ARGIL_ASSERT(tet.volume > 0.0, t, tet.volume);
+    e.weight.segment(Q * t, Q).setConstant(tet.volume / Q);
+    if (kind != ElementKind::p2) {
+      e.gradient.middleCols<4>(4 * t) = tet.gradient;
+      for (int i = 0; i < 4; ++i) e.node_volume(mesh.tets(i, t)) += 0.25 * tet.volume;
+      continue;
+    }
+    for (int q = 0; q < Q; ++q) {
+      Vec4 L = Vec4::Constant(kPointNear);
+      L(q) = kPointFar;
+      set_quadratic_gradient(tet.gradient, L, e.gradient.middleCols<10>(10 * (Q * t + q)));
+    }
+    // Diagonal of the consistent mass: 6 and 32 times V/420; their sum is 216/420.
+    for (int i = 0; i < 10; ++i) e.node_volume(e.nodes(i, t)) += tet.volume * (i < 4 ? 6.0 : 32.0) / 216.0;
+  }
+  return e;
+}
+
+std::vector<std::vector<int>> find_node_neighbours(const Elements& e) {
+  std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(e.num_nodes()));
+  for (Eigen::Index t = 0; t < e.nodes.cols(); ++t)
+    for (const int a : e.nodes.col(t))
+      for (const int b : e.nodes.col(t)) neighbours[static_cast<std::size_t>(a)].push_back(b);
+  for (auto& list : neighbours) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  return neighbours;
+}
+
+}  // namespace argil::solid

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh/topology.h"
+#include "solid/parameters.h"
+
+namespace argil::solid {
+
+/// Nodes, integration points and shape functions of every tet at rest; fixed for ever.
+struct Elements {
+  int nodes_per_tet = 4;          ///< N: 4 or 10
+  int points_per_tet = 1;         ///< Q: 1 or 4
+  Points rest;                    ///< 3×n nodes [m]; the mesh's vertices come first
+  Eigen::MatrixXi nodes;          ///< N×m node numbers, corners first
+  Field weight;                   ///< volume of each point [m³], tet by tet; sums to the rest volume
+  Eigen::Matrix3Xd gradient;      ///< ∇N [1/m]: N columns a point
+  Field node_volume;              ///< lumped rest volume of each node [m³]
+  std::vector<int> node_begin;    ///< n+1: where each node's corners begin in node_corners
+  std::vector<int> node_corners;  ///< N·tet + corner of every tet around a node, tets increasing
+  Triangles surface;              ///< boundary as flat triangles between nodes, outward
+  int surface_per_face = 1;       ///< of them per boundary face of the mesh, in its order
+
+  int num_tets() const { return static_cast<int>(nodes.cols()); }
+  int num_nodes() const { return static_cast<int>(rest.cols()); }
+  int num_points() const { return static_cast<int>(weight.size()); }
+  int tet_of_point(int point) const { return point / points_per_tet; }
+};
+
+/// p1, p1_nodal: one point, mass in quarters. p2: four points, which is exact for straight-sided tets; mass
+/// lumped in proportion to the consistent diagonal [Hinton1976], so that no node has a negative one.
+/// Tets must have positive volume (asserted).
+Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology, ElementKind kind);
+
+/// Nodes that share a tet with each node, itself included, increasing.
+std::vector<std::vector<int>> find_node_neighbours(const Elements& elements);
+
+}  // namespace argil::solid

@@ -1,0 +1,184 @@
+#include "solid/law.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <cmath>
+
+#include "solid/polar.h"
+
+namespace argil::solid {
+namespace {
+
+using Vec9 = Eigen::Matrix<double, 9, 1>;
+
+Mat3 compute_symmetric_part(const Mat3& a) {
+  return 0.5 * (a + a.transpose());
+}
+
+Vec6 compute_elastic_strain(const PointMotion& m, const Vec6& plastic_strain) {
+  return compute_strain(m.F, m.R) - plastic_strain;
+}
+
+bool has_own_rotation(StrainModel model) {
+  return model == StrainModel::corotational;
+}
+
+/// Inverse of the plastic stretch 1 + ε_p of the multiplicative split.
+Mat3 compute_inverse_plastic_stretch(const Vec6& plastic_strain) {
+  return (Mat3::Identity() + from_mandel(plastic_strain)).inverse();
+}
+
+/// P of the neo-Hookean law at Fₑ, before the plastic pull-back.
+Mat3 compute_neo_hookean_piola(const Mat3& F, const Elasticity& e) {
+  const double pressure = (e.lambda + e.mu) * (F.determinant() - 1.0) - e.mu;
+  return e.mu * F + (pressure + e.excess_bulk * e.volume_change) * compute_cofactor(F);
+}
+
+/// ∂cof F/∂F times `scale`, added to A: cof F is quadratic, so its derivative along a unit matrix is exact
+/// from two values.
+void add_cofactor_derivative(const Mat3& F, double scale, Mat9& A) {
+  for (int k = 0; k < 9; ++k) {
+    Mat3 plus = F;
+    Mat3 minus = F;
+    plus(k) += 1.0;
+    minus(k) -= 1.0;
+    A.col(k) += 0.5 * scale * (compute_cofactor(plus) - compute_cofactor(minus)).reshaped();
+  }
+}
+
+Mat9 compute_neo_hookean_tangent(const Mat3& F, const Mat3& inverse_plastic, const Elasticity& e) {
+  const Mat3 Fe = F * inverse_plastic;
+  const Vec9 cofactor = compute_cofactor(Fe).reshaped();
+  const double bulk = e.lambda + e.mu;
+  Mat9 A = e.mu * Mat9::Identity() + bulk * cofactor * cofactor.transpose();
+  const double pressure = bulk * (Fe.determinant() - 1.0) - e.mu + e.excess_bulk * e.volume_change;
+  add_cofactor_derivative(Fe, pressure, A);
+  if (inverse_plastic.isIdentity(0.0)) return A;
+  Mat9 pull = Mat9::Zero();  // vec(dF Fp⁻¹) = (Fp⁻ᵀ ⊗ 1) vec(dF)
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) pull.block<3, 3>(3 * i, 3 * j) = inverse_plastic(j, i) * Mat3::Identity();
+  return pull.transpose() * A * pull;
+}
+
+/// R Ω σ + R C:(RᵀdF − ΩS) with Ω = [G⁻¹ axial(RᵀdF)]×, G = tr(S) 1 − S: the derivative of Rσ. Its symmetric
+/// part differs from the Hessian only where σ and S do not commute.
+Mat9 compute_corotational_tangent(const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e) {
+  const Mat3 S = compute_symmetric_part(m.R.transpose() * m.F);
+  const Mat3 G_inverse = (S.trace() * Mat3::Identity() - S).inverse();
+  const Mat3 sigma = from_mandel(compute_stress(e, compute_elastic_strain(m, plastic_strain)));
+  const Mat3 total = sigma + e.excess_bulk * e.volume_change * Mat3::Identity();
+  Mat9 A;
+  for (int k = 0; k < 9; ++k) {
+    Mat3 dF = Mat3::Zero();
+    dF(k) = 1.0;
+    const Mat3 turned = m.R.transpose() * dF;
+    const Mat3 omega = make_cross_matrix(G_inverse * compute_axial(turned));
+    const Mat3 dS = compute_symmetric_part(turned - omega * S);
+    const Mat3 change = omega * total + from_mandel(compute_stress(e, to_mandel(dS)));
+    A.col(k) = (m.R * change).reshaped();
+  }
+  return 0.5 * (A + A.transpose());
+}
+
+Mat9 compute_linear_tangent(const Elasticity& e) {
+  Mat9 A;
+  for (int k = 0; k < 9; ++k) {
+    Mat3 dF = Mat3::Zero();
+    dF(k) = 1.0;
+    A.col(k) = from_mandel(compute_stress(e, to_mandel(compute_symmetric_part(dF)))).reshaped();
+  }
+  return A;
+}
+
+Mat9 project_to_positive(const Mat9& A) {
+  // A small multiple of the identity lets semi-definite matrices, which are fine, pass the quick test.
+  const Mat9 shifted = A + 1e-9 * A.diagonal().cwiseAbs().maxCoeff() * Mat9::Identity();
+  if (shifted.llt().info() == Eigen::Success) return A;
+  const Eigen::SelfAdjointEigenSolver<Mat9> modes(A);
+  return modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() *
+         modes.eigenvectors().transpose();
+}
+
+}  // namespace
+
+PointMotion make_motion(StrainModel model, const Mat3& F) {
+  return {F, model == StrainModel::linear ? Mat3(Mat3::Identity()) : compute_rotation(F)};
+}
+
+Vec6 compute_strain(const Mat3& F, const Mat3& R) {
+  return to_mandel(compute_symmetric_part(R.transpose() * F) - Mat3::Identity());
+}
+
+Mat6 make_isotropic_stiffness(double lambda, double mu) {
+  Mat6 C = 2.0 * mu * Mat6::Identity();
+  C.topLeftCorner<3, 3>().array() += lambda;
+  return C;
+}
+
+Vec6 compute_stress(const Elasticity& e, const Vec6& elastic_strain) {
+  if (e.C) return *e.C * elastic_strain;
+  Vec6 sigma = 2.0 * e.mu * elastic_strain;
+  sigma.head<3>().array() += e.lambda * elastic_strain.head<3>().sum();
+  return sigma;
+}
+
+double compute_energy_density(StrainModel model, const PointMotion& m, const Vec6& plastic_strain,
+                              const Elasticity& e) {
+  if (model != StrainModel::neo_hookean) {
+    const Vec6 elastic = compute_elastic_strain(m, plastic_strain);
+    return 0.5 * elastic.dot(compute_stress(e, elastic));
+  }
+  const Mat3 Fe = m.F * compute_inverse_plastic_stretch(plastic_strain);
+  const double change = Fe.determinant() - 1.0;
+  // ½μ(tr FₑᵀFₑ − 3) in the displacement gradient H = Fₑ − 1, so that small strains keep their digits.
+  const Mat3 H = Fe - Mat3::Identity();
+  const double stretch = H.trace() + 0.5 * H.squaredNorm();
+  return e.mu * (stretch - change) + 0.5 * (e.lambda + e.mu) * change * change;
+}
+
+Mat3 compute_piola(StrainModel model, const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e) {
+  const bool is_plastic = (plastic_strain.array() != 0.0).any();
+  if (model == StrainModel::neo_hookean) {
+    if (!is_plastic) return compute_neo_hookean_piola(m.F, e);
+    const Mat3 inverse = compute_inverse_plastic_stretch(plastic_strain);
+    return compute_neo_hookean_piola(m.F * inverse, e) * inverse.transpose();
+  }
+  Mat3 sigma = from_mandel(compute_stress(e, compute_elastic_strain(m, plastic_strain)));
+  if (has_own_rotation(model) && (is_plastic || e.C)) {
+    // σ:dS with dS = RᵀdF − ΩS; the part of Ω is −2[G⁻¹k]×:RᵀdF with [k]× = skew(σS).
+    const Mat3 S = compute_symmetric_part(m.R.transpose() * m.F);
+    const Vec3 k = 0.5 * compute_axial(sigma * S);
+    sigma -= 2.0 * make_cross_matrix((S.trace() * Mat3::Identity() - S).inverse() * k);
+  }
+  sigma.diagonal().array() += e.excess_bulk * e.volume_change;
+  return m.R * sigma;
+}
+
+Mat9 compute_tangent(StrainModel model, const PointMotion& m, const Vec6& plastic_strain,
+                     const Elasticity& e) {
+  switch (model) {
+    case StrainModel::linear:
+      return compute_linear_tangent(e);
+    case StrainModel::corotational:
+      return project_to_positive(compute_corotational_tangent(m, plastic_strain, e));
+    case StrainModel::neo_hookean:
+      break;
+  }
+  return project_to_positive(
+      compute_neo_hookean_tangent(m.F, compute_inverse_plastic_stretch(plastic_strain), e));
+}
+
+double compute_volume_change(StrainModel model, const PointMotion& m, const Vec6& plastic_strain) {
+  if (model != StrainModel::neo_hookean) return compute_elastic_strain(m, plastic_strain).head<3>().sum();
+  return (m.F * compute_inverse_plastic_stretch(plastic_strain)).determinant() - 1.0;
+}
+
+Mat3 compute_volume_gradient(StrainModel model, const PointMotion& m, const Vec6& plastic_strain) {
+  if (model != StrainModel::neo_hookean) return m.R;
+  const Mat3 inverse = compute_inverse_plastic_stretch(plastic_strain);
+  return compute_cofactor(m.F * inverse) * inverse.transpose();
+}
+
+}  // namespace argil::solid

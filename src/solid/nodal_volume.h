@@ -1,0 +1,55 @@
+#pragma once
+
+#include "linear/block_matrix.h"
+#include "solid/elements.h"
+
+namespace argil::solid {
+
+/// The remedy of p1_nodal against volumetric locking: relative volume changes θ of the tets averaged at the
+/// nodes with the weights V κ/4 of the excess bulk moduli κ, and the energy ½ Σ D_a θ_a² with D_a = Σ V κ/4
+/// [after Bonet & Burton 1998]. A tet keeps the bulk modulus of ν = 0.3 to itself, so that no checkerboard of
+/// volume changes is free; where ν ≤ 0.3 throughout, the tets are plain P1.
+class NodalVolume {
+ public:
+  /// `row_of_node`: −1 where a node has no row in the matrix.
+  NodalVolume(const Elements& elements, const std::vector<int>& row_of_node);
+
+  /// Bulk modulus over shear modulus that a tet keeps: that of ν = 0.3.
+  static constexpr double kOwnBulkOverShear = 2.0 * 1.3 / (3.0 * 0.4);
+
+  void set_excess(const Field& excess_bulk);  ///< κ of every tet [Pa]
+
+  /// θ of every tet → its mean over the tet's nodes after averaging; κ·mean is the pressure on the tet.
+  void average(const Field& volume_change, Field& mean) const;
+
+  /// ½ Σ D_a θ_a² [J].
+  double compute_energy(const Field& volume_change) const;
+
+  /// Pattern of the matrix: nodes two edges apart meet. Rows as in `row_of_node`.
+  std::vector<std::vector<int>> find_row_neighbours() const;
+  /// Looks up the places of its blocks once the matrix's pattern is known.
+  void connect(const linear::BlockMatrix& matrix);
+  /// Adds scale · Σ D_a ∂θ_a ⊗ ∂θ_a. `gradient`: ∂θ/∂x of the tet's corners [1/m], four columns a tet.
+  void add_stiffness(const Eigen::Matrix3Xd& gradient, double scale, int threads,
+                     linear::BlockMatrix& matrix);
+  /// Diagonal blocks of the same, for a matrix that holds no others.
+  void add_diagonal(const Eigen::Matrix3Xd& gradient, double scale, linear::BlockMatrix& matrix);
+
+ private:
+  void collect_gradients(const Eigen::Matrix3Xd& gradient);
+  double theta(int node, const Field& volume_change) const;
+  int num_nodes() const { return static_cast<int>(m_node_begin.size()) - 1; }
+
+  Eigen::MatrixXi m_nodes;  // 4×m
+  Field m_volume;           // of the tets
+  std::vector<int> m_node_begin, m_node_corners;
+  std::vector<int> m_row_of_node;
+  std::vector<int> m_begin, m_neighbour;    // nodes around each node, itself included
+  std::vector<int> m_place;                 // of corner j of tet t in the ring of corner a: 16 a tet
+  Field m_weight;                           // V κ/4 of each tet
+  Field m_stiffness;                        // D_a
+  Eigen::Matrix3Xd m_ring_gradient;         // D_a ∂θ_a/∂x of each ring entry
+  std::vector<int> m_block_begin, m_block;  // for each ring entry (i of a's ring, a): blocks (i, ring of a)
+};
+
+}  // namespace argil::solid

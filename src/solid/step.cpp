@@ -1,0 +1,239 @@
+// A step of the solid in time: prediction, residual, Newton's line search; and statics as its limit without
+// mass. Linear solves are in solve.cpp.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/ordered_sum.h"
+#include "solid/solid.h"
+
+namespace argil::solid {
+namespace {
+
+constexpr double kEnd = std::numeric_limits<double>::infinity();  // statics: supports at their full way
+
+double sum_products(const Points& a, const Points& b) {
+  return ordered_sum(a.cols(), [&](std::ptrdiff_t i) { return a.col(i).dot(b.col(i)); });
+}
+
+double compute_norm(const Points& a) {
+  return std::sqrt(sum_products(a, a));
+}
+
+}  // namespace
+
+StepStatus Solid::begin_step(const SolidState& state, const StepLoads& loads, double step_s, double time,
+                             Tick tick) {
+  m_is_static = false;
+  m_load_share = 1.0;
+  m_counters = {};
+  m_plastic_strain = &state.plastic_strain;
+  m_x_start = state.x;
+  m_v_start = state.v;
+  m_x = state.x;
+  predict(state, loads, step_s);
+  const bool has_moved = place_supports(time, 1.0);
+  m_v = m_params.integrator == Integrator::symplectic_euler ? state.v : Points((m_x - m_x_hat) / m_tau);
+  return has_moved ? update_kinematics(m_x, tick) : StepStatus::ok();
+}
+
+/// x̂, v̂, τ of each integrator.
+void Solid::predict(const SolidState& state, const StepLoads& loads, double step_s) {
+  m_tau = step_s;
+  m_x_hat = state.x;
+  m_v_hat = state.v;
+  switch (m_params.integrator) {
+    case Integrator::backward_euler:
+    case Integrator::symplectic_euler:
+      return;
+    case Integrator::bdf2:
+      if (state.x_before.size() == 0) return;  // the first step has no past: backward Euler
+      m_tau = 2.0 / 3.0 * step_s;
+      m_x_hat = (4.0 * state.x - state.x_before) / 3.0;
+      m_v_hat = (4.0 * state.v - state.v_before) / 3.0;
+      return;
+    case Integrator::newmark:
+      break;
+  }
+  // Average acceleration: v' = v + ½h(a + a'), x' = x + ½h(v + v').
+  m_tau = 0.5 * step_s;
+  m_v = state.v;
+  m_v_hat = state.v;
+  compute_residual(loads);  // τ (f_ext − f_int − D v) at the start
+  for (int row = 0; row < num_free(); ++row) {
+    const int node = m_node_of_row[static_cast<std::size_t>(row)];
+    m_v_hat.col(node) = state.v.col(node) + m_rhs.col(row) / m_mass(node);
+  }
+  m_x_hat = state.x + m_tau * state.v;
+}
+
+/// Puts the prescribed components of m_x where they are at `time`. True when any of them moved.
+bool Solid::place_supports(double time, double share) {
+  m_held_x = m_elements.rest;
+  bool has_moved = false;
+  for (int n = 0; n < m_elements.num_nodes(); ++n)
+    for (int k = 0; k < 3; ++k) {
+      const int support = m_constraints.support(k, n);
+      if (support < 0) continue;
+      m_held_x(k, n) += share * compute_displacement(m_supports[static_cast<std::size_t>(support)], time)(k);
+      has_moved = has_moved || m_x(k, n) != m_held_x(k, n);
+      m_x(k, n) = m_held_x(k, n);
+    }
+  return has_moved;
+}
+
+/// r = M (v̂ − v) + τ (f_ext + M g − f_int − D v − Σ k n n·(x − x₀)); statics: the forces alone.
+void Solid::compute_residual(const StepLoads& loads) {
+  assemble_internal_force();
+  const bool is_viscous = !m_is_static && m_params.rayleigh_stiffness > 0.0 && (m_v.array() != 0.0).any();
+  m_product.setZero(3, m_elements.num_nodes());
+  if (is_viscous) compute_stiffness_product(m_v, m_params.rayleigh_stiffness, 0.0, m_product);
+  if (!m_is_static && m_params.implicit_contact)
+    add_contact_change(m_x, m_x_start, loads.contacts, 1.0, m_product);
+  const double a = m_is_static ? 0.0 : m_params.rayleigh_mass;
+  const double inertia = m_is_static ? 0.0 : 1.0;
+  double scale = 0.0;
+  for (int row = 0; row < num_free(); ++row) {
+    const int n = m_node_of_row[static_cast<std::size_t>(row)];
+    const Vec3 applied = m_load_share * (loads.force.col(n) + m_mass(n) * m_params.gravity);
+    const Vec3 force = applied - m_internal_force.col(n) - m_product.col(n) - a * m_mass(n) * m_v.col(n);
+    m_rhs.col(row) = inertia * m_mass(n) * (m_v_hat.col(n) - m_v.col(n)) + m_tau * force;
+    scale += inertia * m_mass(n) * m_v_hat.col(n).norm() +
+             m_tau * (applied.norm() + m_internal_force.col(n).norm());
+  }
+  for (const int row : m_held_rows)
+    for (int k = 0; k < 3; ++k)
+      if (m_constraints.support(k, m_node_of_row[static_cast<std::size_t>(row)]) >= 0) m_rhs(k, row) = 0.0;
+  m_residual_scale = scale;
+}
+
+bool Solid::assemble(const StepLoads& loads) {
+  compute_residual(loads);
+  if (m_params.integrator == Integrator::symplectic_euler && !m_is_static) return false;
+  if (is_newton()) {
+    if (compute_norm(m_rhs) <= m_params.newton_tolerance * m_residual_scale) return true;
+    m_potential = compute_potential(loads);
+  }
+  assemble_matrix(loads.contacts);
+  return false;
+}
+
+/// Φ with ∂Φ/∂v = −r: ½(v−v̂)M(v−v̂) + ½τ vDv + W(x) − (f_ext + M g)·(x − X) + ½ Σ k (n·(x − x₀))².
+double Solid::compute_potential(const StepLoads& loads) {
+  const double elastic = compute_elastic_energy(*m_plastic_strain);
+  double sum = elastic;
+  double magnitude = elastic;
+  const auto add = [&](double term) {
+    sum += term;
+    magnitude += std::abs(term);
+  };
+  add(-m_load_share * ordered_sum(m_mass.size(), [&](std::ptrdiff_t n) {
+    const Vec3 force = loads.force.col(n) + m_mass(n) * m_params.gravity;
+    return force.dot(m_x.col(n) - m_elements.rest.col(n));
+  }));
+  if (!m_is_static) {
+    add(ordered_sum(m_mass.size(), [&](std::ptrdiff_t n) {
+      return 0.5 * m_mass(n) *
+             ((m_v.col(n) - m_v_hat.col(n)).squaredNorm() +
+              m_tau * m_params.rayleigh_mass * m_v.col(n).squaredNorm());
+    }));
+    if (m_params.rayleigh_stiffness > 0.0) {
+      compute_stiffness_product(m_v, m_params.rayleigh_stiffness, 0.0, m_product);
+      add(0.5 * m_tau * sum_products(m_v, m_product));
+    }
+    if (m_params.implicit_contact)
+      for (const PointStiffness& contact : loads.contacts)
+        add(0.5 * contact.stiffness * std::pow(compute_gap_change(contact, m_x, m_x_start), 2));
+  }
+  m_potential_scale = magnitude;
+  return sum;
+}
+
+/// v = v_base + share · δ, x = x̂ + τ v.
+void Solid::set_iterate(double share) {
+  for (int row = 0; row < num_free(); ++row) {
+    const int n = m_node_of_row[static_cast<std::size_t>(row)];
+    for (int k = 0; k < 3; ++k) {
+      if (m_constraints.support(k, n) >= 0) continue;
+      m_v(k, n) = m_v_base(k, n) + share * m_delta(k, row);
+      m_x(k, n) = m_x_hat(k, n) + m_tau * m_v(k, n);
+    }
+  }
+}
+
+/// Halves the step until the potential falls by a share of what its slope promises [Armijo1966]. Where the
+/// promise is below rounding, the full step is taken.
+StepStatus Solid::search_line(const StepLoads& loads, Tick tick) {
+  constexpr double kPromised = 1e-4;
+  constexpr double kRounding = 1e-13;
+  constexpr int kHalvings = 40;
+  const double slope = -sum_products(m_rhs, m_delta);
+  const double before = m_potential;
+  m_v_base = m_v;
+  double share = 1.0;
+  StepStatus status = StepStatus::ok();
+  for (int i = 0; i <= kHalvings; ++i, share *= 0.5) {
+    set_iterate(share);
+    status = update_kinematics(m_x, tick);
+    if (!status.is_ok()) continue;
+    update_volume_change(*m_plastic_strain);
+    const double after = compute_potential(loads);
+    if (after <= before + kPromised * share * slope + kRounding * m_potential_scale) return StepStatus::ok();
+  }
+  if (!status.is_ok()) return status;
+  return StepStatus::failed({tick, "solid", -1, "line search: slope of the potential", slope, 0.0});
+}
+
+void Solid::finish_step(SolidState& state) {
+  if (m_params.integrator == Integrator::bdf2) {
+    state.x_before = state.x;
+    state.v_before = state.v;
+  }
+  state.v = m_v;
+}
+
+void Solid::move(SolidState& state) const {
+  state.x = m_x_hat + m_tau * state.v;
+  state.x = (m_constraints.support.array() >= 0).select(m_held_x, state.x);
+}
+
+StepStatus Solid::iterate_static(const SolidState& state, const StepLoads& loads) {
+  m_x = state.x;
+  m_x_hat = m_x;
+  m_v.setZero();
+  place_supports(kEnd, m_load_share);
+  ARGIL_TRY(update_kinematics(m_x, 0));
+  for (bool solved = false; !solved;) {
+    solved = assemble(loads);
+    if (!solved) ARGIL_TRY(solve(loads, 0, solved));
+  }
+  return StepStatus::ok();
+}
+
+StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
+  constexpr double kSmallestShare = 1.0 / 1024.0;
+  m_is_static = true;
+  m_tau = 1.0;
+  m_plastic_strain = &state.plastic_strain;
+  m_v_hat.setZero();
+  m_v_start.setZero(3, m_elements.num_nodes());
+  m_x_start = state.x;
+  double done = 0.0;
+  for (double step = 1.0; done < 1.0;) {
+    m_load_share = std::min(1.0, done + step);
+    m_counters = {};
+    const StepStatus status = iterate_static(state, loads);
+    if (status.is_ok()) {
+      done = m_load_share;
+      state.x = m_x;
+      step *= 2.0;
+      continue;
+    }
+    step *= 0.5;
+    if (step < kSmallestShare) return status;
+  }
+  return StepStatus::ok();
+}
+
+}  // namespace argil::solid

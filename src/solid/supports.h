@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/types.h"
+
+namespace argil::solid {
+
+/// Part of space whose nodes at rest are meant.
+struct Region {
+  enum class Kind { box, sphere, half_space, plane, nodes } kind = Kind::box;
+  Vec3 lower = Vec3::Zero();   ///< box [m]
+  Vec3 upper = Vec3::Zero();   ///< box [m]
+  Vec3 centre = Vec3::Zero();  ///< sphere [m]
+  double radius = 0.0;         ///< sphere [m]
+  Vec3 normal =
+      Vec3::UnitZ();  ///< half_space: normal·x ≤ offset; plane: |normal·x/|normal| − offset| ≤ thickness
+  double offset = 0.0;      ///< half_space, plane [m]
+  double thickness = 1e-9;  ///< plane: half of it [m]
+  std::vector<int> nodes;   ///< nodes
+};
+
+/// Nodes whose motion is prescribed, in all or some directions.
+struct Support {
+  Region region;
+  std::array<bool, 3> fixes = {true, true, true};  ///< x, y, z
+  Vec3 displacement = Vec3::Zero();  ///< [m] reached at the end of the ramp, from rest at its start
+  double ramp_start = 0.0;           ///< [s]
+  double ramp_end = 0.0;             ///< [s]; not after ramp_start: at once
+};
+
+/// Regions → nodes, increasing, without repeats.
+std::vector<int> find_nodes(const Points& rest, std::span<const Region> regions);
+
+/// Which components of which node are prescribed, and by which support; later supports win.
+struct Constraints {
+  Eigen::Matrix3Xi support;  ///< 3×n: number of the support that holds this component, −1: free
+
+  bool is_free(int node) const { return (support.col(node).array() < 0).all(); }
+  bool is_held(int node) const { return (support.col(node).array() >= 0).all(); }
+};
+
+Constraints find_constraints(const Points& rest, std::span<const Support> supports);
+
+/// Displacement that a support prescribes at a time.
+Vec3 compute_displacement(const Support& support, double time);
+
+/// Which rigid motion the constraints leave to a connected part of the body, in words ("the part with node 12
+/// can turn about (…)"); empty when they hold every part. `element_nodes`: N×m node numbers.
+std::string find_rigid_motion(const Points& rest, const Eigen::MatrixXi& element_nodes,
+                              const Constraints& constraints);
+
+}  // namespace argil::solid
