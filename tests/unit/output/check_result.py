@@ -19,7 +19,8 @@ HAPTIC = {
 PHYSICS = {
     "tick": ("<i8", "1"), "time": ("<f8", "s"), "kinetic_energy": ("<f8", "J"), "elastic_energy": ("<f8", "J"),
     "plastic_dissipation": ("<f8", "J"), "contact_work": ("<f8", "J"), "water_mass": ("<f8", "kg"),
-    "water_added": ("<f8", "kg"), "water_removed": ("<f8", "kg"), "iterations": ("<i4", "1"),
+    "water_added": ("<f8", "kg"), "water_removed": ("<f8", "kg"), "newton_iterations": ("<i4", "1"),
+    "iterations": ("<i4", "1"),
     "factorisations": ("<i4", "1"), "residual": ("<f8", "1"), "active_nodes": ("<i4", "1"),
     "min_volume_ratio": ("<f8", "1"), "max_plastic_strain": ("<f8", "1"),
 }

@@ -61,6 +61,7 @@ inline sim::PhysicsRecord make_physics(Tick tick) {
   record.water_mass = 5 + t;
   record.water_added = 6 + t;
   record.water_removed = 7 + t;
+  record.newton_iterations = 3;
   record.iterations = 8;
   record.factorisations = 9;
   record.residual = 1e-10;

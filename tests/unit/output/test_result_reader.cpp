@@ -77,6 +77,7 @@ TEST(ResultReader, GivesBackEveryPhysicsRecord) {
     ASSERT_EQ(records[i].water_mass, wanted.water_mass);
     ASSERT_EQ(records[i].water_added, wanted.water_added);
     ASSERT_EQ(records[i].water_removed, wanted.water_removed);
+    ASSERT_EQ(records[i].newton_iterations, wanted.newton_iterations);
     ASSERT_EQ(records[i].iterations, wanted.iterations);
     ASSERT_EQ(records[i].factorisations, wanted.factorisations);
     ASSERT_EQ(records[i].residual, wanted.residual);
