@@ -111,6 +111,16 @@ void fix_and_load(const Scenario& s, sim::Body& body) {
   }
 }
 
+/// An equilibrium has no mass to lean on: the supports alone must hold every part of the body.
+void check_supports(const Scenario& s, const sim::Body& body) {
+  const Points& rest = body.mesh.vertices;
+  const std::string motion =
+      solid::find_rigid_motion(rest, body.mesh.tets, solid::find_constraints(rest, body.supports));
+  if (!motion.empty())
+    throw InputError(s.file, "/body/fixed", "does not hold the body: " + motion,
+                     "hold at least three vertices that are not on a line");
+}
+
 mesh::TriangleMesh make_tool(const Scenario& s) {
   switch (s.tool.kind) {
     case ToolKind::sphere:
@@ -171,6 +181,10 @@ Scene build_scene(const Scenario& s) {
         s.params.elastic.youngs_modulus;
   fix_and_load(s, body);
   scene.tool = make_tool(s);
+  if (s.mode == Mode::equilibrium) {
+    check_supports(s, body);
+    return scene;
+  }
   scene.trace = device::read_trace(s.trace.file, s.trace.options);
   check_trace(s, scene.trace);
   return scene;

@@ -251,6 +251,9 @@ void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
 
 void bind_dynamics(Binder& b, Scenario& s) {
   solid::SolidParams& d = s.params.solid;
+  b.choice<Mode>("/dynamics/mode", s.mode, {{Mode::dynamic, "dynamic"}, {Mode::equilibrium, "static"}},
+                 "The hand's motion in time, or one equilibrium under /body/loads and /body/fixed, elastic, "
+                 "without tool and trace.");
   b.choice<solid::StrainModel>(
       "/dynamics/model", d.model,
       {{solid::StrainModel::corotational, "corotational"},
@@ -357,7 +360,19 @@ std::vector<Parameter> make_parameter_table(Scenario& s, const std::string& file
   bind_water_and_tool(b, s, folder);
   bind_dynamics(b, s);
   bind_haptics(b, s, folder);
-  return b.take();
+  std::vector<Parameter> rows = b.take();
+  for (Parameter& row : rows)
+    if (is_of_motion(row.pointer))
+      row.applies = [&s, applies = row.applies] {
+        return s.mode == Mode::dynamic && (!applies || applies());
+      };
+  return rows;
+}
+
+bool is_of_motion(const std::string& pointer) {
+  for (const char* folder : {"/tool/", "/contact/", "/haptics/", "/trace/"})
+    if (pointer.rfind(folder, 0) == 0) return true;
+  return false;
 }
 
 }  // namespace argil::scenario

@@ -54,8 +54,11 @@ struct Parameter {
   std::function<std::vector<Parameter>()> item;  ///< objects: rows of one element, for schema and reference
   std::function<void(const Json&, const std::string& place)> read;  ///< checks and stores
   std::function<Json()> write;                                      ///< the stored value
-  std::function<bool()> applies;  ///< false: not written by `show` (belongs to an alternative not taken)
+  std::function<bool()> applies;  ///< false: not written by `show`, nor missed: of an alternative not taken
 };
+
+/// Is this key of no use to a static scenario? Then it is required of the others only.
+bool is_of_motion(const std::string& pointer);
 
 /// Every key, bound to `scenario`, in the order of the reference page. `file` is named in errors.
 std::vector<Parameter> make_parameter_table(Scenario& scenario, const std::string& file);

@@ -59,6 +59,12 @@ void choose_body(Scenario& s, const Json& document) {
                      "name the file of the body");
 }
 
+/// Which keys are asked for depends on the mode, so it is read first.
+void choose_mode(Scenario& s, const Json& document) {
+  const Json dynamics = document.value("dynamics", Json::object());
+  if (dynamics.is_object() && dynamics.value("mode", Json()) == "static") s.mode = Mode::equilibrium;
+}
+
 void check_rates(const Scenario& s) {
   const sim::RateParams& r = s.params.rates;
   const auto require_multiple = [&](const char* pointer, int value) {
@@ -164,6 +170,12 @@ void check_combinations(Scenario& s) {
     throw InputError(s.file, "/tool/shape/tip_radius_m", "is not smaller than radius_m",
                      "give a sharper tip");
   const sim::Params& p = s.params;
+  if (s.mode == Mode::equilibrium) {
+    if (p.plasticity.enabled)
+      s.warnings.push_back(s.file +
+                           ": /material/plasticity: static mode is elastic; plastic flow is left out");
+    return;
+  }
   if (p.kernel.form != material::KernelForm::off && !(p.kernel.radius > 0.0))
     throw InputError(s.file, "/material/clay_kernel/radius_m", "is 0", "give R_D in metres, or form \"off\"");
 }
@@ -192,6 +204,7 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
   Scenario s;
   s.file = file;
   choose_body(s, document);
+  choose_mode(s, document);
   read_parameters(make_parameter_table(s, file), document, file, "");
   check_combinations(s);
   return s;

@@ -14,6 +14,12 @@ enum class BodyKind { mesh, shape, surface };
 enum class ToolKind { sphere, capsule, stylus, mesh };
 enum class ModeChoice { push, pull, wet, dry, trace };
 
+/// What is computed.
+enum class Mode {
+  dynamic,      ///< the hand's motion over a trace
+  equilibrium,  ///< "static": one equilibrium under the loads, without tool and trace
+};
+
 /// Settings that stand below a scenario's own keys.
 enum class Preset {
   none,
@@ -60,6 +66,7 @@ struct Scenario {
   std::string file;
   std::string about;
   Preset preset = Preset::none;
+  Mode mode = Mode::dynamic;
   BodySpec body;
   ToolSpec tool;
   TraceSpec trace;

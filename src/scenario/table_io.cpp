@@ -128,6 +128,15 @@ Json make_schema(const std::vector<Parameter>& rows) {
   return root;
 }
 
+/// Demands the key at `pointer` and every object on the way to it.
+void require_below(Json& schema, const std::string& pointer) {
+  const std::size_t end = pointer.find('/', 1);
+  const std::string key = pointer.substr(1, end == std::string::npos ? end : end - 1);
+  Json& required = schema["required"];
+  if (std::find(required.begin(), required.end(), key) == required.end()) required.push_back(key);
+  if (end != std::string::npos) require_below(schema["properties"][key], pointer.substr(end));
+}
+
 }  // namespace
 
 std::string to_string(const Range& range) {
@@ -142,7 +151,7 @@ void read_parameters(const std::vector<Parameter>& rows, const Json& object, con
     const Json::json_pointer pointer(row.pointer);
     if (object.contains(pointer)) {
       row.read(object[pointer], prefix + row.pointer);
-    } else if (row.required) {
+    } else if (row.required && (!row.applies || row.applies())) {
       throw InputError(file, prefix + row.pointer, "is missing",
                        "add it: " + row.doc + (row.unit.empty() ? "" : " [" + row.unit + "]"));
     }
@@ -158,7 +167,19 @@ Json write_parameters(const std::vector<Parameter>& rows) {
 
 std::string print_schema() {
   Scenario defaults;
-  Json schema = make_schema(make_parameter_table(defaults, "scenario.json"));
+  std::vector<Parameter> rows = make_parameter_table(defaults, "scenario.json");
+  Json of_motion = Json::object();
+  for (Parameter& row : rows) {
+    if (!row.required || !is_of_motion(row.pointer)) continue;
+    row.required = false;
+    require_below(of_motion, row.pointer);
+  }
+  Json schema = make_schema(rows);
+  schema["if"] = {
+      {"required", {"dynamics"}},
+      {"properties",
+       {{"dynamics", {{"required", {"mode"}}, {"properties", {{"mode", {{"const", "static"}}}}}}}}}};
+  schema["else"] = of_motion;
   schema["properties"]["body"]["oneOf"] = {
       {{"required", {"mesh"}}}, {{"required", {"shape"}}}, {{"required", {"surface"}}}};
   schema["required"].push_back("body");
@@ -178,7 +199,9 @@ std::string print_reference() {
       for (const std::string& word : row.choices) allowed += (allowed.empty() ? "" : ", ") + word;
       if (row.type == ValueType::number || row.type == ValueType::integer) allowed = to_string(row.range);
       page << "| `" << prefix << row.pointer << "` | " << row.unit << " | " << allowed << " | "
-           << (row.required ? "required" : "`" + row.write().dump() + "`") << " | " << row.doc << " |\n";
+           << (row.required ? (is_of_motion(row.pointer) ? "required unless static" : "required")
+                            : "`" + row.write().dump() + "`")
+           << " | " << row.doc << " |\n";
       if (row.item) self(row.item(), prefix + row.pointer + "/N", self);
     }
   };

@@ -36,6 +36,12 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
   ARGIL_ASSERT(rest.is_ok());
 }
 
+StepStatus Simulation::settle() {
+  ARGIL_TRY(m_solid.find_equilibrium(m_state.solid, {m_load_force}));
+  m_state.contact_x = m_state.solid.x;
+  return StepStatus::ok();
+}
+
 bool Simulation::tool_overlaps_body() const {
   return m_detector.overlaps(m_state.solid.x, m_state.tool);
 }

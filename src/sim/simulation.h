@@ -23,6 +23,10 @@ class Simulation {
   /// One haptic tick: the tool goes to `sample`, the paper's loop runs, the hand gets its force.
   StepStatus tick(const device::DeviceSample& sample);
 
+  /// Takes the body to its elastic equilibrium under its loads, without the tool. Kinematics, records and
+  /// frames are those of the equilibrium then.
+  StepStatus settle();
+
   /// True when the tool touches or lies in the body now; a run must not start so.
   bool tool_overlaps_body() const;
 

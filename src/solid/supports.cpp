@@ -50,15 +50,21 @@ std::vector<int> find_parts(Eigen::Index num_nodes, const Eigen::MatrixXi& eleme
 
 using Mode = Eigen::Matrix<double, 6, 1>;  // translation, then rotation about the part's centre over its size
 
-std::string describe_motion(const Mode& mode, const Vec3& centre) {
+/// Three decimals are enough to find a direction by.
+std::string print_vector(const Vec3& a) {
   std::ostringstream text;
+  for (int k = 0; k < 3; ++k) text << (k > 0 ? ", " : "(") << std::round(a(k) * 1e3) / 1e3 + 0.0;
+  text << ')';
+  return text.str();
+}
+
+std::string describe_motion(const Mode& mode, const Vec3& centre) {
   const Vec3 shift = mode.head<3>();
   const Vec3 turn = mode.tail<3>();
   if (turn.norm() > 0.5 * shift.norm())
-    text << "turn about (" << turn.normalized().transpose() << ") near (" << centre.transpose() << ") m";
-  else
-    text << "shift along (" << shift.normalized().transpose() << ")";
-  return text.str();
+    return "turn about an axis along " + print_vector(turn.normalized()) + " near " + print_vector(centre) +
+           " m";
+  return "shift along " + print_vector(shift.normalized());
 }
 
 }  // namespace

@@ -132,6 +132,54 @@ std::optional<Failure> run_ticks(const scenario::Scenario& s, const device::Trac
   return {};
 }
 
+void print_notes(const scenario::Scene& scene, const RunOptions& options) {
+  if (options.quiet) return;
+  for (const std::string& note : scene.notes) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
+}
+
+int print_ready(const scenario::Scenario& s, const sim::Simulation& simulation, Tick num_ticks) {
+  std::printf("%s: %d vertices, %d tets, %d skin triangles, %lld ticks: ready to run\n", s.file.c_str(),
+              simulation.body().mesh.num_vertices(), simulation.body().mesh.num_tets(),
+              simulation.body().skin.num_triangles(), static_cast<long long>(num_ticks));
+  return kDone;
+}
+
+int print_failure(const Failure& failure) {
+  std::fprintf(stderr, "argil: run failed: %s\n", to_string(failure).c_str());
+  return kRunFailed;
+}
+
+std::string name_result(const scenario::Scenario& s, const RunOptions& options) {
+  return options.output.empty() ? std::filesystem::path(s.file).stem().string() + ".h5" : options.output;
+}
+
+/// One equilibrium: a physics record and a frame, at the time 0 of an empty motion.
+int run_static(const scenario::Scenario& s, scenario::Scene& scene, const RunOptions& options) {
+  const mesh::TriangleMesh tool = scene.tool;
+  sim::Simulation simulation(std::move(scene.body), tool, s.params, {});
+  print_notes(scene, options);
+  if (options.dry_run) return print_ready(s, simulation, 0);
+  const std::string result = name_result(s, options);
+  output::ResultFile file(result, make_header(s, simulation, scene, tool));
+  const auto start = std::chrono::steady_clock::now();
+  const StepStatus status = simulation.settle();
+  const std::optional<Failure> failure =
+      status.is_ok() ? std::nullopt : std::optional<Failure>(status.failure());
+  file.append(simulation.physics_record());
+  file.append(simulation.make_frame());
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  file.append_timing({{"solve", seconds}, {"total", seconds}});
+  file.finish(failure);
+  output::write_xdmf(result, std::filesystem::path(result).replace_extension(".xdmf").string());
+  if (failure) return print_failure(*failure);
+  if (!options.quiet) {
+    const Points moved = simulation.state().solid.x - simulation.solid().elements().rest;
+    std::printf("%s: equilibrium in %.2f s, largest displacement %.6g m\n", result.c_str(), seconds,
+                moved.colwise().norm().maxCoeff());
+  }
+  return kDone;
+}
+
 }  // namespace
 
 scenario::Scenario load(const RunOptions& options) {
@@ -147,23 +195,16 @@ scenario::Scenario load(const RunOptions& options) {
 int run(const RunOptions& options) {
   const scenario::Scenario s = load(options);
   scenario::Scene scene = scenario::build_scene(s);
+  if (s.mode == scenario::Mode::equilibrium) return run_static(s, scene, options);
   const mesh::TriangleMesh tool = scene.tool;
   const Tick num_ticks = count_ticks(s, scene.trace);
   sim::Simulation simulation(std::move(scene.body), tool, s.params, sample_at(s, scene.trace, 0));
   if (simulation.tool_overlaps_body())
     throw InputError(s.file, "/trace", "the tool starts in or across the body",
                      "start the motion outside it");
-  if (!options.quiet)
-    for (const std::string& note : scene.notes) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
-  if (options.dry_run) {
-    std::printf("%s: %d vertices, %d tets, %d skin triangles, %lld ticks: ready to run\n", s.file.c_str(),
-                simulation.body().mesh.num_vertices(), simulation.body().mesh.num_tets(),
-                simulation.body().skin.num_triangles(), static_cast<long long>(num_ticks));
-    return kDone;
-  }
-
-  const std::string result =
-      options.output.empty() ? std::filesystem::path(s.file).stem().string() + ".h5" : options.output;
+  print_notes(scene, options);
+  if (options.dry_run) return print_ready(s, simulation, num_ticks);
+  const std::string result = name_result(s, options);
   output::ResultFile file(result, make_header(s, simulation, scene, tool));
   g_interrupted = 0;
   std::signal(SIGINT, on_signal);
@@ -177,10 +218,7 @@ int run(const RunOptions& options) {
   file.append_timing(clock.seconds(seconds, simulation.clock().tick));
   file.finish(failure, g_interrupted != 0 && !failure);
   output::write_xdmf(result, std::filesystem::path(result).replace_extension(".xdmf").string());
-  if (failure) {
-    std::fprintf(stderr, "argil: run failed: %s\n", to_string(*failure).c_str());
-    return kRunFailed;
-  }
+  if (failure) return print_failure(*failure);
   if (g_interrupted) {
     std::fprintf(stderr, "argil: interrupted after tick %lld; %s is readable up to there\n",
                  static_cast<long long>(simulation.clock().tick), result.c_str());
