@@ -70,6 +70,7 @@ Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology
   e.weight.resize(static_cast<Eigen::Index>(Q) * mesh.num_tets());
   e.gradient.resize(3, N * e.weight.size());
   e.node_volume.setZero(e.num_nodes());
+  e.shape_volume.setZero(e.num_nodes());
   for (Eigen::Index t = 0; t < mesh.num_tets(); ++t) {
     Mat34 corners;
     for (int i = 0; i < 4; ++i) corners.col(i) = mesh.vertices.col(mesh.tets(i, t));
@@ -87,8 +88,12 @@ Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology
       set_quadratic_gradient(tet.gradient, L, e.gradient.middleCols<10>(10 * (Q * t + q)));
     }
     // Diagonal of the consistent mass: 6 and 32 times V/420; their sum is 216/420.
-    for (int i = 0; i < 10; ++i) e.node_volume(e.nodes(i, t)) += tet.volume * (i < 4 ? 6.0 : 32.0) / 216.0;
+    for (int i = 0; i < 10; ++i) {
+      e.node_volume(e.nodes(i, t)) += tet.volume * (i < 4 ? 6.0 : 32.0) / 216.0;
+      e.shape_volume(e.nodes(i, t)) += tet.volume * (i < 4 ? -0.05 : 0.2);
+    }
   }
+  if (kind != ElementKind::p2) e.shape_volume = e.node_volume;
   return e;
 }
 

@@ -16,6 +16,7 @@ struct Elements {
   Field weight;                   ///< volume of each point [m³], tet by tet; sums to the rest volume
   Eigen::Matrix3Xd gradient;      ///< ∇N [1/m]: N columns a point
   Field node_volume;              ///< lumped rest volume of each node [m³]
+  Field shape_volume;             ///< ∫Nᵢ dV [m³]: carries body forces; p2's corners below 0
   std::vector<int> node_begin;    ///< n+1: where each node's corners begin in node_corners
   std::vector<int> node_corners;  ///< N·tet + corner of every tet around a node, tets increasing
   Triangles surface;              ///< boundary as flat triangles between nodes, outward

@@ -154,6 +154,7 @@ class Solid {
   double compute_potential(const StepLoads& loads);
   StepStatus search_line(const StepLoads& loads, Tick tick);
   void set_iterate(double share);
+  double gravity_mass(Eigen::Index node) const;
   bool is_newton() const { return m_is_static || m_params.iteration == Iteration::newton; }
   StepStatus iterate_static(const SolidState& state, const StepLoads& loads);
 

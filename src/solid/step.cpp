@@ -83,6 +83,12 @@ bool Solid::place_supports(double time, double share) {
   return has_moved;
 }
 
+/// What gravity acts on: in time the lumped mass, so that a free body falls as one; in statics ρ∫N dV, the
+/// elements' own load.
+double Solid::gravity_mass(Eigen::Index node) const {
+  return m_is_static ? m_params.density * m_elements.shape_volume(node) : m_mass(node);
+}
+
 /// r = M (v̂ − v) + τ (f_ext + M g − f_int − D v − Σ k n n·(x − x₀)); statics: the forces alone.
 void Solid::compute_residual(const StepLoads& loads) {
   assemble_internal_force();
@@ -96,7 +102,7 @@ void Solid::compute_residual(const StepLoads& loads) {
   double scale = 0.0;
   for (int row = 0; row < num_free(); ++row) {
     const int n = m_node_of_row[static_cast<std::size_t>(row)];
-    const Vec3 applied = m_load_share * (loads.force.col(n) + m_mass(n) * m_params.gravity);
+    const Vec3 applied = m_load_share * (loads.force.col(n) + gravity_mass(n) * m_params.gravity);
     const Vec3 force = applied - m_internal_force.col(n) - m_product.col(n) - a * m_mass(n) * m_v.col(n);
     m_rhs.col(row) = inertia * m_mass(n) * (m_v_hat.col(n) - m_v.col(n)) + m_tau * force;
     scale += inertia * m_mass(n) * m_v_hat.col(n).norm() +
@@ -129,7 +135,7 @@ double Solid::compute_potential(const StepLoads& loads) {
     magnitude += std::abs(term);
   };
   add(-m_load_share * ordered_sum(m_mass.size(), [&](std::ptrdiff_t n) {
-    const Vec3 force = loads.force.col(n) + m_mass(n) * m_params.gravity;
+    const Vec3 force = loads.force.col(n) + gravity_mass(n) * m_params.gravity;
     return force.dot(m_x.col(n) - m_elements.rest.col(n));
   }));
   if (!m_is_static) {
