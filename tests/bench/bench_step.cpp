@@ -1,0 +1,123 @@
+// What a step costs, stage by stage: the dry demonstration's press on the same dinosaur in tets of three sizes.
+//   build/bin/bench_step --benchmark_filter=push/tets:10000
+// Counters are microseconds per physics step of one haptic tick: `solve` is the median over the steps, `solve_p99`
+// its 99th percentile.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scenario/build.h"
+#include "sim/simulation.h"
+
+namespace argil {
+namespace {
+
+constexpr auto kNumStages = static_cast<std::size_t>(sim::Stage::count);
+constexpr std::array<const char*, kNumStages> kStages = {"contact", "water",      "assemble",
+                                                         "solve",   "kinematics", "plasticity"};
+constexpr double kBeforePress = 0.45;  // [s] into the motion: the tool has just begun to press
+
+/// Microseconds of every stage in every step.
+class StageClock final : public sim::StageObserver {
+ public:
+  void begin(sim::Stage) override { m_begin = std::chrono::steady_clock::now(); }
+  void end(sim::Stage stage) override {
+    m_step[static_cast<std::size_t>(stage)] +=
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - m_begin).count();
+  }
+  void next_step() {
+    for (std::size_t s = 0; s < kNumStages; ++s) m_samples[s].push_back(m_step[s]);
+    m_step = {};
+  }
+  void report(benchmark::State& state) {
+    for (std::size_t s = 0; s < kNumStages; ++s) {
+      std::sort(m_samples[s].begin(), m_samples[s].end());
+      const std::size_t last = m_samples[s].size() - 1;
+      state.counters[kStages[s]] = m_samples[s][last / 2];
+      state.counters[std::string(kStages[s]) + "_p99"] = m_samples[s][(99 * last) / 100];
+    }
+  }
+
+ private:
+  std::chrono::steady_clock::time_point m_begin;
+  std::array<double, kNumStages> m_step = {};
+  std::array<std::vector<double>, kNumStages> m_samples;
+};
+
+/// The demonstration's scene with a physics step every tick.
+struct Press {
+  device::Trace trace;
+  double start = 0.0;
+  device::ToolMode mode;
+  std::unique_ptr<sim::Simulation> simulation;
+
+  Press(int tets, int threads, device::ToolMode m) : mode(m) {
+    const std::vector<scenario::Setting> settings = {
+        {"/body/shape/target_tets", std::to_string(tets)},
+        {"/haptics/physics_period_ticks", "1"},
+        {"/haptics/water_period_ticks", m == device::ToolMode::push ? "10" : "1"}};
+    scenario::Scenario s =
+        scenario::load_scenario(ARGIL_SOURCE_DIR "/scenarios/demo_dino_dry.json", settings);
+    s.params.threads = threads;
+    scenario::Scene scene = scenario::build_scene(s);
+    trace = std::move(scene.trace);
+    start = s.trace.start + kBeforePress;
+    simulation = std::make_unique<sim::Simulation>(std::move(scene.body), scene.tool, s.params, sample(0));
+  }
+  device::DeviceSample sample(Tick tick) const {
+    device::DeviceSample at = device::interpolate(trace, start + 0.001 * static_cast<double>(tick));
+    at.mode = mode;
+    return at;
+  }
+};
+
+void run_steps(benchmark::State& state, device::ToolMode mode) {
+  Press press(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), mode);
+  StageClock clock;
+  press.simulation->observe_stages(&clock);
+  double iterations = 0.0;
+  double contacts = 0.0;
+  for (auto _ : state) {
+    const Tick tick = press.simulation->clock().tick;
+    const StepStatus status = press.simulation->tick(press.sample(tick + 1));
+    if (!status.is_ok()) {
+      state.SkipWithError(to_string(status.failure()).c_str());
+      return;
+    }
+    clock.next_step();
+    iterations += press.simulation->solid().counters().linear_iterations;
+    contacts += static_cast<double>(press.simulation->contacts().contacts.size());
+  }
+  clock.report(state);
+  const auto steps = static_cast<double>(state.iterations());
+  state.counters["steps_per_s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
+  state.counters["cg_iterations"] = iterations / steps;
+  state.counters["contacts"] = contacts / steps;
+  state.counters["tets"] = press.simulation->body().mesh.num_tets();
+}
+
+void push(benchmark::State& state) {
+  run_steps(state, device::ToolMode::push);
+}
+
+void wet(benchmark::State& state) {
+  run_steps(state, device::ToolMode::wet);
+}
+
+// A fixed number of steps, so that every size presses the same 0.4 s of the motion.
+void set_sizes(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"tets", "threads"})->ArgsProduct({{2000, 10000, 40000}, {1, 2}});
+  bench->Iterations(400)->Unit(benchmark::kMicrosecond)->UseRealTime();
+}
+BENCHMARK(push)->Apply(set_sizes);
+BENCHMARK(wet)->Apply(set_sizes);
+
+}  // namespace
+}  // namespace argil
+
+BENCHMARK_MAIN();
