@@ -1,7 +1,8 @@
-// What a step costs, stage by stage: the dry demonstration's press on the same dinosaur in tets of three sizes.
+// What a step costs, stage by stage: the dry demonstration's press on the same dinosaur in tets of three
+// sizes.
 //   build/bin/bench_step --benchmark_filter=push/tets:10000
-// Counters are microseconds per physics step of one haptic tick: `solve` is the median over the steps, `solve_p99`
-// its 99th percentile.
+// Counters are microseconds per physics step of one haptic tick: `solve` is the median over the steps,
+// `solve_p99` its 99th percentile.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
