@@ -40,6 +40,7 @@ class Stroke(NamedTuple):
     height: float  # of the tool's surface over the contact point [mm], negative: into the body
     slide: float  # along Place.slide [mm]
     tilt: float  # of the tool about normal × slide [degrees]
+    side: float = 0.0  # along normal × slide [mm]
 
 
 HAUNCH = Place(contact=(-6.0, -30.4, 62.0), normal=(0.0, -1.0, 0.0), slide=(0.35, 0.0, -0.94), tool_radius=8.0)
@@ -63,14 +64,19 @@ PRESS = [  # three presses, each deeper and held, a slide, and away
     Stroke("push", 0.50, 25.0, 0.0, 0.0),
 ]
 
-WET = [  # touch the same place with water, follow the later slide and come back, and return to START
+WIPE = [  # slide, side, height [mm]: inwards round the place that is pressed later. The haunch bulges; each height is
+    # 1 mm below the one at which the tool just touches there, so that the hand feels 1 N or 2.
+    (0.0, 0.0, -0.22), (5.0, 0.0, -0.37), (10.0, 0.0, -0.54), (8.0, 5.0, -0.93), (4.0, 6.5, -0.71), (0.0, 7.0, -1.07),
+    (-4.0, 6.0, -0.83), (-7.0, 5.0, -0.81), (-9.0, 0.0, -0.99), (-7.0, -4.0, -1.23), (-4.0, -5.5, -1.18),
+    (0.0, -6.5, -1.17), (4.0, -6.0, -1.40), (8.0, -5.0, -1.65), (6.5, -2.5, -0.75), (5.0, 0.0, -0.37), (4.0, 3.5, -0.45),
+    (0.0, 4.5, -0.30), (-4.0, 3.0, -0.26), (-5.0, 0.0, -0.49), (-4.0, -3.0, -0.84), (0.0, -4.0, -0.59), (4.0, -3.0, -0.56),
+    (0.0, 0.0, -0.22),
+]
+
+WET = [  # come, wipe with water, stay at the place, and return to START
     Stroke("wet", 0.60, 2.0, 0.0, 0.0),
-    Stroke("wet", 0.20, -0.3, 0.0, 0.0),
-    Stroke("wet", 1.00, -0.3, 0.0, 0.0),
-    Stroke("wet", 0.80, -0.3, 8.0, 3.0),
-    Stroke("wet", 1.20, -0.3, -6.0, -2.0),
-    Stroke("wet", 0.60, -0.3, 0.0, 0.0),
-    Stroke("wet", 0.60, -0.3, 0.0, 0.0),
+    *(Stroke("wet", 0.55, height, slide, 0.0, side) for slide, side, height in WIPE),
+    Stroke("wet", 1.40, -0.22, 0.0, 0.0),
     Stroke("wet", 0.60, 25.0, 0.0, 0.0),
 ]
 
@@ -162,7 +168,7 @@ def minimum_jerk(s):
 
 
 def way_at(strokes, time):
-    """Height [mm], slide [mm], tilt [degrees] and mode `time` seconds after the strokes began at START."""
+    """Height [mm], slide [mm], tilt [degrees], side [mm] and mode `time` seconds after the strokes began at START."""
     origin = START
     for stroke in strokes:
         # A sample on the border belongs to the next stroke; half a nanosecond takes up the sum's rounding.
@@ -209,8 +215,9 @@ def make_rows(place, before, after):
     for tick in range(first, last + 1):
         time = tick / RATE_HZ
         strokes, local = (before, time + duration(before)) if tick < 0 else (after, time)
-        height, slid, tilt, mode = way_at(strokes, local)
-        hand = added(place.contact, scaled(normal, place.tool_radius + height), scaled(slide, slid), tremor(time))
+        height, slid, tilt, aside, mode = way_at(strokes, local)
+        hand = added(place.contact, scaled(normal, place.tool_radius + height), scaled(slide, slid),
+                     scaled(tilt_axis, aside), tremor(time))
         # Rotations about one axis: interpolating the angle is the slerp.
         turn = quaternion_product(rotation_about(tilt_axis, math.radians(tilt)), upright)
         position = (1e-3 * GRID_MM * round(x / GRID_MM) for x in hand)
