@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Draws the size of the force at the hand against time, one line a run, and a closer look at the strongest press.
 
-Usage: plot_force.py A.h5 [B.h5 ...] [--labels A B ...] [--align-press] [--smooth SECONDS] [-o STEM]
+Usage: plot_force.py A.h5 [B.h5 ...] [--labels A B ...] [--align-press] [--from SECONDS] [--smooth SECONDS]
+                     [-o STEM]
 """
 import argparse
 from typing import NamedTuple
@@ -77,7 +78,7 @@ def draw_water_bands(axes, runs):
                 drawn.add(band)
 
 
-def draw(runs, align_press, smooth):
+def draw(runs, align_press, smooth, start=None):
     peak = find_peak(runs)
     time_label = "time since the push began [s]" if align_press else "time [s]"
     figure, panels = plt.subplots(1, 2 if peak else 1, figsize=(180 * ap.MILLIMETRES, 72 * ap.MILLIMETRES),
@@ -87,6 +88,8 @@ def draw(runs, align_press, smooth):
     draw_water_bands(whole, runs)
     whole.set_ylabel("force at the hand [N]" + (f"\nmean over {smooth:g} s" if smooth > 0.0 else ""))
     whole.margins(x=0)
+    if start is not None:
+        whole.set_xlim(left=start)
     whole.set_ylim(bottom=0, top=1.08 * max(1e-12, *(np.max(run.force, initial=0.0) for run in runs)))
     if peak:
         close = panels[0][1]
@@ -110,6 +113,8 @@ def main():
     parser.add_argument("files", nargs="+", metavar="RESULT.h5")
     parser.add_argument("--labels", nargs="+", help="one a file; default: the files' names")
     parser.add_argument("--align-press", action="store_true", help="time counts from the first push or pull sample")
+    parser.add_argument("--from", type=float, dest="start", metavar="SECONDS",
+                        help="where the axis of time starts; default: with the first run")
     parser.add_argument("--smooth", type=float, default=0.0, metavar="SECONDS",
                         help="draw the moving mean over so long; 0.1 takes out a hand's tremor")
     parser.add_argument("-o", "--output", default="force", metavar="STEM", help="default: force")
@@ -118,7 +123,7 @@ def main():
     if not options.smooth >= 0.0:
         ap.refuse(f"--smooth {options.smooth:g}: give 0 or more seconds")
     runs = [read_run(file, label, options.align_press, options.smooth) for file, label in zip(options.files, labels)]
-    ap.save(draw(runs, options.align_press, options.smooth), options.output)
+    ap.save(draw(runs, options.align_press, options.smooth, options.start), options.output)
 
 
 if __name__ == "__main__":

@@ -94,6 +94,7 @@ def draw(saturation, ledger):
     draw_error(panels[2], ledger)
     for axes in panels:
         axes.margins(x=0)
+        axes.set_xlim(left=0)
         axes.set_xlabel("time [s]")
     for axes in panels[:2]:
         axes.legend(loc="lower left", bbox_to_anchor=(-0.05, 1.0), borderaxespad=0.3)

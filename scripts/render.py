@@ -20,6 +20,7 @@ from argil_plot import np, plt
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
+MOMENTS = ("before", "wetting", "during", "after")
 PANEL_PIXELS = (1280, 960)
 BACKGROUND = (0.965, 0.968, 0.972)
 CLAY = (0.80, 0.56, 0.43)
@@ -228,20 +229,22 @@ def add_lights(vtk, renderer):
 class Camera:
     """Parallel projection, three-quarter view from the side on which the tools touch, the same for all panels."""
 
-    def __init__(self, bounds, tool_centre, zoom):
-        centre = bounds.mean(axis=0)
-        side = -1.0 if tool_centre[1] <= centre[1] else 1.0
+    def __init__(self, points, tool_centre, zoom):
+        """Fits `points` (n×3) [m] into the panel; closer than that, looks at the tool's centre."""
+        lowest, highest = points.min(axis=0), points.max(axis=0)
+        side = -1.0 if tool_centre[1] <= 0.5 * (lowest + highest)[1] else 1.0
         away = np.array([0.50, 0.92 * side, 0.36])
         self.direction = away / np.linalg.norm(away)
         right = np.cross([0.0, 0.0, 1.0], self.direction)
         right /= np.linalg.norm(right)
-        up = np.cross(self.direction, right)
-        corners = np.array([[bounds[i, 0], bounds[j, 1], bounds[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-        width, height = np.ptp(corners @ right), np.ptp(corners @ up)
+        axes = np.stack([right, np.cross(self.direction, right), self.direction])  # right, up, towards the eye
+        seen = points @ axes.T
+        width, height, _ = np.ptp(seen, axis=0)
         aspect = PANEL_PIXELS[0] / PANEL_PIXELS[1]
-        self.half_height = 0.5 * max(height, width / aspect) * 1.16 / zoom
-        self.focus = centre if zoom == 1.0 else tool_centre
-        self.reach = 1.5 * np.linalg.norm(np.ptp(bounds, axis=0))
+        self.half_height = 0.5 * max(height, width / aspect) * 1.12 / zoom
+        middle = 0.5 * (seen.min(axis=0) + seen.max(axis=0))
+        self.focus = middle @ axes if zoom == 1.0 else tool_centre
+        self.reach = 1.5 * np.linalg.norm(highest - lowest)
         self.distance = 2.0 * self.reach
 
     def apply(self, camera):
@@ -306,14 +309,13 @@ def render_rows(rows, field, zoom):
     import vtk
 
     shots = [shot for row in rows for shot in row]
-    bounds = np.array([np.min([s.points.min(axis=0) for s in shots], axis=0),
-                       np.max([s.points.max(axis=0) for s in shots], axis=0)])
+    points = np.concatenate([part for s in shots for part in (s.points, s.tool_points) if part is not None])
     strongest = max(shots, key=lambda shot: np.linalg.norm(shot.force))
     largest_force = np.linalg.norm(strongest.force)
     top = FIELDS[field].top or max(max(shot.values.max() for shot in shots), 1e-12)
-    touched = bounds.mean(axis=0) if strongest.tool_points is None else strongest.tool_position
-    camera = Camera(bounds, touched, zoom)
-    size = np.ptp(bounds, axis=0).max()
+    touched = points.mean(axis=0) if strongest.tool_points is None else strongest.tool_position
+    camera = Camera(points, touched, zoom)
+    size = np.ptp(points, axis=0).max()
 
     def actors_of(shot):
         actors = [body_actor(vtk, shot, FIELDS[field].colours, top)]
@@ -328,21 +330,22 @@ def render_rows(rows, field, zoom):
     return [[picture(vtk, window, actors_of(shot), camera, 0.08 * size) for shot in row] for row in rows], top
 
 
-def compose(images, rows, labels, field, top):
+def compose(images, rows, labels, moments, field, top):
     """Puts the images on one sheet with their labels and one colour bar."""
     num_rows, num_columns = len(images), len(images[0])
-    panel_width = min(90.0, 240.0 / num_columns) * ap.MILLIMETRES
+    panel_width = min(62.0, 240.0 / num_columns) * ap.MILLIMETRES
     panel_height = panel_width * PANEL_PIXELS[1] / PANEL_PIXELS[0]
     figure, panels = plt.subplots(num_rows, num_columns, squeeze=False,
                                   figsize=(panel_width * num_columns + 0.65, panel_height * num_rows),
                                   facecolor=BACKGROUND, gridspec_kw={"hspace": 0, "wspace": 0})
     figure.get_layout_engine().set(w_pad=0.01, h_pad=0.01, wspace=0, hspace=0)
     for axes_row, image_row, shot_row, label in zip(panels, images, rows, labels):
-        for axes, image, shot in zip(axes_row, image_row, shot_row):
+        for axes, image, shot, moment in zip(axes_row, image_row, shot_row, moments):
             axes.imshow(image, interpolation="lanczos")
             axes.set_axis_off()
             force = np.linalg.norm(shot.force)
-            words = f"{label}, t = {shot.time:.2f} s" + (f", {force:.2f} N" if force > 0.0 else "")
+            name = label + (f", {moment}" if moment in MOMENTS else "")
+            words = f"{name}: t = {shot.time:.1f} s" + (f", {force:.2f} N" if force > 0.0 else "")
             axes.text(0.03, 0.97, words, transform=axes.transAxes, va="top", color="#222222", fontsize=9,
                       bbox={"facecolor": BACKGROUND, "alpha": 0.75, "linewidth": 0, "pad": 2})
     scale = ScalarMappable(Normalize(0.0, top), FIELDS[field].colours)
@@ -400,8 +403,9 @@ def main():
     rows = [read_shots(file, moments, options.field) for file in options.files]
     with display():
         images, top = render_rows(rows, options.field, options.zoom)
-    figure = compose(images, rows, labels, options.field, top)
-    figure.savefig(options.output, dpi=160, facecolor=BACKGROUND, metadata={"Software": None})
+    figure = compose(images, rows, labels, moments, options.field, top)
+    figure.savefig(options.output, dpi=140, facecolor=BACKGROUND, metadata={"Software": None},
+                   pil_kwargs={"optimize": True})
     print(options.output)
 
 

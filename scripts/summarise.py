@@ -22,7 +22,7 @@ def read_text(result, name):
 
 
 def saturation_near_tool(result, time):
-    """Mean saturation of the tets near the tool, by volume, in the frame nearest to `time` [s]; None where no tet is."""
+    """Mean saturation of the tets near the tool, by volume, in the frame nearest to `time` [s]; None if none is."""
     frame = min(ap.frames_of(result), key=lambda frame: abs(frame.attrs["time"] - time))
     tool = result["haptic/tool_position"][np.argmin(np.abs(result["haptic/time"][:] - frame.attrs["time"]))]
     centres = frame["position"][:][result["mesh/tets"][:]].mean(axis=1)
