@@ -14,6 +14,7 @@ struct ShapeIntegrals {
   double i1;      // I₁/4π
   double i3;      // I₃/4π
   double i13;     // I₁₃/4π
+  double c2_i13;  // c² I₁₃/4π
   double i11;     // I₁₁/4π = I₁₂/4π
   double c2_i33;  // c² I₃₃/4π
 };
@@ -40,9 +41,12 @@ void integrate_near_sphere(double c, ShapeIntegrals& result) {
 }
 
 ShapeIntegrals compute_shape_integrals(double c) {
-  ARGIL_ASSERT(c > 0.0 && std::isfinite(c), c);
-  ShapeIntegrals r{};
+  ARGIL_ASSERT(c >= 0.0, c);
   constexpr double kNearSphere = 0.05;
+  constexpr double kCylinder =
+      1e9;  // ln(c)/c², by which a fibre differs from the cylinder, is below rounding
+  ShapeIntegrals r{};
+  if (c > kCylinder) return {0.5, 0.0, 0.0, 0.5, 0.25, 0.0};
   if (std::abs(c - 1.0) < kNearSphere) {
     integrate_near_sphere(c, r);
   } else {
@@ -56,8 +60,9 @@ ShapeIntegrals compute_shape_integrals(double c) {
     r.i3 = 1.0 - 2.0 * r.i1;
     r.i13 = (r.i1 - r.i3) / (c * c - 1.0);
   }
+  r.c2_i13 = c * c * r.i13;
   r.i11 = 0.25 * (1.0 - r.i13);
-  r.c2_i33 = (1.0 - 2.0 * c * c * r.i13) / 3.0;
+  r.c2_i33 = (1.0 - 2.0 * r.c2_i13) / 3.0;
   return r;
 }
 
@@ -65,12 +70,11 @@ ShapeIntegrals compute_shape_integrals(double c) {
 
 Transverse compute_eshelby_transverse(double nu, double aspect) {
   const ShapeIntegrals s = compute_shape_integrals(aspect);
-  const double c2 = aspect * aspect;
   const double a = 1.0 / (2.0 * (1.0 - nu));  // 4π/(8π(1−ν))
   const double b = (1.0 - 2.0 * nu) * a;
   const double P11 = 3.0 * a * s.i11 + b * s.i1;
   const double P12 = a * s.i11 - b * s.i1;
-  const double P13 = a * c2 * s.i13 - b * s.i1;
+  const double P13 = a * s.c2_i13 - b * s.i1;
   const double P31 = a * s.i13 - b * s.i3;
   const double P33 = 3.0 * a * s.c2_i33 + b * s.i3;
   Transverse P;
@@ -79,7 +83,7 @@ Transverse compute_eshelby_transverse(double nu, double aspect) {
   P.wu = kSqrt2 * (2.0 * P31 - P11 - P12 + P33 - P13) / 3.0;
   P.ww = (P11 + P12 + 2.0 * (P33 - P13 - P31)) / 3.0;
   P.plane = P11 - P12;                                   // 2 P₁₂₁₂
-  P.axial = a * (1.0 + c2) * s.i13 + b * (s.i1 + s.i3);  // 2 P₁₃₁₃
+  P.axial = a * (s.i13 + s.c2_i13) + b * (s.i1 + s.i3);  // 2 P₁₃₁₃
   return aspect == 1.0 ? to_transverse(average(P)) : P;  // no rounding between mean and deviator of a sphere
 }
 

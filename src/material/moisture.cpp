@@ -4,10 +4,12 @@
 #include <cmath>
 #include <span>
 
+#include "material/orientation.h"
+
 namespace argil::material {
 namespace {
 
-// Linear interpolation errs by |f''|/8/1024²: 2e-6 of the modulus for every law of this folder (tested).
+// Linear interpolation errs by |f''|/8/1024²: 2e-6 of the modulus for every scheme (tested).
 constexpr int kIntervals = 1024;
 
 /// Monotone cubic through (x, y) at `at`, tangents by harmonic means of the secants [Fritsch & Butland 1984].
@@ -45,58 +47,73 @@ std::pair<std::size_t, double> locate(double saturation) {
   return {node, at - static_cast<double>(node)};
 }
 
+WetState interpolate_state(const std::vector<WetState>& states, double saturation) {
+  const auto [node, share] = locate(saturation);
+  const WetState& a = states[node];
+  const WetState& b = states[node + 1];
+  return {std::lerp(a.lambda, b.lambda, share), std::lerp(a.mu, b.mu, share), a.yield};
+}
+
 }  // namespace
 
-MoistureTable::MoistureTable(const Elastic& dry, double yield, const Moisture& moisture, double porosity) {
-  const bool anisotropic = moisture.law == MoistureLaw::effective_medium && moisture.softens_elasticity &&
-                           !material::is_isotropic(moisture.medium);
-  const double nu = dry.poissons_ratio;
+double compute_liquidity_factor(const Moisture& m, double saturation) {
+  const double index =
+      (saturation - m.plastic_limit_saturation) / (m.liquid_limit_saturation - m.plastic_limit_saturation);
+  return std::pow(m.saturated_strength_ratio, std::max(0.0, index));
+}
+
+double compute_suction_factor(const Moisture& m, double saturation) {
+  if (m.suction_peak_ratio == 1.0) return 1.0;
+  const double S = std::clamp(saturation, 0.0, 1.0);
+  const double peak = m.suction_peak_saturation;
+  const double falling = std::pow((1.0 - S) / (1.0 - peak), (1.0 - peak) / peak);
+  return 1.0 + (m.suction_peak_ratio - 1.0) * (S / peak) * falling;
+}
+
+MoistureTable::MoistureTable(const Elastic& dry, double yield, const Moisture& moisture, double porosity)
+    : m_dry(dry), m_yield(yield), m_moisture(moisture) {
+  if (moisture.law != MoistureLaw::effective_medium || !moisture.softens_elasticity) return;
+  const bool anisotropic = !material::is_isotropic(moisture.medium);
   for (int i = 0; i <= kIntervals; ++i) {
-    const double S = static_cast<double>(i) / kIntervals;
-    WetState state = make_state(dry.youngs_modulus, nu, yield);
-    switch (moisture.law) {
-      case MoistureLaw::effective_medium: {
-        if (!moisture.softens_elasticity) break;
-        const MediumResult medium = compute_effective_medium(dry, moisture.medium, porosity * S);
-        state.mu = medium.shear_modulus;
-        state.lambda = medium.bulk_modulus - 2.0 / 3.0 * medium.shear_modulus;
-        if (anisotropic) m_stiffness.push_back(medium.stiffness);
-        break;
-      }
-      case MoistureLaw::liquidity_index: {
-        // Strength and modulus fall by the same factor, so the yield strain, their ratio, stays.
-        const double ratio = std::pow(moisture.saturated_strength_ratio, S);
-        if (moisture.softens_elasticity)
-          state = make_state(ratio * dry.youngs_modulus, nu, yield);
-        else
-          state.yield = ratio * yield;
-        break;
-      }
-      case MoistureLaw::table:
-        state =
-            make_state(moisture.softens_elasticity
-                           ? interpolate_monotone(moisture.table_saturation, moisture.table_youngs_modulus, S)
-                           : dry.youngs_modulus,
-                       nu, interpolate_monotone(moisture.table_saturation, moisture.table_yield, S));
-        break;
-    }
-    if (moisture.yield_law == YieldLaw::log_linear)
-      state.yield *= std::pow(moisture.saturated_yield_ratio, S);
-    m_states.push_back(state);
+    const MediumResult medium = compute_effective_medium(dry, moisture.medium, porosity * i / kIntervals);
+    m_states.push_back({medium.bulk_modulus - 2.0 / 3.0 * medium.shear_modulus, medium.shear_modulus, yield});
+    if (anisotropic) m_stiffness.push_back(medium.stiffness);
   }
 }
 
 WetState MoistureTable::at(double saturation) const {
-  const auto [node, share] = locate(saturation);
-  const WetState& a = m_states[node];
-  const WetState& b = m_states[node + 1];
-  return {std::lerp(a.lambda, b.lambda, share), std::lerp(a.mu, b.mu, share),
-          std::lerp(a.yield, b.yield, share)};
+  const double S = std::clamp(saturation, 0.0, 1.0);  // rounding may leave it a last bit outside
+  const Moisture& m = m_moisture;
+  WetState state = make_state(m_dry.youngs_modulus, m_dry.poissons_ratio, m_yield);
+  double strength = compute_suction_factor(m, S);  // of modulus and yield stress alike
+  switch (m.law) {
+    case MoistureLaw::effective_medium:
+      if (!m_states.empty()) state = interpolate_state(m_states, S);
+      break;
+    case MoistureLaw::liquidity_index:
+      strength *= compute_liquidity_factor(m, S);
+      break;
+    case MoistureLaw::table: {
+      const double E = interpolate_monotone(m.table_saturation, m.table_youngs_modulus, S);
+      state = make_state(m.softens_elasticity ? E : m_dry.youngs_modulus, m_dry.poissons_ratio,
+                         interpolate_monotone(m.table_saturation, m.table_yield, S));
+      break;
+    }
+  }
+  if (m.softens_elasticity) {
+    state.lambda *= strength;
+    state.mu *= strength;
+  } else {
+    state.yield *= strength;
+  }
+  if (m.yield_law == YieldLaw::log_linear) state.yield *= std::pow(m.saturated_yield_ratio, S);
+  return state;
 }
 
-Mat6 MoistureTable::stiffness_at(double saturation) const {
+Mat6 MoistureTable::stiffness_at(double saturation, const Vec3& axis) const {
   const auto [node, share] = locate(saturation);
-  return (1.0 - share) * m_stiffness[node] + share * m_stiffness[node + 1];
+  const Mat6 C = (1.0 - share) * m_stiffness[node] + share * m_stiffness[node + 1];
+  return compute_suction_factor(m_moisture, saturation) * lay_along(C, axis);
 }
 
 bool MoistureTable::is_isotropic() const {

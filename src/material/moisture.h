@@ -12,31 +12,47 @@ struct WetState {
   double yield = 0.0;   ///< elastic strain norm at which it flows [–]
 };
 
-/// The laws of one clay as functions of S in [0, 1], tabulated finely once so that a lookup costs nothing and
-/// every tet sees the same bits; φ = n·S.
+/// Modulus and yield stress over those of dry clay between the limits of the measured law: r^{I_L}, r =
+/// saturated_strength_ratio, I_L = (S − S_P)/(S_L − S_P) the liquidity index; 1 below the plastic limit,
+/// where the law was not measured [Vardanega2014: r = 1/35, 0.2 < I_L < 1.1]. For water contents w by dry
+/// mass, S = w (1 − n) ρ_s/(n ρ_w), ρ_s the density of the grains.
+double compute_liquidity_factor(const Moisture& moisture, double saturation);
+
+/// Modulus and yield stress over those without suction. Menisci between the grains press them together; in
+/// dry and in saturated clay there are none. The suction stress S·s(S) [Bishop1959, Lu2006] rises from zero
+/// to one peak and falls to zero again: 1 + (p − 1)·(S/S_p)·((1 − S)/(1 − S_p))^b with b = (1 − S_p)/S_p,
+/// which is p at S_p. The shape is ours; the peak is the user's.
+double compute_suction_factor(const Moisture& moisture, double saturation);
+
+/// The laws of one clay as functions of S in [0, 1]; φ = n·S. The effective medium is tabulated finely once,
+/// so that a lookup costs little; every tet sees the same bits.
 ///   effective_medium  moduli of compute_effective_medium at φ = n S.
-///   liquidity_index   modulus and yield stress both times r^S, r = saturated_strength_ratio [Vardanega2014];
-///   the
-///                     yield strain, their ratio, therefore stays. With softens_elasticity off the modulus
-///                     stays dry and the yield strain takes the whole fall of the strength.
+///   liquidity_index   modulus and yield stress both times compute_liquidity_factor; the yield strain, their
+///                     ratio, therefore stays.
 ///   table             E(S) and yield strain(S) of the user, monotone cubic; Poisson's ratio stays dry.
-/// On top of any of them `log_linear` multiplies the yield strain by saturated_yield_ratio^S.
-/// Whether the effective medium is a stiffness at every S that a run can reach is asked beforehand with
-/// compute_medium_range; the table itself holds whatever the law gives.
+/// On top of any of them modulus and yield stress take compute_suction_factor, and `log_linear` multiplies
+/// the yield strain by saturated_yield_ratio^S. With softens_elasticity off the modulus stays dry throughout
+/// and the yield strain takes what the strength does. Whether the effective medium is a stiffness at every S
+/// that a run can reach is asked beforehand with compute_medium_range; the table itself holds whatever the
+/// law gives.
 class MoistureTable {
  public:
   /// `yield` (–): dry yield strain.  `porosity` n (–).  Requires is_supported(moisture.medium), table columns
   /// of equal length ≥ 2 with S increasing from 0 to 1.
   MoistureTable(const Elastic& dry, double yield, const Moisture& moisture, double porosity);
   WetState at(double saturation) const;
-  /// Full stiffness (Mandel, axis 3) at S. Only when not is_isotropic().
-  Mat6 stiffness_at(double saturation) const;
+  /// Full stiffness at S (Mandel) with the inclusions' axis along `axis` (unit length). Only when not
+  /// is_isotropic().
+  Mat6 stiffness_at(double saturation, const Vec3& axis) const;
   /// False only for aligned inclusions that are no spheres, in a law that uses them.
   bool is_isotropic() const;
 
  private:
-  std::vector<WetState> m_states;  // at S = i/(size−1)
-  std::vector<Mat6> m_stiffness;   // empty when isotropic
+  Elastic m_dry;
+  double m_yield;
+  Moisture m_moisture;
+  std::vector<WetState> m_states;  // of the effective medium at S = i/(size−1); empty where it does not count
+  std::vector<Mat6> m_stiffness;  // axis 3; empty when isotropic
 };
 
 }  // namespace argil::material

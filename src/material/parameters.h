@@ -34,14 +34,15 @@ struct EffectiveMedium {
   double fluid_shear_modulus = 0.0;  ///< G_I [Pa]
   double aspect = 1.0;               ///< spheroid's axis 3 over axis 1 [–]; 1: sphere
   Orientation orientation = Orientation::random;
+  Vec3 axis =
+      Vec3::UnitZ();  ///< where axis 3 of aligned inclusions lies in the body at rest, unit length [–]
 };
 
 /// How water changes stiffness and yield beyond or instead of the effective medium.
 enum class MoistureLaw {
   effective_medium,  ///< C from eq. 6; the yield strain as `yield_law` says
-  liquidity_index,  ///< modulus and yield stress fall log-linearly from plastic limit (S = 0) to liquid limit
-                    ///< (S = 1)
-  table,            ///< the user's E(S) and yield(S), monotone interpolation
+  liquidity_index,   ///< modulus and yield stress fall log-linearly from the plastic to the liquid limit
+  table,             ///< the user's E(S) and yield(S), monotone interpolation
 };
 
 /// How the yield stress follows the saturation.
@@ -55,9 +56,12 @@ struct Moisture {
   EffectiveMedium medium;
   bool softens_elasticity = true;  ///< false: the modulus stays dry (to split a result into its causes)
   YieldLaw yield_law = YieldLaw::constant;
-  double saturated_yield_ratio = 1.0;  ///< r [–], yield strain at S = 1 over dry, in (0, 1]
-  double saturated_strength_ratio =
-      1.0 / 35.0;  ///< liquidity_index: strength and modulus at S = 1 over dry [Vardanega & Haigh 2014]
+  double saturated_yield_ratio = 1.0;            ///< r [–], yield strain at S = 1 over dry, in (0, 1]
+  double saturated_strength_ratio = 1.0 / 35.0;  ///< liquidity_index: at liquid over at plastic limit
+  double plastic_limit_saturation = 0.0;         ///< liquidity_index: S_P, where the fall begins [–]
+  double liquid_limit_saturation = 1.0;          ///< liquidity_index: S_L > S_P [–]; may lie above 1
+  double suction_peak_ratio = 1.0;  ///< modulus and yield stress of slightly wet clay at their peak, over dry
+  double suction_peak_saturation = 0.2;  ///< S of that peak [–], in (0, ½]
   double refresh_tolerance = 1e-4;  ///< change of S [–] beyond which a tet's moduli are looked up again
   std::vector<double> table_saturation;      ///< table: increasing, from 0 to 1
   std::vector<double> table_youngs_modulus;  ///< table: [Pa]

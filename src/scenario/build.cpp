@@ -30,6 +30,24 @@ Field take_field(const Scenario& s, const mesh::TetMesh& mesh, const std::string
   return found->second;
 }
 
+/// Unit axes of the pores from three components in the mesh file.
+Points take_axes(const Scenario& s, const mesh::TetMesh& mesh) {
+  constexpr double kLarge = 1e300;
+  Points axes(3, mesh.num_tets());
+  for (int k = 0; k < 3; ++k)
+    axes.row(k) = take_field(s, mesh, s.body.pore_axis_field + "_" + "xyz"[k], "/body/mesh/pore_axis_field",
+                             -kLarge, kLarge);
+  for (Eigen::Index t = 0; t < axes.cols(); ++t) {
+    const double length = axes.col(t).stableNorm();
+    if (!(length > 0.0))
+      throw InputError(s.body.file, "tet " + std::to_string(t),
+                       "cell data \"" + s.body.pore_axis_field + "\" has no length",
+                       "give every tet an axis");
+    axes.col(t) /= length;
+  }
+  return axes;
+}
+
 std::string describe_cage(const embed::CageReport& report) {
   std::ostringstream text;
   text << "cage: " << report.num_tets << " tets, boundary " << report.offset * 1e3
@@ -179,6 +197,7 @@ Scene build_scene(const Scenario& s) {
     body.modulus_scale =
         take_field(s, body.mesh, s.body.modulus_field, "/body/mesh/youngs_modulus_field", 1e-6, 1e15) /
         s.params.elastic.youngs_modulus;
+  if (!s.body.pore_axis_field.empty()) body.pore_axis = take_axes(s, body.mesh);
   fix_and_load(s, body);
   scene.tool = make_tool(s);
   if (s.mode == Mode::equilibrium) {

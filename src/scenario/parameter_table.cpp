@@ -71,6 +71,10 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
   b.text("/body/mesh/youngs_modulus_field", body.modulus_field,
          "Cell data with Young's modulus [Pa]; empty: the material's.")
       .applies = only(BodyKind::mesh);
+  b.text("/body/mesh/pore_axis_field", body.pore_axis_field,
+         "Cell data NAME_x, NAME_y, NAME_z along the aligned pores of each tet, any length; empty: "
+         "/material/effective_medium/axis.")
+      .applies = only(BodyKind::mesh);
   b.choice<mesh::ShapeKind>("/body/shape/kind", body.shape.kind,
                             {{mesh::ShapeKind::sphere, "sphere"},
                              {mesh::ShapeKind::cylinder, "cylinder"},
@@ -136,7 +140,10 @@ void bind_material(Binder& b, sim::Params& p) {
   b.choice<material::Orientation>(
       "/material/effective_medium/orientation", m.medium.orientation,
       {{material::Orientation::random, "random"}, {material::Orientation::aligned, "aligned"}},
-      "Pores' axes: random, or all along z.");
+      "Pores' axes: random, or aligned.");
+  b.vector("/material/effective_medium/axis", m.medium.axis, "",
+           "Axis of aligned pores in the body at rest, any length.")
+      .applies = [&m] { return m.medium.orientation == material::Orientation::aligned; };
   b.choice<material::MoistureLaw>("/material/moisture/law", m.law,
                                   {{material::MoistureLaw::effective_medium, "effective_medium"},
                                    {material::MoistureLaw::liquidity_index, "liquidity_index"},
@@ -151,7 +158,16 @@ void bind_material(Binder& b, sim::Params& p) {
   b.number("/material/moisture/saturated_yield_ratio", m.saturated_yield_ratio, {0, 1, true, false}, "",
            "Yield strain at S = 1 over dry.");
   b.number("/material/moisture/saturated_strength_ratio", m.saturated_strength_ratio, {0, 1, true, false}, "",
-           "liquidity_index: modulus and strength at S = 1 over dry [Vardanega2014].");
+           "liquidity_index: modulus and strength at the liquid limit over those at the plastic limit "
+           "[Vardanega2014].");
+  b.number("/material/moisture/plastic_limit_saturation", m.plastic_limit_saturation, {0, 1, false, true}, "",
+           "liquidity_index: S at the plastic limit; drier clay keeps the dry values.");
+  b.number("/material/moisture/liquid_limit_saturation", m.liquid_limit_saturation, positive(), "",
+           "liquidity_index: S at the liquid limit, above the plastic one.");
+  b.number("/material/moisture/suction_peak_ratio", m.suction_peak_ratio, {1, 100, false, false}, "",
+           "Suction of slightly wet clay: modulus and strength at their peak over those without; 1: none.");
+  b.number("/material/moisture/suction_peak_saturation", m.suction_peak_saturation, {0, 0.5, true, false}, "",
+           "S at which suction stiffens most.");
   b.number("/material/moisture/refresh_tolerance", m.refresh_tolerance, between(0, 1), "",
            "Change of S beyond which a tet's moduli are looked up again.");
   const auto table_only = [&m] { return m.law == material::MoistureLaw::table; };

@@ -80,6 +80,12 @@ void check_rates(const Scenario& s) {
 
 void check_tables(const Scenario& s) {
   const material::Moisture& m = s.params.moisture;
+  if (m.law == material::MoistureLaw::liquidity_index &&
+      !(m.liquid_limit_saturation > m.plastic_limit_saturation))
+    throw InputError(s.file, "/material/moisture/liquid_limit_saturation",
+                     Json(m.liquid_limit_saturation).dump() + " is not above the plastic limit's " +
+                         Json(m.plastic_limit_saturation).dump(),
+                     "give the liquid limit the larger saturation");
   if (m.law != material::MoistureLaw::table) return;
   const std::vector<double>& S = m.table_saturation;
   const char* place = "/material/moisture/table_saturation";
@@ -100,32 +106,70 @@ double compute_poissons_ratio(const material::MediumResult& medium) {
   return (3.0 * K - 2.0 * G) / (2.0 * (3.0 * K + G));
 }
 
+const char* describe_water(const material::EffectiveMedium& medium) {
+  return medium.fluid_bulk_modulus > 0.0 ? "undrained" : "drained";
+}
+
+/// Largest porosity of two digits at which the scheme still gives a stiffness.
+std::string describe_safe_porosity(double phi_limit) {
+  std::ostringstream text;
+  text << std::floor(phi_limit * 100.0 * (1.0 - 1e-9)) / 100.0;
+  return text.str();
+}
+
+/// Where the scheme stands over every φ the run can reach, in words; refuses where C is not positive
+/// definite.
+void check_medium_range(Scenario& s) {
+  using material::MediumStatus;
+  const material::EffectiveMedium& medium = s.params.moisture.medium;
+  const double phi_max = s.params.water.porosity;
+  const material::MediumRange range = material::compute_medium_range(s.params.elastic, medium, phi_max);
+  std::ostringstream text;
+  if (range.worst == MediumStatus::not_positive_definite) {
+    text << "gives a stiffness that is not positive definite in mode \"" << range.mode
+         << "\" from phi = " << range.phi_not_positive_definite << " on (" << describe_water(medium)
+         << "), and saturated clay reaches phi = porosity = " << phi_max;
+    throw InputError(s.file, "/material/effective_medium/scheme", text.str(),
+                     "choose mori_tanaka, which is positive at every phi of undrained and drained clay, or a "
+                     "/water/porosity up to " +
+                         describe_safe_porosity(range.phi_not_positive_definite));
+  }
+  text << "effective medium (" << describe_water(medium) << "): ";
+  if (range.worst == MediumStatus::above_voigt)
+    text << "above_voigt in mode \"" << range.mode << "\" from phi = " << range.phi_above_voigt
+         << " on, stiffer than any mixture can be; mori_tanaka stays within the bounds";
+  else
+    text << "ok";
+  text << "; checked for phi from 0 to " << phi_max;
+  if (range.worst == MediumStatus::above_voigt) s.warnings.push_back(s.file + ": " + text.str());
+  s.medium_status = text.str();
+}
+
+/// Pores' axis of unit length.
+void normalise_axis(Scenario& s) {
+  Vec3& axis = s.params.moisture.medium.axis;
+  constexpr double kRounding = 1e-15;
+  if (!(axis.norm() > 0.0))
+    throw InputError(s.file, "/material/effective_medium/axis", "has no length",
+                     "give for instance [0, 0, 1]");
+  if (!(std::abs(axis.norm() - 1.0) <= kRounding)) axis.normalize();
+}
+
 /// Eq. 6 over every φ the run can reach: refused where C is not positive definite or where 4-node tets would
 /// lock.
 void check_effective_medium(Scenario& s) {
   const material::Moisture& m = s.params.moisture;
-  const double phi_max = s.params.water.porosity;
-  const char* place = "/material/effective_medium/scheme";
   double nu = s.params.elastic.poissons_ratio;
+  normalise_axis(s);
+  s.medium_status = "effective medium: not used";
   if (m.law == material::MoistureLaw::effective_medium && m.softens_elasticity) {
     if (!material::is_supported(m.medium))
-      throw InputError(s.file, place, "needs an isotropic medium, but the pores are aligned spheroids",
+      throw InputError(s.file, "/material/effective_medium/scheme",
+                       "needs an isotropic medium, but the pores are aligned spheroids",
                        "choose mori_tanaka, or orientation random");
-    const material::MediumRange range = material::compute_medium_range(s.params.elastic, m.medium, phi_max);
-    std::ostringstream text;
-    if (range.worst == material::MediumStatus::not_positive_definite) {
-      text << "gives a stiffness that is not positive definite (" << range.mode
-           << ") from phi = " << range.phi_not_positive_definite
-           << ", and saturated clay reaches phi = porosity = " << phi_max;
-      throw InputError(s.file, place, text.str(), "choose mori_tanaka, or a smaller porosity");
-    }
-    if (range.worst == material::MediumStatus::above_voigt) {
-      text << s.file << ": " << place << ": the stiffness leaves the Voigt bound (" << range.mode
-           << ") from phi = " << range.phi_above_voigt << "; mori_tanaka stays within the bounds";
-      s.warnings.push_back(text.str());
-    }
-    nu = std::max(
-        nu, compute_poissons_ratio(material::compute_effective_medium(s.params.elastic, m.medium, phi_max)));
+    check_medium_range(s);
+    nu = std::max(nu, compute_poissons_ratio(material::compute_effective_medium(s.params.elastic, m.medium,
+                                                                                s.params.water.porosity)));
   }
   if (nu > kLockingPoissonsRatio && s.params.solid.element == solid::ElementKind::p1 && !s.allow_locking) {
     std::ostringstream text;

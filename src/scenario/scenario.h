@@ -38,6 +38,8 @@ struct BodySpec {
   int skin_triangles = 20000;    ///< shape: at least so many; 0: no skin
   std::string saturation_field;  ///< mesh: cell data with the initial saturation; empty: uniform
   std::string modulus_field;     ///< mesh: cell data with Young's modulus [Pa]; empty: the material's
+  std::string
+      pore_axis_field;  ///< mesh: cell data NAME_x, NAME_y, NAME_z along aligned pores; empty: one axis
   std::vector<solid::Support> fixed;
   solid::Loads loads;
 };
@@ -72,6 +74,7 @@ struct Scenario {
   TraceSpec trace;
   sim::Params params;
   bool allow_locking = false;         ///< run nearly incompressible tets although they lock
+  std::string medium_status;          ///< of validation: where eq. 6 stands at every φ the run can reach
   std::vector<std::string> warnings;  ///< of validation; a run prints them and writes them to its file
 };
 

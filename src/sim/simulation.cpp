@@ -124,8 +124,10 @@ void Simulation::refresh_materials(double tolerance) {
     const double scale = m_body.modulus_scale.size() > 0 ? m_body.modulus_scale(tet) : 1.0;
     const material::WetState wet = m_moisture.at(S);
     m_solid.set_material(tet, {scale * wet.lambda, scale * wet.mu, wet.yield});
-    if (!m_moisture.is_isotropic())
-      m_solid.set_anisotropic_stiffness(tet, scale * m_moisture.stiffness_at(S));
+    if (m_moisture.is_isotropic()) continue;
+    const Vec3 axis =
+        m_body.pore_axis.cols() > 0 ? Vec3(m_body.pore_axis.col(tet)) : m_params.moisture.medium.axis;
+    m_solid.set_anisotropic_stiffness(tet, scale * m_moisture.stiffness_at(S, axis));
   }
 }
 

@@ -18,6 +18,7 @@ struct Body {
   std::vector<solid::Support> supports;  ///< where its motion is prescribed
   Field initial_saturation;              ///< per tet [–]
   Field modulus_scale;                   ///< per tet: modulus over the material's [–]; empty: 1 everywhere
+  Points pore_axis;  ///< 3×tets, unit: of aligned pores; empty: the material's everywhere
   solid::Loads loads;
   mesh::TriangleMesh skin;  ///< empty without a skin
   embed::Embedding skin_embedding;

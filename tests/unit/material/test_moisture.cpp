@@ -54,9 +54,52 @@ TEST(MoistureTable, ByLiquidityIndexSoftensThirtyfivefoldAndKeepsTheYieldStrain)
   EXPECT_NEAR(poissons_ratio(table.at(1.0)), 0.3, 1e-14);
   EXPECT_NEAR(youngs_modulus(table.at(0.5)), 1e5 / std::sqrt(35.0), 1e-8);  // log-linear; a node of the table
   for (double S = 0.0; S <= 1.0; S += 0.013) {
-    EXPECT_NEAR(youngs_modulus(table.at(S)) / (1e5 * std::pow(35.0, -S)), 1.0, 1.6e-6);  // (ln 35)² h²/8
+    EXPECT_NEAR(youngs_modulus(table.at(S)) / (1e5 * std::pow(35.0, -S)), 1.0, 1e-14);
     EXPECT_EQ(table.at(S).yield, kYield);
   }
+}
+
+TEST(MoistureTable, ByLiquidityIndexFallsBetweenTheLimitsOnly) {
+  // Kaolin with limits w_P = 30 %, w_L = 60 % at n = 0.6, grains 2650 kg/m³: S = w (1−n) ρ_s/(n ρ_w).
+  const auto S_of = [](double w) { return w * 0.4 * 2650.0 / (0.6 * 1000.0); };
+  Moisture moisture;
+  moisture.law = MoistureLaw::liquidity_index;
+  moisture.plastic_limit_saturation = S_of(0.3);
+  moisture.liquid_limit_saturation = S_of(0.6);
+  const MoistureTable table(kClay, kYield, moisture, 0.6);
+  EXPECT_NEAR(youngs_modulus(table.at(0.2)), 1e5, 1e-9);
+  EXPECT_NEAR(youngs_modulus(table.at(S_of(0.3))), 1e5, 1e-8);
+  EXPECT_NEAR(youngs_modulus(table.at(S_of(0.45))), 1e5 / std::sqrt(35.0), 1e-8);
+  moisture.liquid_limit_saturation = 0.8;
+  const MoistureTable slurry(kClay, kYield, moisture, 0.6);
+  EXPECT_NEAR(youngs_modulus(slurry.at(0.8)), 1e5 / 35.0, 1e-9);
+  EXPECT_LT(youngs_modulus(slurry.at(0.9)), 0.8 * 1e5 / 35.0);  // past the liquid limit the law goes on
+}
+
+TEST(MoistureTable, SuctionStiffensSlightlyWetClayOnceAndNeitherDryNorSaturatedClay) {
+  Moisture moisture;
+  moisture.law = MoistureLaw::liquidity_index;
+  moisture.suction_peak_ratio = 1.8;
+  for (const double peak : {0.1, 0.3, 0.5}) {
+    moisture.suction_peak_saturation = peak;
+    EXPECT_EQ(compute_suction_factor(moisture, 0.0), 1.0);
+    EXPECT_EQ(compute_suction_factor(moisture, 1.0), 1.0);
+    EXPECT_NEAR(compute_suction_factor(moisture, peak), 1.8, 1e-15);
+    double last = 1.0;
+    for (double S = 0.01; S < 0.995; S += 0.01) {
+      const double factor = compute_suction_factor(moisture, S);
+      EXPECT_LE(factor, 1.8 + 1e-15);
+      EXPECT_EQ(factor > last, S < peak + 0.001) << S;
+      last = factor;
+    }
+  }
+  const MoistureTable table(kClay, kYield, moisture, kPorosity);
+  EXPECT_NEAR(youngs_modulus(table.at(0.5)), 1.8 * 1e5 / std::sqrt(35.0), 1e-8);
+  EXPECT_EQ(table.at(0.5).yield, kYield);  // modulus and yield stress rise alike
+  moisture.softens_elasticity = false;
+  const MoistureTable dry(kClay, kYield, moisture, kPorosity);
+  EXPECT_NEAR(youngs_modulus(dry.at(0.5)), 1e5, 1e-8);
+  EXPECT_NEAR(dry.at(0.5).yield, 1.8 * kYield / std::sqrt(35.0), 1e-16);
 }
 
 TEST(MoistureTable, WithStiffnessKeptDryLetsTheStrengthFallAsAYieldStrain) {
@@ -119,7 +162,10 @@ TEST(MoistureTable, HasAPreferredAxisOnlyForAlignedSpheroids) {
   const MoistureTable table(kClay, kYield, moisture, kPorosity);
   EXPECT_FALSE(table.is_isotropic());
   const Mat6 exact = compute_effective_medium(kClay, moisture.medium, kPorosity * 0.377).stiffness;
-  EXPECT_LT((table.stiffness_at(0.377) - exact).norm(), 2e-6 * exact.norm());
+  EXPECT_LT((table.stiffness_at(0.377, Vec3::UnitZ()) - exact).norm(), 2e-6 * exact.norm());
+  // Laid along x: what was C₃₃ is C₁₁ now.
+  EXPECT_NEAR(table.stiffness_at(0.377, Vec3::UnitX())(0, 0), exact(2, 2), 2e-6 * exact(2, 2));
+  EXPECT_LT(exact(2, 2), 0.8 * exact(0, 0));
   moisture.softens_elasticity = false;
   EXPECT_TRUE(MoistureTable(kClay, kYield, moisture, kPorosity).is_isotropic());
 }
