@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 
@@ -26,13 +25,11 @@ using study::ExitCode;
 int make_cage_file(const std::string& surface, const std::string& output, int target_tets, double scale) {
   const embed::Cage cage = embed::make_cage(mesh::read_triangle_mesh(surface, scale), {target_tets}, surface);
   mesh::write_gmsh(cage.mesh, output);
-  std::printf(
-      "%s: %d tets, %d vertices, cell %.4g m, boundary %.4g m off the surface, dihedral angles %.2f to %.2f "
-      "degrees, "
-      "%d surface vertices enclosed\n",
-      output.c_str(), cage.report.num_tets, cage.mesh.num_vertices(), cage.report.cell_size,
-      cage.report.offset, cage.report.min_dihedral_degrees, cage.report.max_dihedral_degrees,
-      cage.report.enclosed_vertices);
+  const embed::CageReport& r = cage.report;
+  std::printf("%s: %d tets, %d vertices, cell %.4g m, boundary %.4g m off the surface, ", output.c_str(),
+              r.num_tets, cage.mesh.num_vertices(), r.cell_size, r.offset);
+  std::printf("dihedral angles %.2f to %.2f degrees, %d surface vertices enclosed\n", r.min_dihedral_degrees,
+              r.max_dihedral_degrees, r.enclosed_vertices);
   return ExitCode::kDone;
 }
 
@@ -102,8 +99,7 @@ int main(int argc, char** argv) {
   schema->callback(
       [&] { std::cout << (reference ? scenario::print_reference() : scenario::print_schema()); });
 
-  std::string first;
-  std::string second;
+  std::string first, second;
   CLI::App* info = app.add_subcommand("info", "describe a result file");
   info->add_option("FILE", first, "result file")->required();
   info->callback([&] { std::cout << output::describe_result(first); });
@@ -114,13 +110,8 @@ int main(int argc, char** argv) {
   compare->add_option("B", second, "result file")->required();
   compare->callback([&] { code = compare_files(first, second); });
 
-  CLI::App* probe = app.add_subcommand(
-      "probe", "one law at a point: JSON cases on standard input, results on standard output");
-  probe
-      ->add_option(
-          "KERNEL", first,
-          "effective_medium, eshelby, vertex_face, edge_edge, polar, element, plastic_update, clay_kernel")
-      ->required();
+  CLI::App* probe = app.add_subcommand("probe", "one law at a point: JSON on standard input and output");
+  probe->add_option("KERNEL", first, "the law; src/scenario/README.md lists them")->required();
   probe->callback([&] {
     const std::string text((std::istreambuf_iterator<char>(std::cin)), std::istreambuf_iterator<char>());
     std::cout << scenario::run_probe(first, text);

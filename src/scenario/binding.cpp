@@ -114,7 +114,10 @@ Parameter& Binder::path(const std::string& pointer, std::string& value, const st
   Parameter& row = add(pointer, ValueType::path, "", doc);
   row.read = [&value, folder, file = m_file](const Json& json, const std::string& place) {
     const std::string text = read_text(file, place, json);
-    value = text.empty() ? text : (std::filesystem::path(folder) / text).lexically_normal().string();
+    // Absolute, so that a resolved scenario means the same files wherever it is put.
+    value = text.empty()
+                ? text
+                : std::filesystem::absolute(std::filesystem::path(folder) / text).lexically_normal().string();
     if (!value.empty() && !std::filesystem::exists(value))
       throw InputError(file, place, "file \"" + value + "\" does not exist",
                        "give a path relative to the scenario's folder or an absolute one");

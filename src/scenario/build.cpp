@@ -56,6 +56,15 @@ std::string describe_cage(const embed::CageReport& report) {
   return text.str();
 }
 
+/// A refused shape came from the scenario: say from where.
+mesh::TetMesh make_shape(const Scenario& s) {
+  try {
+    return mesh::make_shape_mesh(s.body.shape, s.body.target_tets);
+  } catch (const InputError& error) {
+    throw InputError(s.file, "/body/shape", error.what(), "");
+  }
+}
+
 void make_mesh(const Scenario& s, Scene& scene) {
   sim::Body& body = scene.body;
   switch (s.body.kind) {
@@ -69,7 +78,7 @@ void make_mesh(const Scenario& s, Scene& scene) {
         scene.notes.push_back(describe_cage(cage.report));
         body.mesh = std::move(cage.mesh);
       } else {
-        body.mesh = mesh::make_shape_mesh(s.body.shape, s.body.target_tets);
+        body.mesh = make_shape(s);
       }
       break;
     case BodyKind::surface:

@@ -30,6 +30,11 @@ class Case {
     if (!value->is_number()) refuse(key, *value, "a number");
     return value->get<double>();
   }
+  double not_negative(const std::string& key, const std::string& unit = "") {
+    const double value = number(key);
+    if (!(value >= 0.0)) refuse_range(key, "[0, ∞)" + (unit.empty() ? "" : " " + unit));
+    return value;
+  }
   bool flag(const std::string& key, bool fallback) {
     const Json* value = find(key, true);
     if (!value) return fallback;
@@ -50,10 +55,11 @@ class Case {
     const Json* value = find(key, optional);
     std::vector<double> list;
     if (!value) return list;
-    if (value->is_array())
-      for (const Json& entry : value->flatten())
-        if (entry.is_number()) list.push_back(entry.get<double>());
-    if (list.size() != count) refuse(key, *value, std::to_string(count) + " numbers");
+    const Json entries = value->is_array() ? value->flatten() : Json::object();
+    for (const Json& entry : entries)
+      if (entry.is_number()) list.push_back(entry.get<double>());
+    if (list.size() != count || entries.size() != count)
+      refuse(key, *value, std::to_string(count) + " numbers");
     return list;
   }
   Mat3 matrix(const std::string& key) {
@@ -233,25 +239,25 @@ Json probe_plastic_update(Case& c) {
   const Vec6 strain = c.tensor("strain", false, &as_matrix);
   const Vec6 plastic = c.tensor("plastic_strain", true);
   material::Plasticity law;
-  law.creep_per_s = c.number("creep_per_s");
-  law.max = c.number("max");
+  law.creep_per_s = c.not_negative("creep_per_s", "1/s");
+  law.max = c.not_negative("max");
   law.deviatoric = c.flag("deviatoric", false);
   law.form =
       c.word("form", {"rate", "literal"}, 0) == 0 ? material::FlowForm::rate : material::FlowForm::literal;
   law.norm = c.word("norm", {"frobenius", "voigt6"}, 0) == 0 ? material::StrainNorm::frobenius
                                                              : material::StrainNorm::voigt6;
-  const Vec6 after =
-      material::compute_plastic_strain(strain, plastic, c.number("yield"), law, c.number("step_s"));
+  const Vec6 after = material::compute_plastic_strain(strain, plastic, c.not_negative("yield"), law,
+                                                      c.not_negative("step_s", "s"));
   if (as_matrix) return {{"plastic_strain", to_json(from_mandel(after))}};
   return {{"plastic_strain", std::vector<double>(after.data(), after.data() + 6)}};
 }
 
 Json probe_clay_kernel(Case& c) {
   material::ClayKernel kernel;
-  kernel.k1 = c.number("k1");
-  kernel.k2 = c.number("k2");
-  kernel.radius = c.number("radius_m");
-  return {{"weight", material::compute_clay_weight(c.number("r_m"), kernel)}};
+  kernel.k1 = c.not_negative("k1", "1/m");
+  kernel.k2 = c.not_negative("k2", "1/m");
+  kernel.radius = c.not_negative("radius_m", "m");
+  return {{"weight", material::compute_clay_weight(c.not_negative("r_m", "m"), kernel)}};
 }
 
 using Kernel = Json (*)(Case&);

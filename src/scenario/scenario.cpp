@@ -21,18 +21,14 @@ constexpr const char* kPaperPreset = R"({
   },
   "water": {"uptake": "increment"},
   "dynamics": {"model": "linear", "implicit_contact": false},
-  "haptics": {"physics_period_ticks": 14, "water_period_ticks": 14, "between_frames": "hold"}
+  "haptics": {"physics_period_ticks": 14, "water_period_ticks": 14, "frame_period_ticks": 98, "between_frames": "hold"}
 })";
 
 constexpr double kLockingPoissonsRatio = 0.45;  // a bar of 4-node tets bends a third of the truth there
 
 void apply_setting(Json& document, const Setting& setting, const std::string& file) {
-  Json value;
-  try {
-    value = Json::parse(setting.value);
-  } catch (const Json::exception&) {
-    value = setting.value;  // not JSON: a word
-  }
+  Json value = setting.value;  // what is not JSON is a word
+  if (Json::accept(setting.value)) value = parse_json(setting.value, "--set " + setting.pointer);
   try {
     document[Json::json_pointer(setting.pointer)] = value;
   } catch (const Json::exception& error) {

@@ -101,7 +101,7 @@ Json make_value_schema(const Parameter& row) {
     default:
       break;
   }
-  if (!row.required) schema["default"] = row.write();
+  if (!row.required && row.write) schema["default"] = row.write();
   return schema;
 }
 
@@ -172,6 +172,7 @@ std::string print_schema() {
   for (Parameter& row : rows) {
     if (!row.required || !is_of_motion(row.pointer)) continue;
     row.required = false;
+    row.write = nullptr;  // still no default
     require_below(of_motion, row.pointer);
   }
   Json schema = make_schema(rows);

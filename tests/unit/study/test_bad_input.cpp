@@ -34,6 +34,13 @@ class BadInput : public testing::Test {
     EXPECT_FALSE(std::filesystem::exists(options.output));
   }
   std::string ball() const { return test::make_ball_scenario(trace); }
+  /// The ball's scenario with another body.
+  std::string with_body(const std::string& body) const {
+    std::string text = ball();
+    const std::string from =
+        R"("shape": {"kind": "sphere", "size_m": 0.04, "target_tets": 600, "skin_triangles": 0})";
+    return text.replace(text.find(from), from.size(), body);
+  }
 };
 
 TEST_F(BadInput, MissingScenarioIsNamed) {
@@ -97,11 +104,24 @@ TEST_F(BadInput, InvertedTetIsNamedByItsNumber) {
       folder / "bad.mesh",
       "MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 0\n0.02 0 0 0\n0 0.02 0 0\n0 0 0.02 0\n"
       "0 0 -0.02 0\nTetrahedra 2\n1 2 3 4 0\n1 2 3 5 0\nEnd\n");
-  std::string text = ball();
-  const std::string from =
-      R"("shape": {"kind": "sphere", "size_m": 0.04, "target_tets": 600, "skin_triangles": 0})";
-  text.replace(text.find(from), from.size(), R"("mesh": {"file": "bad.mesh"})");
-  expect_refused(text, {}, {"bad.mesh", "1 of 2 have negative volume: 1"});
+  expect_refused(with_body(R"("mesh": {"file": "bad.mesh"})"), {},
+                 {"bad.mesh", "1 of 2 have negative volume: 1"});
+}
+
+TEST_F(BadInput, CageThatLeavesSkinVerticesOutsideIsRefusedWithTheirNumber) {
+  test::write_text(folder / "cage.mesh",
+                   "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0\n0.02 0 0 0\n0 0.02 0 0\n"
+                   "0 0 0.02 0\nTetrahedra 1\n1 2 3 4 0\nEnd\n");
+  test::write_text(folder / "skin.obj",
+                   "v 0.001 0.001 0.001\nv 0.01 0.001 0.001\nv 0.001 0.01 0.001\nv 0.001 0.001 0.03\n"
+                   "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  expect_refused(with_body(R"("surface": {"file": "skin.obj", "cage": "cage.mesh"})"), {},
+                 {"cage.mesh", "1 of 4", "outside", "3"});
+}
+
+TEST_F(BadInput, NumberOfTetsThatAShapeCannotHaveIsRefusedWithItsPointer) {
+  expect_refused(ball(), {"/body/shape/target_tets=400"},
+                 {"scene.json: /body/shape: target_tets 400", "15 %", "ask for"});
 }
 
 TEST_F(BadInput, ToolThatStartsInsideTheBodyIsRefused) {

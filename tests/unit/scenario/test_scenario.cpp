@@ -1,0 +1,128 @@
+// Scenario files: what `show` prints, the paper's preset, --set, and what is refused with which words.
+#include "scenario/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "scenario/json_document.h"
+#include "support/scene_files.h"
+#include "support/temp_folder.h"
+
+namespace argil::scenario {
+namespace {
+
+// The scene's own frames are no multiple of the paper's 14 ticks.
+const std::vector<std::string> kPaper = {"/preset=paper", "/haptics/frame_period_ticks=28"};
+
+class ScenarioFile : public testing::Test {
+ protected:
+  test::TempFolder folder;
+  std::string trace = test::write_press_trace(folder / "press.csv", 0.048, 0.0435, 0.1, "push");
+  std::string file = folder.write("scene.json", test::make_ball_scenario("press.csv"));
+
+  Scenario load(const std::vector<std::string>& settings = {}) const {
+    std::vector<Setting> parsed;
+    for (const std::string& text : settings) parsed.push_back(parse_setting(text));
+    return load_scenario(file, parsed);
+  }
+  void expect_refused(const std::string& setting, const std::vector<std::string>& parts) const {
+    for (const std::string& part : parts) ARGIL_EXPECT_THROW_WITH(load({setting}), InputError, part);
+  }
+};
+
+TEST_F(ScenarioFile, ShownOneIsAFixedPointInAnyFolder) {
+  const std::string shown = print_resolved(load());
+  test::TempFolder elsewhere;
+  EXPECT_EQ(print_resolved(load_scenario(elsewhere.write("shown.json", shown), {})), shown);
+}
+
+TEST_F(ScenarioFile, ShownPaperPresetIsAFixedPointToo) {
+  const std::string shown = print_resolved(load(kPaper));
+  EXPECT_EQ(print_resolved(load_scenario(folder.write("shown.json", shown), {})), shown);
+}
+
+TEST_F(ScenarioFile, PaperPresetChoosesWhatThePaperSays) {
+  const Json shown = parse_json(print_resolved(load(kPaper)), "shown");
+  const auto value = [&](const char* pointer) { return shown[Json::json_pointer(pointer)]; };
+  EXPECT_EQ(value("/dynamics/model"), "linear");                    // Cauchy strain
+  EXPECT_EQ(value("/material/effective_medium/scheme"), "dilute");  // eq. 6 as printed
+  EXPECT_EQ(value("/material/effective_medium/aspect"), 1.0);       // spheres
+  EXPECT_EQ(value("/material/clay_kernel/form"), "per_step");       // eq. 9 every step
+  EXPECT_EQ(value("/material/plasticity/form"), "literal");         // Müller and Gross as printed
+  EXPECT_EQ(value("/material/plasticity/norm"), "voigt6");
+  EXPECT_EQ(value("/material/plasticity/deviatoric"), false);
+  EXPECT_EQ(value("/water/uptake"), "increment");  // saturation rises step by step
+  EXPECT_EQ(value("/haptics/between_frames"), "hold");
+  EXPECT_EQ(value("/haptics/physics_period_ticks"), 14);  // 71 Hz
+}
+
+TEST_F(ScenarioFile, OwnKeysStandAboveThePreset) {
+  EXPECT_EQ(load({kPaper[0], kPaper[1], "/dynamics/model=corotational"}).params.solid.model,
+            solid::StrainModel::corotational);
+}
+
+TEST_F(ScenarioFile, SetTakesNumbersWordsAndLists) {
+  const Scenario s = load({"/material/youngs_modulus_Pa=2e5", "/tool/mode=wet", "/about=\"in quotes\"",
+                           "/body/loads/gravity_m_per_s2=[0, 0, -9.81]", "/body/fixed/0/offset_m=0.007",
+                           "/dynamics/implicit_contact=false"});
+  EXPECT_EQ(s.params.elastic.youngs_modulus, 2e5);
+  EXPECT_EQ(s.tool.mode, ModeChoice::wet);
+  EXPECT_EQ(s.about, "in quotes");
+  EXPECT_EQ(s.params.solid.gravity, Vec3(0, 0, -9.81));
+  EXPECT_EQ(s.body.fixed.at(0).region.offset, 0.007);
+  EXPECT_FALSE(s.params.solid.implicit_contact);
+}
+
+TEST_F(ScenarioFile, LaterSetWins) {
+  EXPECT_EQ(load({"/water/porosity=0.3", "/water/porosity=0.35"}).params.water.porosity, 0.35);
+}
+
+TEST_F(ScenarioFile, BadSetPointersNameTheNearestKey) {
+  expect_refused("/water/porosty=0.3", {"scene.json: /water/porosty", "did you mean \"porosity\"?"});
+  expect_refused("/watr/porosity=0.3", {"/watr", "did you mean \"water\"?"});
+  expect_refused("/body/fixed/0/ofset_m=1", {"/body/fixed/0/ofset_m", "did you mean \"offset_m\"?"});
+  expect_refused("/about/first=1", {"/about/first", "cannot be set", "give a pointer such as"});
+  expect_refused("porosity=0.3", {"--set: porosity=0.3", "/json/pointer=value"});
+  expect_refused("/water/porosity", {"--set: /water/porosity", "/json/pointer=value"});
+}
+
+TEST_F(ScenarioFile, DuplicateKeysAreRefusedAtAnyDepthAndInSettings) {
+  expect_refused(R"(/water={"porosity": 0.3, "porosity": 0.4})",
+                 {"--set /water", "\"porosity\" stands twice"});
+  std::string text = test::make_ball_scenario("press.csv");
+  text.insert(text.find("\"k1_per_m\""), "\"k1_per_m\": 3, ");
+  file = folder.write("scene.json", text);
+  ARGIL_EXPECT_THROW_WITH(load(), InputError, "scene.json: key \"k1_per_m\" stands twice");
+}
+
+TEST_F(ScenarioFile, ValuesOutsideTheirRangeNamePointerValueRangeAndUnit) {
+  expect_refused("/material/youngs_modulus_Pa=0",
+                 {"/material/youngs_modulus_Pa", "0 is outside (0.0, ∞) Pa", "give a value in that range"});
+  expect_refused("/water/porosity=1", {"/water/porosity", "1 is outside (0.0, 1.0)"});
+  expect_refused("/haptics/period_s=1", {"/haptics/period_s", "1 is outside (0.0, 1.0) s"});
+  expect_refused("/tool/shape/subdivisions=7", {"/tool/shape/subdivisions", "7 is outside [0.0, 6.0]"});
+  expect_refused("/body/loads/gravity_m_per_s2=[0,0]",
+                 {"/body/loads/gravity_m_per_s2", "[0,0] is not a list of 3 numbers in m/s²"});
+  expect_refused("/tool/mode=squeeze", {"/tool/mode", "\"squeeze\" is not one of", "wet"});
+  expect_refused("/haptics/water_period_ticks=1e30", {"/haptics/water_period_ticks", "whole number"});
+}
+
+TEST_F(ScenarioFile, MissingRequiredKeysAreNamedWithTheirMeaning) {
+  file = folder.write("scene.json", R"({"about": "x", "body": {"shape": {"kind": "sphere"}}})");
+  ARGIL_EXPECT_THROW_WITH(load(), InputError,
+                          "/material/youngs_modulus_Pa: is missing; add it: Young's modulus");
+}
+
+TEST_F(ScenarioFile, BodyOfTwoKindsIsRefused) {
+  expect_refused("/body/mesh={\"file\": \"a.msh\"}", {"/body", "has 2 of mesh, shape and surface"});
+}
+
+TEST(FindNearest, IsByEditDistanceAndSilentWhenNothingIsNear) {
+  const std::vector<std::string> keys = {"youngs_modulus_Pa", "density_kg_per_m3"};
+  EXPECT_EQ(find_nearest("youngs_modulus", keys), "youngs_modulus_Pa");
+  EXPECT_EQ(find_nearest("densty_kg_per_m3", keys), "density_kg_per_m3");
+  EXPECT_EQ(find_nearest("xyz", keys), "");
+}
+
+}  // namespace
+}  // namespace argil::scenario

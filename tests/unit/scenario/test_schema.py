@@ -1,0 +1,84 @@
+#!/usr/bin/python3
+"""`argil schema` read by a validator that is not ours: the schema is one of the draft that it names, every scenario of
+the project and what `show` makes of it satisfy it, and wrong ones do not.
+
+Usage: test_schema.py ARGIL        the program
+"""
+import json
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import jsonschema
+
+ARGIL = sys.argv.pop(1)
+SCENARIOS = sorted((Path(__file__).resolve().parents[3] / "scenarios").glob("*.json"))
+
+
+def call_argil(*arguments):
+    return subprocess.run([ARGIL, *arguments], capture_output=True, text=True, check=True).stdout
+
+
+class Schema(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.schema = json.loads(call_argil("schema"))
+        cls.validator = jsonschema.Draft202012Validator(cls.schema)
+        cls.scenario = json.loads(SCENARIOS[0].read_text())
+
+    def find_errors(self, pointer, value):
+        """What the validator says of the first scenario with `value` put at `pointer`."""
+        scenario = json.loads(json.dumps(self.scenario))
+        *path, key = pointer.strip("/").split("/")
+        at = scenario
+        for step in path:
+            at = at[step]
+        at[key] = value
+        return [error.message for error in self.validator.iter_errors(scenario)]
+
+    def test_is_valid_by_the_draft_that_it_names(self):
+        self.assertEqual(self.schema["$schema"], jsonschema.Draft202012Validator.META_SCHEMA["$id"])
+        jsonschema.Draft202012Validator.check_schema(self.schema)
+
+    def test_every_default_satisfies_its_own_key(self):
+        def check(schema, place):
+            if "default" in schema:
+                errors = list(self.validator.evolve(schema=schema).iter_errors(schema["default"]))
+                self.assertEqual(errors, [], place)
+            for key, below in schema.get("properties", {}).items():
+                check(below, f"{place}/{key}")
+        check(self.schema, "")
+
+    def test_holds_for_every_scenario_of_the_project_and_for_its_resolved_form(self):
+        self.assertGreater(len(SCENARIOS), 0)
+        for file in SCENARIOS:
+            self.validator.validate(json.loads(file.read_text()))
+            self.validator.validate(json.loads(call_argil("show", str(file))))
+
+    def test_refuses_unknown_keys_wrong_types_and_values_outside_their_range(self):
+        for pointer, value, word in [
+            ("/water/porosty", 0.3, "porosty"),
+            ("/materials", {}, "materials"),
+            ("/material/youngs_modulus_Pa", -1, "-1"),
+            ("/material/youngs_modulus_Pa", "soft", "soft"),
+            ("/material/poissons_ratio", 0.5, "0.5"),
+            ("/haptics/physics_period_ticks", 1.5, "1.5"),
+            ("/tool/mode", "squeeze", "squeeze"),
+            ("/body/loads", {"gravity_m_per_s2": [0, 0]}, "[0, 0]"),
+            ("/body/fixed", [{"kind": "box", "lower": [0, 0, 0]}], "lower"),
+        ]:
+            errors = self.find_errors(pointer, value)
+            self.assertTrue(any(word in error for error in errors), f"{pointer}: {errors}")
+
+    def test_demands_what_a_run_needs(self):
+        for key in ("about", "material", "contact", "trace", "body"):
+            without = {name: value for name, value in self.scenario.items() if name != key}
+            self.assertFalse(self.validator.is_valid(without), key)
+        static = {name: value for name, value in self.scenario.items() if name not in ("contact", "trace", "tool")}
+        static["dynamics"] = {"mode": "static"}
+        self.assertTrue(self.validator.is_valid(static))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""Exit codes of the program itself, and what lies on the disk after each: 0 done, 2 refused, 3 failed, 4 no place to
+write, 5 different, 130 interrupted.
+
+Usage: test_exit_codes.py ARGIL        the program
+"""
+import json
+import math
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import h5py
+
+ARGIL = str(Path(sys.argv.pop(1)).resolve())
+
+
+def write_press(file, seconds, bottom):
+    """A press from 48 mm down to `bottom` and up again, at 1 kHz."""
+    lines = ["t,x,y,z"]
+    for k in range(int(seconds * 1000) + 1):
+        share = 0.5 - 0.5 * math.cos(2 * math.pi * k / (seconds * 1000))
+        lines.append(f"{k / 1000},0.001,0.0007,{0.048 + share * (bottom - 0.048)}")
+    file.write_text("\n".join(lines) + "\n")
+
+
+def make_scene(trace):
+    return {
+        "about": "a ball pressed from above",
+        "body": {"shape": {"kind": "sphere", "size_m": 0.04, "target_tets": 600, "skin_triangles": 0},
+                 "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 0.006}]},
+        "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3,
+                     "clay_kernel": {"k1_per_m": 2, "k2_per_m": 60, "radius_m": 0.03}},
+        "tool": {"shape": {"kind": "sphere", "radius_m": 0.006, "subdivisions": 2}, "mode": "push"},
+        "contact": {"vertex_face_stiffness_N_per_m": 400, "edge_edge_stiffness_N_per_m": 400},
+        "haptics": {"frame_period_ticks": 20},
+        "trace": {"file": trace},
+    }
+
+
+class ExitCodes(unittest.TestCase):
+    def setUp(self):
+        self.temp = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temp.cleanup)
+        self.folder = Path(self.temp.name)
+        write_press(self.folder / "press.csv", 0.1, 0.0435)
+        self.write_scene("scene.json", "press.csv")
+
+    def write_scene(self, name, trace):
+        (self.folder / name).write_text(json.dumps(make_scene(trace)))
+
+    def call(self, *arguments):
+        done = subprocess.run([ARGIL, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        return done.returncode, done.stdout, done.stderr
+
+    def read_ends(self, name):
+        """complete, last time of the haptic table, number of frames."""
+        with h5py.File(self.folder / name) as file:
+            for frame in file["frames"].values():
+                self.assertTrue((frame["position"][()] == frame["position"][()]).all())
+            return bool(file.attrs["complete"]), file["haptic/time"][-1], len(file["frames"])
+
+    def test_0_a_good_run_leaves_a_complete_result(self):
+        code, out, _ = self.call("run", "scene.json", "-o", "out.h5")
+        self.assertEqual(code, 0)
+        self.assertIn("out.h5", out)
+        complete, last, frames = self.read_ends("out.h5")
+        self.assertTrue(complete)
+        self.assertAlmostEqual(last, 0.1, delta=1e-12)
+        self.assertEqual(frames, 6)  # one at the start and one every 20 of 100 ticks
+        self.assertTrue((self.folder / "out.xdmf").exists())
+
+    def test_0_version_and_help(self):
+        self.assertEqual(self.call("--version")[0], 0)
+        self.assertEqual(self.call("run", "--help")[0], 0)
+
+    def test_2_refused_input_writes_nothing_and_says_one_line(self):
+        before = sorted(self.folder.iterdir())
+        for arguments in (["run", "scene.json", "--set", "/water/porosty=0.3"],
+                          ["run", "nowhere.json"],
+                          ["validate", "press.csv"],
+                          ["show", "press.csv"]):
+            code, out, error = self.call(*arguments)
+            self.assertEqual((code, out), (2, ""), f"{arguments}: {error}")
+            self.assertEqual(error.count("\n"), 1, error)
+            self.assertTrue(error.startswith("argil: "), error)
+        self.assertEqual(sorted(self.folder.iterdir()), before)
+
+    def test_2_bad_command_lines(self):
+        for arguments in ([], ["rum"], ["run"], ["run", "scene.json", "--threads", "0"], ["run", "scene.json", "--sett"]):
+            self.assertEqual(self.call(*arguments)[0], 2, arguments)
+
+    def test_3_a_failed_run_keeps_the_last_good_state_and_the_failure(self):
+        # A body whose tets may not lose a tenth of a thousandth of their volume, pressed.
+        code, _, error = self.call("run", "scene.json", "-o", "out.h5", "--set", "/dynamics/min_volume_ratio=0.9999")
+        self.assertEqual(code, 3, error)
+        self.assertRegex(error, r"argil: run failed: .*tick \d+")
+        self.assertIn("tet", error)
+        self.assertIn("0.9999", error)
+        complete, last, _ = self.read_ends("out.h5")
+        self.assertFalse(complete)
+        self.assertLess(last, 0.1)
+        with h5py.File(self.folder / "out.h5") as file:
+            failure = dict(file["failure"].attrs)
+        self.assertEqual(failure["bound"], 0.9999)
+        self.assertLessEqual(failure["value"], 0.9999)
+        self.assertAlmostEqual(last, 0.001 * failure["tick"], delta=0.0015)
+
+    def test_4_a_place_that_cannot_be_written(self):
+        code, _, error = self.call("run", "scene.json", "-o", "no/such/folder/out.h5")
+        self.assertEqual(code, 4, error)
+        self.assertIn("no/such/folder/out.h5", error)
+
+    def test_4_a_result_that_cannot_be_read(self):
+        for arguments in (["info", "nowhere.h5"], ["compare", "nowhere.h5", "nowhere.h5"]):
+            code, _, error = self.call(*arguments)
+            self.assertEqual(code, 4, error)
+            self.assertIn("nowhere.h5", error)
+
+    def test_5_compare_tells_equal_results_from_different_ones(self):
+        for name, more in (("a.h5", []), ("b.h5", ["--threads", "2"]),
+                           ("c.h5", ["--set", "/material/youngs_modulus_Pa=1.1e5"])):
+            self.assertEqual(self.call("run", "scene.json", "-o", name, *more)[0], 0)
+        self.assertEqual(self.call("compare", "a.h5", "b.h5")[0], 0)
+        code, out, _ = self.call("compare", "a.h5", "c.h5")
+        self.assertEqual(code, 5)
+        self.assertIn("/haptic/force", out)
+
+    def test_130_an_interrupted_run_is_readable_up_to_its_last_frame(self):
+        write_press(self.folder / "long.csv", 60.0, 0.0435)  # minutes of work
+        self.write_scene("long.json", "long.csv")
+        with subprocess.Popen([ARGIL, "run", "long.json", "-o", "out.h5"], cwd=self.folder,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as run:
+            for _ in range(600):  # until it is well inside its loop
+                if (self.folder / "out.h5").exists():
+                    break
+                time.sleep(0.05)
+            time.sleep(0.5)
+            run.send_signal(signal.SIGINT)
+            _, error = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 130, error)
+        self.assertIn("interrupted after tick", error)
+        complete, last, frames = self.read_ends("out.h5")
+        self.assertFalse(complete)
+        self.assertGreater(last, 0.0)
+        self.assertGreaterEqual(frames, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
