@@ -151,6 +151,7 @@ class Solid {
   void predict(const SolidState& state, const StepLoads& loads, double step_s);
   bool place_supports(double time, double share);
   void compute_residual(const StepLoads& loads);
+  double compute_rounding_force() const;
   double compute_potential(const StepLoads& loads);
   StepStatus search_line(const StepLoads& loads, Tick tick);
   void set_iterate(double share);

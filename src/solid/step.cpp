@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/check.h"
 #include "base/ordered_sum.h"
 #include "solid/solid.h"
 
@@ -89,6 +90,21 @@ double Solid::gravity_mass(Eigen::Index node) const {
   return m_is_static ? m_params.density * m_elements.shape_volume(node) : m_mass(node);
 }
 
+/// What the rounding of positions alone may leave of a sum of internal forces [N]: ε |x| times each point's
+/// stiffness, as independent errors. Nothing smaller can be asked for, and a body at rest has nothing else.
+double Solid::compute_rounding_force() const {
+  constexpr double kOperations = 8.0;  // roundings on the way from x to a point's force
+  const double rounding = kOperations * std::numeric_limits<double>::epsilon() * m_x.cwiseAbs().maxCoeff();
+  const int N = m_elements.nodes_per_tet;
+  return std::sqrt(ordered_sum(m_elements.num_points(), [&](std::ptrdiff_t p) {
+    const TetMaterial& material =
+        m_material[static_cast<std::size_t>(m_elements.tet_of_point(static_cast<int>(p)))];
+    const double stiffness = (material.lambda + 2.0 * material.mu) * m_elements.weight(p) *
+                             m_elements.gradient.middleCols(N * p, N).squaredNorm();
+    return std::pow(rounding * stiffness, 2);
+  }));
+}
+
 /// r = M (v̂ − v) + τ (f_ext + M g − f_int − D v − Σ k n n·(x − x₀)); statics: the forces alone.
 void Solid::compute_residual(const StepLoads& loads) {
   assemble_internal_force();
@@ -111,6 +127,8 @@ void Solid::compute_residual(const StepLoads& loads) {
   for (const int row : m_held_rows)
     for (int k = 0; k < 3; ++k)
       if (m_constraints.support(k, m_node_of_row[static_cast<std::size_t>(row)]) >= 0) m_rhs(k, row) = 0.0;
+  for (int n = 0; n < m_elements.num_nodes(); ++n)  // what supports bear: all there is where only they act
+    if (m_row_of_node[static_cast<std::size_t>(n)] < 0) scale += m_tau * m_internal_force.col(n).norm();
   m_residual_scale = scale;
 }
 
@@ -118,7 +136,8 @@ bool Solid::assemble(const StepLoads& loads) {
   compute_residual(loads);
   if (m_params.integrator == Integrator::symplectic_euler && !m_is_static) return false;
   if (is_newton()) {
-    if (compute_norm(m_rhs) <= m_params.newton_tolerance * m_residual_scale) return true;
+    const double rounding = m_tau * compute_rounding_force();
+    if (compute_norm(m_rhs) <= m_params.newton_tolerance * m_residual_scale + rounding) return true;
     m_potential = compute_potential(loads);
   }
   assemble_matrix(loads.contacts);
@@ -237,7 +256,11 @@ StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
       continue;
     }
     step *= 0.5;
-    if (step < kSmallestShare) return status;
+    if (step < kSmallestShare) {
+      const StepStatus last_good = update_kinematics(state.x, 0);  // what records describe
+      ARGIL_ASSERT(last_good.is_ok());
+      return status;
+    }
   }
   return StepStatus::ok();
 }
