@@ -1,12 +1,8 @@
 // What a run refuses, and the one line it says: file, place, value, remedy. Nothing is written.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
-#include "base/error.h"
-#include "study/run.h"
+#include "refusal.h"
 #include "support/scene_files.h"
-#include "support/temp_folder.h"
 
 namespace argil {
 namespace {
@@ -17,21 +13,8 @@ class BadInput : public testing::Test {
   std::string trace = test::write_press_trace(folder / "press.csv", 0.048, 0.0435, 0.1, "push");
 
   void expect_refused(const std::string& scenario, const std::vector<std::string>& settings,
-                      const std::vector<std::string>& parts) {
-    study::RunOptions options;
-    options.quiet = true;
-    options.scenario = test::write_text(folder / "scene.json", scenario);
-    options.output = folder / "out.h5";
-    options.settings = settings;
-    try {
-      study::run(options);
-      ADD_FAILURE() << "was not refused";
-    } catch (const InputError& error) {
-      for (const std::string& part : parts)
-        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << part << "\nis not in\n"
-                                                                           << error.what();
-    }
-    EXPECT_FALSE(std::filesystem::exists(options.output));
+                      const std::vector<std::string>& parts) const {
+    test::expect_refused(folder, scenario, settings, parts);
   }
   std::string ball() const { return test::make_ball_scenario(trace); }
   /// The ball's scenario with another body.
