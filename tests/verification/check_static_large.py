@@ -1,12 +1,12 @@
-"""Static solutions of argil at large rotation against a small finite element program of numpy and scipy, node by node.
+"""Static solutions of argil at large rotation against a small program of numpy and scipy, node by node.
 
 Usage: check_static_large.py ARGIL
 
 The laws, with F = R S by singular value decomposition, J = det F, W per rest volume [J/m³] and P = ∂W/∂F [Pa]:
   corotational  P = 2μ (F − R) + λ tr(S − 1) R
   neo_hookean   W = ½μ (tr FᵀF − 3) − μ (J − 1) + ½(λ + μ)(J − 1)²,  P = μ F + ((λ + μ)(J − 1) − μ) ∂J/∂F
-Loads grow in equal shares, each solved by Newton's method with central differences of P as its tangent, and without line
-search: it follows the path from rest, which argil need not do.
+Loads grow in equal shares, each solved by Newton's method with central differences of P as its tangent, and
+without line search: it follows the path from rest, which argil need not do.
 """
 import pathlib
 import sys
@@ -147,7 +147,7 @@ def twist(nodes, degrees):
 
 
 def compare(argil, folder, name, loads, model, element, num_shares):
-    """Runs a bar both ways and prints how far they are apart. True when that is within the demand, and the turn large."""
+    """Runs a bar both ways, prints how far they are apart. True when that is within the demand, the turn large."""
     scenario = sp.make_scenario({"mesh": {"file": "bar.msh"}, **loads}, model, element)
     rest, tets, moved = sp.run_argil(argil, folder, scenario)
     reference, R = solve(sp.pose(scenario, rest, tets), LAWS[model], num_shares)

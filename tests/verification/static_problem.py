@@ -1,8 +1,8 @@
 """A body at rest, its supports and loads, posed anew from a static scenario: what check_static.py and
 check_static_large.py compare argil with. Nothing is shared with argil but the words of its reference page.
 
-Arrays have a row a node: positions and displacements in m, forces in N. A 10-node tet has its corners, then the midpoints
-of the edges EDGES. A test that cannot run ends with SKIP, which ctest shows as skipped.
+Arrays have a row a node: positions and displacements in m, forces in N. A 10-node tet has its corners, then the
+midpoints of the edges EDGES. A test that cannot run ends with SKIP, which ctest shows as skipped.
 """
 import json
 import subprocess
