@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2.0;
 
+constexpr double kUnderflow = 1e-300;  // above what is lost where a product leaves the normal numbers
+
 using Four = std::array<Vec3, 4>;
 
 struct Directions {
@@ -55,13 +57,16 @@ bool are_boxes_apart(PairKind kind, const PairPath& path) {
 }
 
 /// Two convex features that are apart and not degenerate are apart along one of these: the common normal, and
-/// the normals within the plane to each side of the triangle, or to each edge.
-Directions find_face_directions(PairKind kind, const Four& p) {
+/// the normals within the plane to each side of the triangle, or to each edge. `is_degenerate`: nearly
+/// parallel edges or a sliver, for which these may not do.
+Directions find_face_directions(PairKind kind, const Four& p, bool& is_degenerate) {
   Directions out;
   const bool face = kind == PairKind::vertex_face;
   const Vec3 a = face ? p[2] - p[1] : p[1] - p[0];
   const Vec3 b = face ? p[3] - p[1] : p[3] - p[2];
   const Vec3 n = a.cross(b);
+  constexpr double kSine2 = 1e-6;  // of the angle between the edges
+  is_degenerate = !(n.squaredNorm() > kSine2 * a.squaredNorm() * b.squaredNorm());
   out.add(n);
   out.add(n.cross(a));
   out.add(n.cross(b));
@@ -92,7 +97,9 @@ Directions find_degenerate_directions(PairKind kind, const Four& p) {
 /// value for |d|₁ = 1. 0: not apart now.
 double find_separated_share(PairKind kind, const Vec3& d, const Four& now, const Four& end, double error) {
   const std::size_t split = first_feature_size(kind);
-  const double bound = error * d.cwiseAbs().sum();
+  const double bound = error * d.cwiseAbs().sum() + kUnderflow;
+  constexpr double kOverflow = 1e280;  // the differences along d may be some 1e15 times larger
+  if (!(bound < kOverflow)) return 0.0;
   double share = 1.0;
   double sign = 0.0;
   for (std::size_t i = 0; i < split; ++i)
@@ -128,20 +135,23 @@ std::array<double, 4> compute_coplanarity(PairKind kind, const PairPath& path) {
 double coplanarity_error_bound(const PairPath& path) {
   // With every coordinate difference at most L: |n₀|∞, |n₁|∞ ≤ 2L², |spin|∞ ≤ 8L², |middle|∞ ≤ 6L², so that a
   // coefficient sums terms of at most 14·3 L³; on the way to it a term meets at most 14 roundings
-  // (differences of given numbers carry a relative one). 42·14 < 1024. The second summand is for results that
-  // underflow.
+  // (differences of given numbers carry a relative one). 42·14 < 1024.
   const double extent = compute_extent(path);
-  return 1024.0 * kUnitRoundoff * extent * extent * extent + 1e-300;
+  return 1024.0 * kUnitRoundoff * extent * extent * extent + kUnderflow;
+}
+
+bool can_meet(PairKind kind, const PairPath& path) {
+  if (!is_finite(path)) return true;
+  if (are_boxes_apart(kind, path)) return false;
+  const std::array<double, 4> c = compute_coplanarity(kind, path);
+  if (!std::isfinite(c[0] + c[1] + c[2] + c[3])) return true;  // products beyond the range of double
+  const double error = coplanarity_error_bound(path);
+  return *std::min_element(c.begin(), c.end()) <= error && *std::max_element(c.begin(), c.end()) >= -error;
 }
 
 std::optional<double> find_time_of_impact(PairKind kind, const PairPath& path) {
   if (!is_finite(path)) return 0.0;
-  if (are_boxes_apart(kind, path)) return {};
-  const std::array<double, 4> c = compute_coplanarity(kind, path);
-  const double coplanarity_error = coplanarity_error_bound(path);
-  if (*std::min_element(c.begin(), c.end()) > coplanarity_error ||
-      *std::max_element(c.begin(), c.end()) < -coplanarity_error)
-    return {};
+  if (!can_meet(kind, path)) return {};
 
   // Seen from the first point, coordinates are at most L; shifting, interpolating, subtracting and the
   // product with d make fewer than 12 roundings of at most 2L|d|∞ each.
@@ -163,8 +173,9 @@ std::optional<double> find_time_of_impact(PairKind kind, const PairPath& path) {
       for (std::size_t k = 0; k < directions.count && share < 1.0; ++k)
         share = std::max(share, find_separated_share(kind, directions.d[k], now, end, error));
     };
-    try_all(find_face_directions(kind, now));
-    if (share < kFairProgress) try_all(find_degenerate_directions(kind, now));
+    bool is_degenerate = false;
+    try_all(find_face_directions(kind, now, is_degenerate));
+    if (share < kFairProgress && is_degenerate) try_all(find_degenerate_directions(kind, now));
     if (share >= 1.0) return {};
     const double later = t + share * (1.0 - t);
     if (!(later > t)) break;

@@ -18,15 +18,20 @@ struct PairPath {
 enum class PairKind { vertex_face, edge_edge };
 
 /// Earliest time at which the vertex meets the triangle, or the edges meet. Safe: no meeting is missed and
-/// the time is never later than the true one. A hit may be reported for features that pass at a distance of
-/// some hundred roundings of their extent (about 1e-13 of it); a coordinate that is not finite is a hit at 0.
+/// the time is never later than the true one. A hit may be reported for features that come nearer than the
+/// minimum separation, some hundred roundings of their extent (README); a coordinate that is not finite is a
+/// hit at 0.
 ///
-/// First the swept boxes and the coplanarity cubic's Bernstein coefficients: with one sign throughout, the
-/// four points are never in one plane [Tang2010]. Then time goes forward as long as the features can be shown
+/// First the non-penetration filter below. Then time goes forward as long as the features can be shown
 /// to be apart: for a fixed direction d, d·(pᵢ−qⱼ) is linear in t for each pair of points, so that a
 /// separation at t lasts until the first of these lines meets zero (less its rounding). Near a meeting this
 /// is Newton's iteration from the safe side; it ends where no direction separates.
 std::optional<double> find_time_of_impact(PairKind kind, const PairPath& path);
+
+/// The non-penetration filter: false only for features that cannot meet, because their swept boxes are apart
+/// or because the coplanarity cubic's Bernstein coefficients have one sign throughout, beyond their rounding,
+/// so that the four points are never in one plane [Tang2010]. The README derives the signs.
+bool can_meet(PairKind kind, const PairPath& path);
 
 /// Coefficients c₀…c₃ in Bernstein form of det(p₁−p₀, p₂−p₀, p₃−p₀)(t): 0 where the four points are coplanar.
 /// With n₀, n₁ the normals at the ends, m = (n₀+n₁−(v_b−v_a)×(v_c−v_a))/2 the middle one and w the vectors
