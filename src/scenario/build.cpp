@@ -148,6 +148,23 @@ void check_supports(const Scenario& s, const sim::Body& body) {
                      "hold at least three vertices that are not on a line");
 }
 
+/// Explicit diffusion needs so many substeps that the run would never end?
+void check_diffusion(const Scenario& s, const sim::Body& body) {
+  constexpr double kMostSubsteps = 10000.0;
+  const water::WaterParams& w = s.params.water;
+  if (!(w.diffusivity > 0.0) || w.scheme == water::DiffusionScheme::implicit_euler) return;
+  const double limit =
+      water::make_stencil(body.mesh, body.topology, w.diffusivity, water::FluxForm::two_point).monotone_step /
+      std::exp(std::max(0.0, w.diffusivity_exponent));
+  const double step = s.params.rates.haptic_period * s.params.rates.water_period_ticks;
+  if (step / limit <= kMostSubsteps) return;
+  std::ostringstream text;
+  text << "needs " << step / limit << " explicit substeps a water step: the mesh allows " << limit
+       << " s each, and a water step is " << step << " s";
+  throw InputError(s.file, "/water/diffusivity_m2_per_s", text.str(),
+                   "set /water/diffusion to implicit, or give a smaller diffusivity or a coarser mesh");
+}
+
 mesh::TriangleMesh make_tool(const Scenario& s) {
   switch (s.tool.kind) {
     case ToolKind::sphere:
@@ -207,6 +224,7 @@ Scene build_scene(const Scenario& s) {
         take_field(s, body.mesh, s.body.modulus_field, "/body/mesh/youngs_modulus_field", 1e-6, 1e15) /
         s.params.elastic.youngs_modulus;
   if (!s.body.pore_axis_field.empty()) body.pore_axis = take_axes(s, body.mesh);
+  check_diffusion(s, body);
   fix_and_load(s, body);
   scene.tool = make_tool(s);
   if (s.mode == Mode::equilibrium) {

@@ -215,7 +215,21 @@ void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
   b.number("/water/porosity", w.porosity, inside(0, 1), "",
            "n: volume of water at S = 1 over rest volume; φ = n S.");
   b.number("/water/density_kg_per_m3", w.density, positive(), "kg/m³", "ρ_w.");
-  b.number("/water/diffusivity_m2_per_s", w.diffusivity, not_negative(), "m²/s", "D of the saturation.");
+  b.number("/water/diffusivity_m2_per_s", w.diffusivity, not_negative(), "m²/s",
+           "D₀ of the saturation, D = D₀ e^{βS}.");
+  b.number("/water/diffusivity_exponent", w.diffusivity_exponent, between(-20, 20), "",
+           "β: how the diffusivity follows the saturation; 0: constant.");
+  b.choice<water::DiffusionScheme>(
+      "/water/diffusion", w.scheme,
+      {{water::DiffusionScheme::explicit_euler, "explicit"},
+       {water::DiffusionScheme::implicit_euler, "implicit"}},
+      "Explicit in substeps, cost by the wet tets; or one implicit step, cost by "
+      "all tets.");
+  b.choice<water::FluxForm>(
+      "/water/flux", w.flux,
+      {{water::FluxForm::corrected, "corrected"}, {water::FluxForm::two_point, "two_point"}},
+      "Flow between two tets: with the part of the gradient along their face, or two-point alone, which is "
+      "faster and has the wrong D on most meshes.");
   b.choice<water::UptakeForm>(
       "/water/uptake", w.uptake,
       {{water::UptakeForm::flux, "flux"}, {water::UptakeForm::increment, "increment"}},

@@ -14,10 +14,18 @@ enum class FluxForm {
               ///< other
 };
 
+/// How diffusion goes on in time.
+enum class DiffusionScheme {
+  explicit_euler,  ///< substeps within the monotone limit; only tets with water or beside one are visited
+  implicit_euler,  ///< one step of any length by a Cholesky factor that is kept; every tet is visited
+};
+
 struct WaterParams {
-  double porosity = 0.4;     ///< n [–], in (0, 1): volume of water at S = 1 over rest volume
-  double density = 1000.0;   ///< ρ_w [kg/m³], > 0
-  double diffusivity = 0.0;  ///< D [m²/s], ≥ 0, of saturation
+  double porosity = 0.4;              ///< n [–], in (0, 1): volume of water at S = 1 over rest volume
+  double density = 1000.0;            ///< ρ_w [kg/m³], > 0
+  double diffusivity = 0.0;           ///< D₀ [m²/s], ≥ 0, of saturation
+  double diffusivity_exponent = 0.0;  ///< β [–] in D(S) = D₀ e^{βS} [Gardner1958]; 0: constant
+  DiffusionScheme scheme = DiffusionScheme::explicit_euler;
   FluxForm flux = FluxForm::corrected;
   UptakeForm uptake = UptakeForm::flux;
   double wetting_flux = 0.0;          ///< [kg/(m² s)], ≥ 0, given by the wet tool

@@ -4,25 +4,19 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "water/implicit_system.h"
 
 namespace argil::water {
-namespace {
-
-// The explicit substep stays this far below the monotone limit, so that rounding cannot cross it.
-constexpr double kLimitShare = 0.9;
-
-// Two tets that both hold less than this pass nothing. Else an explicit scheme would wet one layer of tets a
-// substep with saturations like 1e-100, and a local touch would cost as much as the whole body. What is held
-// back is not lost: it stays where it is, and is booked.
-constexpr double kTrace = 1e-12;
-
-}  // namespace
 
 void CompensatedSum::add(double x) {
   const double next = sum + x;
   error += std::abs(sum) >= std::abs(x) ? (sum - next) + x : (x - next) + sum;
   sum = next;
 }
+
+PoreWater::~PoreWater() = default;
+PoreWater::PoreWater(PoreWater&&) noexcept = default;
+PoreWater& PoreWater::operator=(PoreWater&&) noexcept = default;
 
 PoreWater::PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, const WaterParams& params,
                      const Field& initial_saturation)
@@ -46,6 +40,7 @@ PoreWater::PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, 
   m_state.saturation = initial_saturation;
   m_state.carry.setZero(num_tets);
   m_state.collected = initial_saturation;
+  m_potential.setZero(num_tets);
   activate_all_wet();
   m_state.initial = mass();
 }
@@ -56,12 +51,14 @@ void PoreWater::restore(const WaterState& state) {
   std::fill(m_is_active.begin(), m_is_active.end(), '\0');
   m_active.clear();
   m_num_sorted = 0;
+  m_potential.setZero();
   activate_all_wet();
 }
 
 void PoreWater::activate_all_wet() {
   for (int t = 0; t < static_cast<int>(m_capacity.size()); ++t) {
-    if (m_state.saturation(t) > 0.0) activate(t);
+    if (m_state.saturation(t) > 0.0 || m_state.carry(t) != 0.0) activate(t);
+    set_potential(t, m_state.saturation(t));
     if (m_state.saturation(t) > kTrace) activate_around(t);
   }
   sort_active();
@@ -91,6 +88,34 @@ void PoreWater::sort_active() {
   m_num_sorted = m_active.size();
 }
 
+/// Leaves the tets that hold nothing and have no wet neighbour any more.
+void PoreWater::leave_dry() {
+  const auto is_dry = [&](int t) {
+    if (m_state.saturation(t) != 0.0 || m_state.carry(t) != 0.0) return false;
+    for (int corner = 0; corner < 4; ++corner) {
+      const int other = m_stencil.neighbours(corner, t);
+      if (other >= 0 && m_state.saturation(other) > kTrace) return false;
+    }
+    return true;
+  };
+  std::erase_if(m_active, [&](int t) {
+    // A change that the moduli have not followed yet must stay in sight of collect_changed.
+    const bool leaves = is_dry(t) && m_state.collected(t) == 0.0;
+    if (leaves) {
+      m_is_active[static_cast<std::size_t>(t)] = 0;
+      m_change(t) = 0.0;
+    }
+    return leaves;
+  });
+  m_num_sorted = m_active.size();
+}
+
+/// u(S) with D(S) = D₀ u'(S) (Kirchhoff): the flow between two tets is that of the mean D between their S.
+void PoreWater::set_potential(int tet, double saturation) {
+  const double beta = m_params.diffusivity_exponent;
+  m_potential(tet) = beta == 0.0 ? saturation : std::expm1(beta * saturation) / beta;
+}
+
 /// S += change, with the rounding error kept for the next time [Knuth's two-sum].
 void PoreWater::add(int tet, double change) {
   const double before = m_state.saturation(tet);
@@ -98,8 +123,12 @@ void PoreWater::add(int tet, double change) {
   const double after = before + wanted;
   const double kept = after - before;
   m_state.carry(tet) = (before - (after - kept)) + (wanted - kept);
-  m_state.saturation(tet) = after;
-  if (before <= kTrace && after > kTrace) activate_around(tet);
+  // Explicit substeps stay within the bounds; what rounding of an implicit solve puts beyond them is carried.
+  const double bounded = std::clamp(after, 0.0, 1.0);
+  m_state.carry(tet) += after - bounded;
+  m_state.saturation(tet) = bounded;
+  set_potential(tet, bounded);
+  if (before <= kTrace && bounded > kTrace) activate_around(tet);
 }
 
 /// Adds `mass` (negative: takes it) as far as the tet can hold or has it, and books what really moved.
@@ -118,6 +147,7 @@ void PoreWater::give(int tet, double mass) {
   (moved > 0.0 ? m_state.added : m_state.removed).add(std::abs(moved));
   m_state.saturation(tet) = limit;
   m_state.carry(tet) = 0.0;
+  set_potential(tet, limit);
   if (limit > kTrace) activate_around(tet);
 }
 
@@ -136,97 +166,7 @@ void PoreWater::exchange(std::span<const int> triangle, std::span<const double> 
     for (const int tet : m_touched) give(tet, sign * m_params.saturation_increment * m_capacity(tet));
   }
   sort_active();
-}
-
-double PoreWater::num_substeps(double step_s) const {
-  return std::max(1.0, std::ceil(step_s / (kLimitShare * m_stencil.monotone_step)));
-}
-
-bool PoreWater::passes(int a, int b) const {
-  return b >= 0 && (m_state.saturation(a) > kTrace || m_state.saturation(b) > kTrace);
-}
-
-/// Change of S in every active tet over one substep by the two-point flux, and its ∇S. A flow seen from its
-/// two sides differs in sign only, bit for bit; so the order of the tets does not matter and nothing is lost
-/// between them.
-void PoreWater::compute_flow(double step_s) {
-  const Field& S = m_state.saturation;
-  const bool corrected = m_params.flux == FluxForm::corrected;
-  for (const int t : m_active) {
-    double flow = 0.0;
-    Vec3 gradient = Vec3::Zero();
-    for (int corner = 0; corner < 4; ++corner) {
-      const int other = m_stencil.neighbours(corner, t);
-      if (other < 0) continue;
-      const double rise = S(other) - S(t);
-      if (passes(t, other)) flow += m_stencil.conductance(corner, t) * rise;
-      if (corrected) gradient += rise * m_stencil.gradient.col(t).segment<3>(row_of(corner));
-    }
-    m_change(t) = step_s * flow / m_stencil.volume(t);
-    if (corrected) m_gradient.col(t) = gradient;
-  }
-}
-
-/// The flow that the two-point flux leaves out, from the mean of the two tets' gradients, and the share of it
-/// that keeps every S within its neighbours' range before and after the two-point step [Zalesak1979].
-void PoreWater::compute_correction(double step_s) {
-  const Field& S = m_state.saturation;
-  // Rounding of the sums below must not reach over a bound.
-  constexpr double kRoundingRoom = 1.0 - 1e-14;
-  for (const int t : m_active) {
-    const double low_order = S(t) + m_change(t);
-    double highest = std::max(S(t), low_order), lowest = std::min(S(t), low_order);
-    double raise = 0.0, lower = 0.0;
-    for (int corner = 0; corner < 4; ++corner) {
-      const int other = m_stencil.neighbours(corner, t);
-      m_correction(corner, t) = 0.0;
-      if (!passes(t, other)) continue;
-      const Vec3 mean = 0.5 * (m_gradient.col(t) + m_gradient.col(other));
-      const double flow = step_s * m_stencil.tangent.col(t).segment<3>(row_of(corner)).dot(mean);
-      m_correction(corner, t) = flow;
-      (flow > 0.0 ? raise : lower) += std::abs(flow) / m_stencil.volume(t);
-      const double its_low_order = S(other) + m_change(other);
-      highest = std::max({highest, S(other), its_low_order});
-      lowest = std::min({lowest, S(other), its_low_order});
-    }
-    const auto share = [](double room, double wish) {
-      return wish > room ? kRoundingRoom * room / wish : 1.0;
-    };
-    m_share.col(t) << share(highest - low_order, raise), share(low_order - lowest, lower);
-  }
-}
-
-void PoreWater::add_correction(double step_s) {
-  compute_correction(step_s);
-  for (const int t : m_active) {
-    double change = 0.0;
-    for (int corner = 0; corner < 4; ++corner) {
-      const double flow = m_correction(corner, t);
-      if (flow == 0.0) continue;
-      const int other = m_stencil.neighbours(corner, t);
-      const double let = flow > 0.0 ? std::min(m_share(0, t), m_share(1, other))
-                                    : std::min(m_share(1, t), m_share(0, other));
-      change += let * flow;
-    }
-    m_change(t) += change / m_stencil.volume(t);
-  }
-}
-
-int PoreWater::diffuse(double step_s) {
-  if (m_active.empty() || !(m_params.diffusivity > 0.0)) return 0;
-  constexpr double kMostSubsteps = 1e6;  // the scenario refuses long before
-  const double wanted = num_substeps(step_s);
-  ARGIL_ASSERT(wanted <= kMostSubsteps, wanted, step_s, m_stencil.monotone_step);
-  const int substeps = static_cast<int>(wanted);
-  const double h = step_s / substeps;
-  for (int substep = 0; substep < substeps; ++substep) {
-    compute_flow(h);
-    if (m_params.flux == FluxForm::corrected) add_correction(h);
-    const std::size_t num_active = m_active.size();
-    for (std::size_t i = 0; i < num_active; ++i) add(m_active[i], m_change(m_active[i]));
-  }
-  sort_active();
-  return substeps;
+  if (sign < 0) leave_dry();
 }
 
 void PoreWater::collect_changed(double tolerance, std::vector<int>& tets) {

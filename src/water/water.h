@@ -1,6 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "water/stencil.h"
@@ -25,12 +27,15 @@ struct WaterLedger {
 /// All that a run must keep of the water to go on with the same bits.
 struct WaterState {
   Field saturation;  ///< S per tet [–]
-  Field carry;  ///< what rounding kept out of S so far [–], |carry| ≤ half a unit in the last place of S
+  Field carry;  ///< what rounding kept out of S so far [–]: half a unit in the last place of S, or what an
+                ///< implicit solve missed the bounds 0 and 1 by
   Field collected;  ///< S when collect_changed last named the tet
   double initial = 0.0;
   CompensatedSum added, removed;  ///< [kg]
   bool nothing_collected = true;
 };
+
+struct ImplicitSystem;
 
 /// Water in the pores of every tet. Saturation S in [0, 1]; mass of a tet = ρ_w n V_rest S. Serial: the bits
 /// depend on the calls alone.
@@ -40,19 +45,22 @@ class PoreWater {
   /// here.
   PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, const WaterParams& params,
             const Field& initial_saturation);
+  ~PoreWater();
+  PoreWater(PoreWater&&) noexcept;
+  PoreWater& operator=(PoreWater&&) noexcept;
 
   /// Takes up (sign > 0) or gives off (sign < 0) water through touched boundary triangles during `step_s`:
   /// `triangle` are boundary faces of the topology, `area` [m²] what the tool touches of each. Fills up to S
   /// = 1, empties down to 0; what the tet cannot take stays with the tool. Every gram is booked.
   void exchange(std::span<const int> triangle, std::span<const double> area, int sign, double step_s);
 
-  /// Diffuses for `step_s` in explicit substeps within the monotone limit; the boundary is sealed.
-  /// Conservative to round-off; S stays between the smallest and the largest S around, bit for bit. Only tets
-  /// with water, or next to one that holds more than a trace (1e-12), are touched. Returns the number of
-  /// substeps.
+  /// Diffuses for `step_s`; the boundary is sealed. Conservative to round-off. S stays between the smallest
+  /// and the largest S around: in explicit substeps bit for bit, in an implicit step to the solver's
+  /// rounding. Explicit: only tets with water, or next to one that holds more than a trace (1e-12), are
+  /// touched. Returns the number of explicit substeps or of implicit solves.
   int diffuse(double step_s);
 
-  /// Substeps that `diffuse(step_s)` takes when there is water; for the scenario to refuse absurd ones.
+  /// Explicit substeps that `diffuse(step_s)` takes with the present water.
   double num_substeps(double step_s) const;
 
   /// Replaces `tets` by those whose saturation moved by more than `tolerance` since they were last collected,
@@ -65,9 +73,9 @@ class PoreWater {
   WaterLedger ledger() const;
   double ledger_error() const;  ///< (mass − initial − added + removed) / Σ capacity [–]
 
-  /// Longest substep [s] that keeps the maximum principle.
+  /// Longest substep [s] that keeps the maximum principle where D = D₀.
   double monotone_step() const { return m_stencil.monotone_step; }
-  /// Tets that are or were wet, or next to such.
+  /// Tets that hold water, or are next to such, or were since the last drying.
   int num_active() const { return static_cast<int>(m_active.size()); }
 
   const WaterState& state() const { return m_state; }
@@ -75,16 +83,38 @@ class PoreWater {
   void restore(const WaterState& state);
 
  private:
+  // water.cpp
   void activate(int tet);
   void activate_around(int tet);
   void activate_all_wet();
   void sort_active();
+  void leave_dry();
   void give(int tet, double mass);
-  bool passes(int a, int b) const;
   void add(int tet, double change);
+  void set_potential(int tet, double saturation);
+
+  // diffusion.cpp
+  void diffuse_explicitly(double step_s);
+  bool passes(int a, int b) const;
+  double find_steepest() const;
   void compute_flow(double step_s);
-  void add_correction(double step_s);
+  void compute_gradients();
+  Vec3 mean_gradient(int tet, int other) const;
   void compute_correction(double step_s);
+  std::pair<double, double> find_range(int tet) const;
+  void limit_correction();
+  double compute_let_through(int tet) const;
+  void add_correction();
+
+  // implicit.cpp
+  int diffuse_implicitly(double step_s);
+  void make_system();
+  void factorise(double step_s);
+  void set_implicit_correction(double step_s, const Field& S);
+  void solve_two_point(Field& x);
+  int solve_corrected(double step_s);
+  void relax_limits();
+  void set_implicit_flow(double step_s);
 
   WaterParams m_params;
   std::vector<int> m_boundary_tet;
@@ -96,10 +126,12 @@ class PoreWater {
   std::vector<int> m_merged;      // scratch of sort_active
   std::size_t m_num_sorted = 0;   // how many of m_active are in order
   std::vector<int> m_touched;     // scratch of exchange
+  Field m_potential;              // u(S) of D(S): expm1(βS)/β, S itself where β = 0
   Field m_change;                 // change of S in a substep
-  Points m_gradient;              // ∇S of each active tet [1/m]; this and the next two: corrected flux only
-  Eigen::Matrix4Xd m_correction;  // unlimited change of S by the correction across each face
+  Points m_gradient;              // ∇u of each active tet [1/m]; this and the next two: corrected flux only
+  Eigen::Matrix4Xd m_correction;  // unlimited change of S times volume by the correction across each face
   Eigen::Matrix2Xd m_share;  // of the correction that raises (0) or lowers (1) S, how much is let through
+  std::unique_ptr<ImplicitSystem> m_system;  // implicit_euler only
 };
 
 }  // namespace argil::water

@@ -11,6 +11,7 @@
 #include "base/rng.h"
 #include "support/block_mesh.h"
 #include "support/mirrored_mesh.h"
+#include "support/shaken_block.h"
 
 namespace argil::water {
 namespace {
@@ -24,17 +25,6 @@ WaterParams make_params(FluxForm flux) {
   p.wetting_flux = 0.5;
   p.drying_flux = 0.3;
   return p;
-}
-
-/// Block of 0.1 m whose inner vertices are shaken: tets of all shapes, no two centroids opposite each other.
-mesh::TetMesh make_shaken_block(int n) {
-  mesh::TetMesh mesh = test::make_block(n, n, n, Vec3(0.1, 0.1, 0.1));
-  Rng rng(3, "shake");
-  const double cell = 0.1 / n;
-  for (int v = 0; v < mesh.num_vertices(); ++v)
-    for (int c = 0; c < 3; ++c)
-      if (double& x = mesh.vertices(c, v); x > 1e-9 && x < 0.1 - 1e-9) x += cell * rng.uniform(-0.2, 0.2);
-  return mesh;
 }
 
 struct Body {
@@ -68,7 +58,7 @@ void play_tools(const Body& body, PoreWater& water, int steps, std::uint64_t see
 }
 
 TEST(PoreWater, BooksEveryGramOverAHundredThousandSteps) {
-  const Body body(make_shaken_block(2));
+  const Body body(test::make_shaken_block(2));
   for (const FluxForm flux : kBoth) {
     WaterParams params = make_params(flux);
     params.wetting_flux = params.drying_flux = 20.0;
@@ -85,7 +75,7 @@ TEST(PoreWater, BooksEveryGramOverAHundredThousandSteps) {
 }
 
 TEST(PoreWater, KeepsSaturationBetweenZeroAndOneExactly) {
-  const Body body(make_shaken_block(3));
+  const Body body(test::make_shaken_block(3));
   for (const FluxForm flux : kBoth) {
     WaterParams params = make_params(flux);
     params.wetting_flux = 50.0;  // fills and empties in a few steps
@@ -159,7 +149,7 @@ TEST(PoreWater, InPaperFormEachTouchedTetGetsOneStepOfSaturation) {
 }
 
 TEST(PoreWater, DiffusionStaysWithinTheRangeOfTheField) {
-  const Body body(make_shaken_block(4));
+  const Body body(test::make_shaken_block(4));
   for (const FluxForm flux : kBoth) {
     PoreWater water(body.mesh, body.topology, make_params(flux), body.make_random(0.2, 0.7));
     double low = water.saturation().minCoeff(), high = water.saturation().maxCoeff();
@@ -176,7 +166,7 @@ TEST(PoreWater, DiffusionStaysWithinTheRangeOfTheField) {
 }
 
 TEST(PoreWater, AUniformFieldStaysUniform) {
-  const Body body(make_shaken_block(3));
+  const Body body(test::make_shaken_block(3));
   for (const FluxForm flux : kBoth) {
     PoreWater water = body.make(make_params(flux), 0.37);
     water.diffuse(100.0);
@@ -186,7 +176,7 @@ TEST(PoreWater, AUniformFieldStaysUniform) {
 
 TEST(Stencil, MonotoneStepIsTheLimitAndNotABitMore) {
   // Hostile field: full where V/Σk is least, dry elsewhere. One explicit step of h leaves 1 − h Σk/V there.
-  const Body body(make_shaken_block(3));
+  const Body body(test::make_shaken_block(3));
   const Stencil stencil = make_stencil(body.mesh, body.topology, 1e-6, FluxForm::two_point);
   Eigen::Index worst = 0;
   (stencil.volume.array() / stencil.conductance.colwise().sum().transpose().array()).minCoeff(&worst);
@@ -203,7 +193,7 @@ TEST(Stencil, MonotoneStepIsTheLimitAndNotABitMore) {
 }
 
 TEST(Stencil, BothSidesOfAFaceHoldTheSameBits) {
-  const Body body(make_shaken_block(3));
+  const Body body(test::make_shaken_block(3));
   const Stencil s = make_stencil(body.mesh, body.topology, 1e-6, FluxForm::corrected);
   for (int t = 0; t < body.mesh.num_tets(); ++t)
     for (int corner = 0; corner < 4; ++corner) {
@@ -222,7 +212,7 @@ TEST(Stencil, BothSidesOfAFaceHoldTheSameBits) {
 
 TEST(Stencil, CorrectedFlowOfALinearFieldIsExactInside) {
   // Away from the wall, D ∇S·A through every face and no change of S at all.
-  const Body body(make_shaken_block(5));
+  const Body body(test::make_shaken_block(5));
   const Stencil s = make_stencil(body.mesh, body.topology, 1.0, FluxForm::corrected);
   const Vec3 g(1.0, -2.0, 0.5);
   Field S(body.mesh.num_tets());
@@ -324,7 +314,7 @@ TEST(PoreWater, NamesChangedTetsOnceInOrder) {
 }
 
 TEST(PoreWater, GoesOnWithTheSameBitsFromAKeptState) {
-  const Body body(make_shaken_block(3));
+  const Body body(test::make_shaken_block(3));
   for (const FluxForm flux : kBoth) {
     PoreWater water = body.make(make_params(flux), 0.0);
     play_tools(body, water, 7000, 1);  // wet, then dried to 0 in places
