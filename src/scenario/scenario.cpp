@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 
@@ -253,6 +254,22 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
 std::string print_resolved(const Scenario& scenario) {
   Scenario copy = scenario;
   return write_parameters(make_parameter_table(copy, scenario.file)).dump(2) + "\n";
+}
+
+std::string print_portable(const Scenario& scenario) {
+  Scenario copy = scenario;
+  const std::filesystem::path folder = std::filesystem::absolute(scenario.file).parent_path();
+  Json object = Json::object();
+  for (const Parameter& row : make_parameter_table(copy, scenario.file)) {
+    if (row.applies && !row.applies()) continue;
+    Json value = row.write();
+    if (row.type == ValueType::path && value != "") {
+      const std::filesystem::path file = value.get<std::string>();
+      value = file.lexically_relative(folder).generic_string();
+    }
+    object[Json::json_pointer(row.pointer)] = value;
+  }
+  return object.dump(2) + "\n";
 }
 
 }  // namespace argil::scenario

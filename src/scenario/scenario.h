@@ -95,6 +95,10 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
 /// The scene with every default written out, keys in the table's order, as JSON. Loading it gives it again.
 std::string print_resolved(const Scenario& scenario);
 
+/// The same with files relative to the scenario's folder: what a result keeps and hashes, so that two
+/// checkouts write the same bits.
+std::string print_portable(const Scenario& scenario);
+
 /// JSON Schema (2020-12) of a scenario.
 std::string print_schema();
 

@@ -70,8 +70,8 @@ output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulat
   std::string notes;
   for (const std::string& note : scene.notes) notes += note + "\n";
   header.provenance = {{"about", s.about},
-                       {"scenario", scenario::print_resolved(s)},
-                       {"scenario_sha256", Sha256().add(scenario::print_resolved(s)).hex_digest()},
+                       {"scenario", scenario::print_portable(s)},
+                       {"scenario_sha256", Sha256().add(scenario::print_portable(s)).hex_digest()},
                        {"trace_sha256", scene.trace.sha256},
                        {"build", describe_build()},
                        {"effective_medium", s.medium_status},

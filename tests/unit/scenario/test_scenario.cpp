@@ -36,6 +36,14 @@ TEST_F(ScenarioFile, ShownOneIsAFixedPointInAnyFolder) {
   EXPECT_EQ(print_resolved(load_scenario(elsewhere.write("shown.json", shown), {})), shown);
 }
 
+TEST_F(ScenarioFile, PortableOneIsTheSameWhereverTheFolderLies) {
+  test::TempFolder elsewhere;
+  test::write_press_trace(elsewhere / "press.csv", 0.048, 0.0435, 0.1, "push");
+  const std::string moved = elsewhere.write("scene.json", test::make_ball_scenario("press.csv"));
+  EXPECT_NE(print_resolved(load_scenario(moved, {})), print_resolved(load()));
+  EXPECT_EQ(print_portable(load_scenario(moved, {})), print_portable(load()));
+}
+
 TEST_F(ScenarioFile, ShownPaperPresetIsAFixedPointToo) {
   const std::string shown = print_resolved(load(kPaper));
   EXPECT_EQ(print_resolved(load_scenario(folder.write("shown.json", shown), {})), shown);
