@@ -68,8 +68,13 @@ struct Moisture {
   std::vector<double> table_yield;           ///< table: yield strain [–]
 };
 
-/// Plastic flow after Müller and Gross 2004 in additive strain, rate form by default.
-enum class FlowForm { rate, literal };
+/// Plastic flow in additive strain: after Müller and Gross 2004 in rate form or to the letter, or rate
+/// independent.
+enum class FlowForm {
+  rate,     ///< 1 − e^{−c h} of the elastic strain
+  literal,  ///< c h of it
+  j2,       ///< radial return of its deviator to the yield norm [Wilkins1964]; takes no creep rate
+};
 enum class StrainNorm { frobenius, voigt6 };
 
 struct Plasticity {

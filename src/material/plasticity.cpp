@@ -19,15 +19,29 @@ Vec6 deviator(Vec6 e) {
   return e;
 }
 
+/// Share of the elastic strain that flows in a step.
+double compute_flow(const Plasticity& law, double step_s, double elastic_norm, double yield) {
+  switch (law.form) {
+    case FlowForm::rate:
+      return -std::expm1(-law.creep_per_s * step_s);
+    case FlowForm::literal:
+      return law.creep_per_s * step_s;
+    case FlowForm::j2:
+      break;
+  }
+  return 1.0 - yield / elastic_norm;
+}
+
 }  // namespace
 
 Vec6 compute_plastic_strain(const Vec6& strain, const Vec6& plastic_strain, double yield,
                             const Plasticity& law, double step_s) {
   Vec6 elastic = strain - plastic_strain;
-  if (law.deviatoric) elastic = deviator(elastic);
-  if (!(compute_norm(elastic, law.norm) > yield)) return plastic_strain;
-  const double rate_time = law.creep_per_s * step_s;
-  const double flow = law.form == FlowForm::literal ? rate_time : -std::expm1(-rate_time);
+  const bool is_j2 = law.form == FlowForm::j2;
+  if (law.deviatoric || is_j2) elastic = deviator(elastic);
+  const double elastic_norm = compute_norm(elastic, is_j2 ? StrainNorm::frobenius : law.norm);
+  if (!(elastic_norm > yield)) return plastic_strain;
+  const double flow = compute_flow(law, step_s, elastic_norm, yield);
   Vec6 after = plastic_strain + flow * elastic;
   const double norm = compute_norm(after, law.norm);
   if (norm > law.max) after *= law.max / norm;

@@ -181,7 +181,7 @@ void bind_material(Binder& b, sim::Params& p) {
             "table: yield strain at each.")
       .applies = table_only;
   material::Plasticity& y = p.plasticity;
-  b.boolean("/material/plasticity/enabled", y.enabled, "Plastic flow after Müller and Gross.");
+  b.boolean("/material/plasticity/enabled", y.enabled, "Plastic flow.");
   b.number("/material/plasticity/yield", y.yield, not_negative(), "",
            "Elastic strain norm at which flow starts.");
   b.number("/material/plasticity/creep_per_s", y.creep_per_s, not_negative(), "1/s",
@@ -190,8 +190,11 @@ void bind_material(Binder& b, sim::Params& p) {
   b.boolean("/material/plasticity/deviatoric", y.deviatoric,
             "Flow keeps the volume, and only the deviator yields.");
   b.choice<material::FlowForm>("/material/plasticity/form", y.form,
-                               {{material::FlowForm::rate, "rate"}, {material::FlowForm::literal, "literal"}},
-                               "1 − e^{−c h}, or the literal c h.");
+                               {{material::FlowForm::rate, "rate"},
+                                {material::FlowForm::literal, "literal"},
+                                {material::FlowForm::j2, "j2"}},
+                               "Flow of 1 − e^{−c h} or the literal c h of the elastic strain; or j2: radial "
+                               "return to the yield norm, rate independent.");
   b.choice<material::StrainNorm>(
       "/material/plasticity/norm", y.norm,
       {{material::StrainNorm::frobenius, "frobenius"}, {material::StrainNorm::voigt6, "voigt6"}},

@@ -227,7 +227,8 @@ Json probe_element(Case& c) {
   const Mat6 C = solid::make_isotropic_stiffness(elasticity.lambda, elasticity.mu);
   const solid::Mat12 stiffness =
       model == StrainModel::neo_hookean
-          ? solid::compute_element_stiffness(tet, solid::compute_tangent(model, motion, plastic, elasticity))
+          ? solid::compute_element_stiffness(
+                tet, solid::make_positive(solid::compute_tangent(model, motion, plastic, elasticity)))
           : solid::compute_element_stiffness(tet, motion.R, C);
   return {{"force", to_json(Eigen::MatrixXd(force.transpose()))},
           {"energy_J", tet.volume * solid::compute_energy_density(model, motion, plastic, elasticity)},
@@ -242,8 +243,9 @@ Json probe_plastic_update(Case& c) {
   law.creep_per_s = c.not_negative("creep_per_s", "1/s");
   law.max = c.not_negative("max");
   law.deviatoric = c.flag("deviatoric", false);
-  law.form =
-      c.word("form", {"rate", "literal"}, 0) == 0 ? material::FlowForm::rate : material::FlowForm::literal;
+  using material::FlowForm;
+  constexpr std::array<FlowForm, 3> kForms = {FlowForm::rate, FlowForm::literal, FlowForm::j2};
+  law.form = kForms[c.word("form", {"rate", "literal", "j2"}, 0)];
   law.norm = c.word("norm", {"frobenius", "voigt6"}, 0) == 0 ? material::StrainNorm::frobenius
                                                              : material::StrainNorm::voigt6;
   const Vec6 after = material::compute_plastic_strain(strain, plastic, c.not_negative("yield"), law,

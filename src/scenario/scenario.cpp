@@ -200,7 +200,16 @@ void check_solid(const Scenario& s) {
                      "set /material/plasticity/deviatoric to true, or use p1 or p2");
 }
 
+void check_plasticity(const Scenario& s) {
+  const material::Plasticity& law = s.params.plasticity;
+  if (law.enabled && law.form == material::FlowForm::j2 &&
+      !(law.deviatoric && law.norm == material::StrainNorm::frobenius))
+    throw InputError(s.file, "/material/plasticity/form", "j2 is a law of the deviator's Frobenius norm",
+                     "set deviatoric to true and norm to \"frobenius\"");
+}
+
 void check_combinations(Scenario& s) {
+  check_plasticity(s);
   check_solid(s);
   check_rates(s);
   check_tables(s);

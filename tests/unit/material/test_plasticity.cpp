@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/mandel.h"
@@ -115,6 +116,98 @@ TEST(PlasticFlow, InFrobeniusNormDoesNotSeeTheFrameAndInVoigt6NormDoes) {
   law.norm = StrainNorm::voigt6;
   EXPECT_TRUE(flows(straight));
   EXPECT_FALSE(flows(turned));
+}
+
+constexpr double kLambda = 3.0;
+constexpr double kMu = 2.0;
+constexpr double kYield = 0.01;
+
+Plasticity make_j2() {
+  Plasticity law;
+  law.form = FlowForm::j2;
+  law.yield = kYield;
+  law.max = 10.0;
+  return law;
+}
+
+TEST(J2Flow, FollowsAShearCycleOfPerfectPlasticity) {
+  // dτ = μ dγ between ±τ_y, τ_y = √2 μ·yield. A closed cycle dissipates 4 τ_y (γ₀ − γ_y), however it is cut.
+  const double tau_yield = kSqrt2 * kMu * kYield;
+  const double amplitude = 0.05;
+  for (const int steps : {4, 40, 400}) {
+    Vec6 plastic = Vec6::Zero();
+    double tau = 0.0;
+    double gamma = 0.0;
+    double dissipated = 0.0;
+    // A quarter up, then two full cycles of which the last is counted.
+    for (int k = 1; k <= 9 * steps; ++k) {
+      const double phase = static_cast<double>(k) / steps;  // in quarters
+      const double next = amplitude * (1.0 - std::abs(std::fmod(phase + 1.0, 4.0) - 2.0));
+      tau = std::clamp(tau + kMu * (next - gamma), -tau_yield, tau_yield);
+      gamma = next;
+      Vec6 strain = Vec6::Zero();
+      strain(5) = gamma / kSqrt2;
+      const Vec6 before = plastic;
+      plastic = compute_plastic_strain(strain, plastic, kYield, make_j2(), 0.0);
+      EXPECT_NEAR(2.0 * kMu * (strain - plastic)(5) / kSqrt2, tau, 1e-15) << k;
+      if (k > 5 * steps) dissipated += 2.0 * kMu * (strain - plastic).dot(plastic - before);
+    }
+    EXPECT_NEAR(dissipated, 4.0 * tau_yield * (amplitude - tau_yield / kMu), 1e-14) << steps;
+  }
+}
+
+TEST(J2Flow, FollowsAUniaxialCycleBetweenPlusAndMinusTheTensileStrength) {
+  // Axial strain prescribed, the lateral one found so that the lateral stress vanishes: σ = clamp(σ + E dε,
+  // ±σ_y).
+  const double E = kMu * (3.0 * kLambda + 2.0 * kMu) / (kLambda + kMu);
+  const double strength = std::sqrt(6.0) * kMu * kYield;
+  const auto stress = [](const Vec6& elastic) {
+    Vec6 sigma = 2.0 * kMu * elastic;
+    sigma.head<3>().array() += kLambda * elastic.head<3>().sum();
+    return sigma;
+  };
+  Vec6 plastic = Vec6::Zero();
+  double expected = 0.0;
+  double axial = 0.0;
+  for (const double next : {0.005, 0.02, 0.05, 0.045, 0.0, -0.03, -0.02, 0.01, 0.04}) {
+    expected = std::clamp(expected + E * (next - axial), -strength, strength);
+    axial = next;
+    double low = -1.0;
+    double high = 1.0;
+    Vec6 strain = Vec6::Zero();
+    for (int k = 0; k < 60; ++k) {
+      const double lateral = 0.5 * (low + high);
+      strain.head<3>() = Vec3(axial, lateral, lateral);
+      const Vec6 after = compute_plastic_strain(strain, plastic, kYield, make_j2(), 0.0);
+      (stress(strain - after)(1) > 0.0 ? high : low) = lateral;
+    }
+    plastic = compute_plastic_strain(strain, plastic, kYield, make_j2(), 0.0);
+    EXPECT_NEAR(stress(strain - plastic)(0), expected, 1e-14) << next;
+    EXPECT_NEAR(plastic.head<3>().sum(), 0.0, 1e-16);
+  }
+}
+
+TEST(J2Flow, ASecondUpdateIsNone) {
+  const Vec6 strain = make_strain(6, 0.3);
+  const Vec6 once = compute_plastic_strain(strain, Vec6::Zero(), kYield, make_j2(), 0.0);
+  EXPECT_LT((compute_plastic_strain(strain, once, kYield, make_j2(), 0.0) - once).norm(), 1e-16);
+}
+
+TEST(EveryFlow, TurnsWithTheBody) {
+  const Mat3 Q = Eigen::AngleAxisd(0.9, Vec3(1, 2, -2) / 3.0).toRotationMatrix();
+  const auto turn = [&](const Vec6& e) { return to_mandel(Q * from_mandel(e) * Q.transpose()); };
+  for (const FlowForm form : {FlowForm::rate, FlowForm::literal, FlowForm::j2})
+    for (const bool deviatoric : {true, false}) {
+      Plasticity law = make_law();
+      law.form = form;
+      law.deviatoric = deviatoric || form == FlowForm::j2;
+      const Vec6 strain = make_strain(7, 0.2);
+      const Vec6 before = make_strain(8, 0.05);
+      const Vec6 after = compute_plastic_strain(strain, before, law.yield, law, 0.01);
+      EXPECT_LT(
+          (compute_plastic_strain(turn(strain), turn(before), law.yield, law, 0.01) - turn(after)).norm(),
+          1e-15);
+    }
 }
 
 TEST(ClayKernel, IsEquationNine) {
