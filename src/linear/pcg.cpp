@@ -1,6 +1,7 @@
 #include "linear/pcg.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/ordered_sum.h"
 
@@ -59,7 +60,12 @@ SolveReport ConjugateGradients::solve(Operator& matrix, Preconditioner& precondi
       m_p = m_z + (rz_next / rz) * m_p;
     rz = rz_next;
     matrix.multiply(m_p, m_q);
-    const double alpha = rz / dot(m_p, m_q);
+    const double curvature = dot(m_p, m_q);
+    if (curvature <= 0.0) {
+      report.relative_residual = std::numeric_limits<double>::infinity();
+      return report;
+    }
+    const double alpha = rz / curvature;
     x.noalias() += alpha * m_p;
     m_r.noalias() -= alpha * m_q;
     report.relative_residual = std::sqrt(dot(m_r, m_r)) / b_norm;

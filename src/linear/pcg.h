@@ -10,7 +10,8 @@ namespace argil::linear {
 struct SolveReport {
   bool converged = false;
   int iterations = 0;              ///< 0: solved by a factor
-  double relative_residual = 0.0;  ///< ‖b − A x‖₂ / ‖b‖₂; of an iteration by its recurrence
+  double relative_residual = 0.0;  ///< ‖b − A x‖₂ / ‖b‖₂; of an iteration by its recurrence; infinite: A
+                                   ///< was seen not to be positive definite
 };
 
 /// A symmetric positive definite matrix by its product alone.

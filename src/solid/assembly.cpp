@@ -91,13 +91,15 @@ void Solid::set_corner_products(const Points& u, double kept, double exact) {
       H.noalias() += u.col(m_elements.nodes(i, tet)) * m_elements.gradient.col(N * p + i).transpose();
     return H;
   };
-  Field mean;
-  if (m_nodal) {
+  Field mean_kept, mean_exact;  // p1_nodal: the nodes' mean volume change
+  const auto average = [&](const auto& gradient_of, Field& mean) {
     Field change(m_elements.num_tets());
     for (int t = 0; t < m_elements.num_tets(); ++t)
-      change(t) = volume_gradient(t).cwiseProduct(displacement_gradient(t)).sum();
+      change(t) = gradient_of(t).cwiseProduct(displacement_gradient(t)).sum();
     m_nodal->average(change, mean);
-  }
+  };
+  if (m_nodal && kept != 0.0) average([&](int t) { return kept_rotation(t); }, mean_kept);
+  if (m_nodal && exact != 0.0) average([&](int t) { return volume_gradient(t); }, mean_exact);
   parallel_for(m_elements.num_tets(), m_threads, [&](std::ptrdiff_t t) {
     const Elasticity e = elasticity(static_cast<int>(t));
     Eigen::Matrix<double, 3, N> force = Eigen::Matrix<double, 3, N>::Zero();
@@ -106,15 +108,17 @@ void Solid::set_corner_products(const Points& u, double kept, double exact) {
       const Mat3 H = displacement_gradient(p);
       Mat3 P = Mat3::Zero();
       if (kept != 0.0) {
-        const Mat3 R = m_rotation.middleCols<3>(3 * p);
+        const Mat3 R = kept_rotation(static_cast<int>(p));
         const Mat3 turned = R.transpose() * H;
-        P = kept * R * from_mandel(compute_stress(e, to_mandel(0.5 * (turned + turned.transpose()))));
+        Mat3 sigma = from_mandel(compute_stress(e, to_mandel(0.5 * (turned + turned.transpose()))));
+        if (m_nodal) sigma.diagonal().array() += e.excess_bulk * mean_kept(t);
+        P = kept * R * sigma;
       }
       if (exact != 0.0) {
         const Mat9 A = m_tangent.col(p).reshaped(9, 9);
         P += exact * (A * H.reshaped()).reshaped(3, 3);
+        if (m_nodal) P += exact * e.excess_bulk * mean_exact(t) * volume_gradient(static_cast<int>(t));
       }
-      if (m_nodal) P += (kept + exact) * e.excess_bulk * mean(t) * volume_gradient(static_cast<int>(t));
       force.noalias() += m_elements.weight(p) * P * m_elements.gradient.middleCols<N>(N * p);
     }
     m_corner_force.middleCols<N>(N * t) = force;
@@ -133,14 +137,20 @@ Mat3 Solid::volume_gradient(int tet) const {
   return compute_volume_gradient(m_params.model, motion(tet), m_plastic_strain->col(tet));
 }
 
+/// Frame of the stiffness whose rotation is kept: the present one, or that of the step's start.
+Mat3 Solid::kept_rotation(int point) const {
+  const Eigen::Matrix3Xd& R = m_kept_rotation.size() > 0 ? m_kept_rotation : m_rotation;
+  return R.middleCols<3>(3 * static_cast<Eigen::Index>(point));
+}
+
 void Solid::assemble_tangents() {
   if (!needs_tangents()) return;
   m_tangent.resize(81, m_elements.num_points());
   parallel_for(m_elements.num_points(), m_threads, [&](std::ptrdiff_t p) {
     const int tet = m_elements.tet_of_point(static_cast<int>(p));
-    m_tangent.col(p) = compute_tangent(m_params.model, motion(static_cast<int>(p)), m_plastic_strain->col(p),
-                                       elasticity(tet))
-                           .reshaped();
+    const Mat9 A = compute_tangent(m_params.model, motion(static_cast<int>(p)), m_plastic_strain->col(p),
+                                   elasticity(tet));
+    m_tangent.col(p) = (m_is_projected ? make_positive(A) : A).reshaped();
   });
 }
 
@@ -151,18 +161,25 @@ void Solid::assemble_matrix(std::span<const PointStiffness> contacts) {
   else
     assemble_rows<10>();
   if (m_nodal) {
-    Eigen::Matrix3Xd gradient(3, m_elements.gradient.cols());
-    for (int t = 0; t < m_elements.num_tets(); ++t)
-      gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t)) =
-          volume_gradient(t) * m_elements.gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t));
-    const double scale = shares().kept + shares().exact;
-    if (has_only_diagonal())
-      m_nodal->add_diagonal(gradient, scale, m_matrix);
-    else
-      m_nodal->add_stiffness(gradient, scale, m_threads, m_matrix);
+    add_nodal_stiffness(m_turned_gradient, shares().kept);
+    if (shares().exact != 0.0) {
+      Eigen::Matrix3Xd gradient(3, m_elements.gradient.cols());
+      for (int t = 0; t < m_elements.num_tets(); ++t)
+        gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t)) =
+            volume_gradient(t) * m_elements.gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t));
+      add_nodal_stiffness(gradient, shares().exact);
+    }
   }
   if (m_params.implicit_contact) add_contacts(contacts);
   mask_rows();
+}
+
+void Solid::add_nodal_stiffness(const Eigen::Matrix3Xd& gradient, double scale) {
+  if (scale == 0.0) return;
+  if (has_only_diagonal())
+    m_nodal->add_diagonal(gradient, scale, m_matrix);
+  else
+    m_nodal->add_stiffness(gradient, scale, m_threads, m_matrix);
 }
 
 template <int N>
@@ -196,7 +213,7 @@ void Solid::assemble_rows() {
               m_matrix.block(blocks[j]) +=
                   compute_isotropic_block(ci, m_turned_gradient.col(N * p + j), lambda, mu);
         } else if (share.kept != 0.0) {
-          const Mat3 R = m_rotation.middleCols<3>(3 * p);
+          const Mat3 R = kept_rotation(static_cast<int>(p));
           for (int j = 0; j < N; ++j)
             if (blocks[j] >= 0)
               m_matrix.block(blocks[j]) +=
@@ -250,8 +267,10 @@ void Solid::mask_rows() {
 }
 
 void Solid::apply_contact_stiffness(std::span<const PointStiffness> contacts, Points& force) const {
-  if (m_params.implicit_contact && m_params.integrator != Integrator::symplectic_euler)
-    add_contact_change(m_x, m_x_start, contacts, -1.0, force);
+  if (!m_params.implicit_contact || is_explicit()) return;
+  // Newmark's step takes the mean of both ends.
+  const double share = m_params.integrator == Integrator::newmark ? 0.5 : 1.0;
+  add_contact_change(m_x, m_x_start, contacts, -share, force);
 }
 
 /// scale · Σ k n n·(to − from): how contact forces change on the way.

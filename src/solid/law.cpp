@@ -92,15 +92,6 @@ Mat9 compute_linear_tangent(const Elasticity& e) {
   return A;
 }
 
-Mat9 project_to_positive(const Mat9& A) {
-  // A small multiple of the identity lets semi-definite matrices, which are fine, pass the quick test.
-  const Mat9 shifted = A + 1e-9 * A.diagonal().cwiseAbs().maxCoeff() * Mat9::Identity();
-  if (shifted.llt().info() == Eigen::Success) return A;
-  const Eigen::SelfAdjointEigenSolver<Mat9> modes(A);
-  return modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() *
-         modes.eigenvectors().transpose();
-}
-
 }  // namespace
 
 PointMotion make_motion(StrainModel model, const Mat3& F) {
@@ -162,12 +153,20 @@ Mat9 compute_tangent(StrainModel model, const PointMotion& m, const Vec6& plasti
     case StrainModel::linear:
       return compute_linear_tangent(e);
     case StrainModel::corotational:
-      return project_to_positive(compute_corotational_tangent(m, plastic_strain, e));
+      return compute_corotational_tangent(m, plastic_strain, e);
     case StrainModel::neo_hookean:
       break;
   }
-  return project_to_positive(
-      compute_neo_hookean_tangent(m.F, compute_inverse_plastic_stretch(plastic_strain), e));
+  return compute_neo_hookean_tangent(m.F, compute_inverse_plastic_stretch(plastic_strain), e);
+}
+
+Mat9 make_positive(const Mat9& A) {
+  // A small multiple of the identity lets semi-definite matrices, which are fine, pass the quick test.
+  const Mat9 shifted = A + 1e-9 * A.diagonal().cwiseAbs().maxCoeff() * Mat9::Identity();
+  if (shifted.llt().info() == Eigen::Success) return A;
+  const Eigen::SelfAdjointEigenSolver<Mat9> modes(A);
+  return modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() *
+         modes.eigenvectors().transpose();
 }
 
 double compute_volume_change(StrainModel model, const PointMotion& m, const Vec6& plastic_strain) {

@@ -45,11 +45,13 @@ double compute_energy_density(StrainModel model, const PointMotion& motion, cons
 Mat3 compute_piola(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
                    const Elasticity& e);
 
-/// ∂P/∂F, its negative modes set to zero so that Newton's matrix stays positive [Teran2005]. Exact before
-/// that for the linear and neo-Hookean laws and the isotropic corotational one without plastic strain; else
-/// the terms of second order in the elastic strain are left out.
+/// ∂P/∂F, symmetric. Exact for the linear and neo-Hookean laws and the isotropic corotational one without
+/// plastic strain; else the terms of second order in the elastic strain are left out.
 Mat9 compute_tangent(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
                      const Elasticity& e);
+
+/// The same with its negative modes set to zero, so that a step's matrix is positive [Teran2005].
+Mat9 make_positive(const Mat9& tangent);
 
 /// Relative volume change θ: tr(ε − ε_p), or J − 1 for the neo-Hookean law; and its derivative ∂θ/∂F.
 double compute_volume_change(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain);

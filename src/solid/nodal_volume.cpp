@@ -29,11 +29,17 @@ NodalVolume::NodalVolume(const Elements& elements, const std::vector<int>& row_o
             static_cast<int>(std::lower_bound(first, last, elements.nodes(j, t)) - m_neighbour.begin());
     }
   m_ring_gradient.setZero(3, static_cast<Eigen::Index>(m_neighbour.size()));
-  set_excess(Field::Zero(elements.num_tets()));
+  m_weight.setZero(elements.num_tets());
 }
 
-void NodalVolume::set_excess(const Field& excess_bulk) {
-  m_weight = 0.25 * m_volume.cwiseProduct(excess_bulk);
+void NodalVolume::set_excess(int tet, double excess_bulk) {
+  m_weight(tet) = 0.25 * m_volume(tet) * excess_bulk;
+  m_is_stale = true;
+}
+
+void NodalVolume::update_stiffness() {
+  if (!m_is_stale) return;
+  m_is_stale = false;
   m_stiffness.setZero(num_nodes());
   for (Eigen::Index t = 0; t < m_weight.size(); ++t)
     for (int a = 0; a < 4; ++a) m_stiffness(m_nodes(a, t)) += m_weight(t);

@@ -17,7 +17,8 @@ class NodalVolume {
   /// Bulk modulus over shear modulus that a tet keeps: that of ν = 0.3.
   static constexpr double kOwnBulkOverShear = 2.0 * 1.3 / (3.0 * 0.4);
 
-  void set_excess(const Field& excess_bulk);  ///< κ of every tet [Pa]
+  void set_excess(int tet, double excess_bulk);  ///< κ [Pa]
+  void update_stiffness();                       ///< D_a, when any κ changed
 
   /// θ of every tet → its mean over the tet's nodes after averaging; κ·mean is the pressure on the tet.
   void average(const Field& volume_change, Field& mean) const;
@@ -48,6 +49,7 @@ class NodalVolume {
   std::vector<int> m_place;                 // of corner j of tet t in the ring of corner a: 16 a tet
   Field m_weight;                           // V κ/4 of each tet
   Field m_stiffness;                        // D_a
+  bool m_is_stale = true;                   // D_a is of other κ
   Eigen::Matrix3Xd m_ring_gradient;         // D_a ∂θ_a/∂x of each ring entry
   std::vector<int> m_block_begin, m_block;  // for each ring entry (i of a's ring, a): blocks (i, ring of a)
 };

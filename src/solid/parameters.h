@@ -35,7 +35,7 @@ struct SolidParams {
   ElementKind element = ElementKind::p1;
   Integrator integrator = Integrator::backward_euler;
   Iteration iteration = Iteration::one;
-  double newton_tolerance = 1e-10;  ///< of the residual over the sum of the norms of its parts
+  double newton_tolerance = 1e-10;  ///< of the residual over the loads, reactions and momenta
   int newton_max_iterations = 50;
   double density = 1500.0;          ///< of dry clay [kg/m³]
   double rayleigh_mass = 0.0;       ///< a [1/s] in D = a M + b K

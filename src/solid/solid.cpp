@@ -91,7 +91,9 @@ SolidState Solid::make_rest_state() const {
 
 void Solid::set_material(int tet, const TetMaterial& material) {
   m_material[static_cast<std::size_t>(tet)] = material;
-  m_excess_changed = true;
+  if (!m_stiffness.empty())
+    m_stiffness[static_cast<std::size_t>(tet)] = make_isotropic_stiffness(material.lambda, material.mu);
+  if (m_nodal) m_nodal->set_excess(tet, elasticity(tet).excess_bulk);
 }
 
 void Solid::set_anisotropic_stiffness(int tet, const Mat6& C) {
@@ -123,7 +125,7 @@ PointMotion Solid::motion(int point) const {
 }
 
 template <int N>
-void Solid::set_motion(const Points& x) {
+void Solid::set_motion(const Points& x, bool keeps_frame) {
   parallel_for(m_elements.num_points(), m_threads, [&](std::ptrdiff_t p) {
     const int tet = m_elements.tet_of_point(static_cast<int>(p));
     const Eigen::Matrix<double, 3, N> gradient = m_elements.gradient.middleCols<N>(N * p);
@@ -133,17 +135,22 @@ void Solid::set_motion(const Points& x) {
     const PointMotion at = make_motion(m_params.model, F);
     m_deformation.middleCols<3>(3 * p) = F;
     m_rotation.middleCols<3>(3 * p) = at.R;
-    m_turned_gradient.middleCols<N>(N * p) = at.R * gradient;
+    if (!keeps_frame) m_turned_gradient.middleCols<N>(N * p) = at.R * gradient;
     m_strain.col(p) = compute_strain(F, at.R);
     m_volume_ratio(p) = F.determinant();
   });
 }
 
 StepStatus Solid::update_kinematics(const Points& x, Tick tick) {
+  return update_motion(x, tick, false);
+}
+
+StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frame) {
+  keeps_frame = keeps_frame && m_kept_rotation.size() > 0;
   if (m_elements.nodes_per_tet == 4)
-    set_motion<4>(x);
+    set_motion<4>(x, keeps_frame);
   else
-    set_motion<10>(x);
+    set_motion<10>(x, keeps_frame);
   Eigen::Index worst = 0;
   m_min_volume_ratio = m_volume_ratio.minCoeff(&worst);
   const bool finite = m_volume_ratio.allFinite();  // minCoeff may pass over a NaN
@@ -167,12 +174,7 @@ Field Solid::compute_volume_changes(const TensorField& plastic_strain) const {
 /// p1_nodal: the nodes' mean volume change at the present kinematics.
 void Solid::update_volume_change(const TensorField& plastic_strain) {
   if (!m_nodal) return;
-  if (m_excess_changed) {
-    Field excess(m_elements.num_tets());
-    for (int t = 0; t < m_elements.num_tets(); ++t) excess(t) = elasticity(t).excess_bulk;
-    m_nodal->set_excess(excess);
-    m_excess_changed = false;
-  }
+  m_nodal->update_stiffness();
   m_nodal->average(compute_volume_changes(plastic_strain), m_volume_change);
 }
 
@@ -185,7 +187,9 @@ double Solid::compute_elastic_energy(const TensorField& plastic_strain) const {
   const double own = ordered_sum(m_elements.num_points(), [&](std::ptrdiff_t p) {
     return compute_elastic_energy(static_cast<int>(p), plastic_strain.col(p));
   });
-  return m_nodal ? own + m_nodal->compute_energy(compute_volume_changes(plastic_strain)) : own;
+  if (!m_nodal) return own;
+  m_nodal->update_stiffness();
+  return own + m_nodal->compute_energy(compute_volume_changes(plastic_strain));
 }
 
 double Solid::compute_kinetic_energy(const SolidState& state) const {

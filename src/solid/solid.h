@@ -81,7 +81,7 @@ class Solid {
   void move(SolidState& state) const;   ///< x ← x̂ + τ v; prescribed components go where they must
 
   /// Turns the contact forces that were given to the step into those that acted: an implicit step takes them
-  /// at its end, f − k n n·(x' − x).
+  /// at its end, f − k n n·(x' − x); newmark takes the mean of both ends.
   void apply_contact_stiffness(std::span<const PointStiffness> contacts, Points& force) const;
 
   /// Static equilibrium under `loads` from state.x on, by Newton's method. Loads and prescribed displacements
@@ -118,11 +118,12 @@ class Solid {
   // solid.cpp
   void number_rows();
   template <int N>
-  void set_motion(const Points& x);
+  void set_motion(const Points& x, bool keeps_frame);
   Elasticity elasticity(int tet) const;
   PointMotion motion(int point) const;
   Field compute_volume_changes(const TensorField& plastic_strain) const;
   void update_volume_change(const TensorField& plastic_strain);
+  StepStatus update_motion(const Points& x, Tick tick, bool keeps_frame);
 
   // assembly.cpp
   bool needs_tangents() const;
@@ -138,6 +139,8 @@ class Solid {
   void set_corner_products(const Points& u, double kept, double exact);
   void compute_stiffness_product(const Points& u, double kept, double exact, Points& force);
   Mat3 volume_gradient(int tet) const;
+  Mat3 kept_rotation(int point) const;
+  void add_nodal_stiffness(const Eigen::Matrix3Xd& gradient, double scale);
   void add_contacts(std::span<const PointStiffness> contacts);
   void mask_rows();
   void gather(Points& force) const;
@@ -148,15 +151,19 @@ class Solid {
   bool has_only_diagonal() const { return m_params.solver.kind == linear::SolverKind::pcg_matrix_free; }
 
   // step.cpp
+  void keep_damping_frame();
   void predict(const SolidState& state, const StepLoads& loads, double step_s);
   bool place_supports(double time, double share);
   void compute_residual(const StepLoads& loads);
   double compute_rounding_force() const;
+  void add_reactions_and_rounding();
   double compute_potential(const StepLoads& loads);
+  linear::SolveReport solve_system(const StepLoads& loads, bool is_first);
   StepStatus search_line(const StepLoads& loads, Tick tick);
   void set_iterate(double share);
   double gravity_mass(Eigen::Index node) const;
   bool is_newton() const { return m_is_static || m_params.iteration == Iteration::newton; }
+  bool is_explicit() const { return !m_is_static && m_params.integrator == Integrator::symplectic_euler; }
   StepStatus iterate_static(const SolidState& state, const StepLoads& loads);
 
   SolidParams m_params;
@@ -175,8 +182,10 @@ class Solid {
   double m_min_volume_ratio = 1.0;
   Field m_volume_change;  // p1_nodal: θ of each tet's nodes, their mean
 
-  Eigen::Matrix3Xd m_turned_gradient;                   // R ∇N, N columns a point
+  Eigen::Matrix3Xd m_kept_rotation;                     // damping's R where it is not the present one
+  Eigen::Matrix3Xd m_turned_gradient;                   // R ∇N with that R, N columns a point
   Eigen::Matrix<double, 81, Eigen::Dynamic> m_tangent;  // ∂P/∂F of each point, where it is wanted
+  bool m_is_projected = true;                           // with its negative modes set to zero
   Eigen::Matrix3Xd m_corner_force;                      // N columns a tet
   Points m_internal_force;
 
@@ -187,7 +196,6 @@ class Solid {
   linear::BlockMatrix m_matrix;
   std::unique_ptr<linear::Solver> m_solver;
   std::unique_ptr<NodalVolume> m_nodal;  // p1_nodal
-  bool m_excess_changed = true;
 
   // Of the present step.
   bool m_is_static = false;
@@ -202,7 +210,9 @@ class Solid {
   Points m_product, m_direction, m_zero;          // working arrays, 3×n; the last one stays zero
   Points m_rhs, m_delta;                          // a column a row
   double m_residual_scale = 0.0;
-  double m_potential = 0.0, m_potential_scale = 0.0;
+  double m_corner_scale = 0.0;  // Σ‖corner force‖²
+  double m_rounding = 0.0;      // what rounding alone leaves of a residual
+  double m_potential = 0.0, m_potential_scale = 0.0, m_potential_rounding = 0.0;
   StepCounters m_counters;
 };
 

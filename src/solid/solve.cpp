@@ -53,32 +53,26 @@ void Solid::clear_held(Points& u) const {
 
 StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
   m_v_base = m_v;
-  solved = !is_newton();
-  if (m_params.integrator == Integrator::symplectic_euler && !m_is_static) {
+  solved = !is_newton() || is_explicit();
+  if (is_explicit()) {
     for (int row = 0; row < num_free(); ++row)
       m_delta.col(row) = m_rhs.col(row) / m_mass(m_node_of_row[static_cast<std::size_t>(row)]);
     set_iterate(1.0);
     return StepStatus::ok();
   }
-  // First guess: the body goes on as before.
   const bool is_first = m_counters.newton_iterations++ == 0;
-  for (int row = 0; row < num_free(); ++row) {
-    const int n = m_node_of_row[static_cast<std::size_t>(row)];
-    for (int k = 0; k < 3; ++k)
-      m_delta(k, row) = is_first && m_constraints.support(k, n) < 0 ? m_v_start(k, n) - m_v(k, n) : 0.0;
+  linear::SolveReport report = solve_system(loads, is_first);
+  if (is_newton() && needs_tangents() && !(report.converged && m_rhs.cwiseProduct(m_delta).sum() >= 0.0)) {
+    // The true matrix has negative modes here, so that its step need not lead downhill.
+    m_is_projected = true;
+    assemble_matrix(loads.contacts);
+    report = solve_system(loads, is_first);
   }
-  if (num_free() > 0) {
-    Product product(*this, loads.contacts);
-    const linear::SolveReport report = m_solver->solve(m_matrix, product, m_rhs, m_delta);
-    m_counters.linear_iterations += report.iterations;
-    m_counters.residual = report.relative_residual;
-    if (!report.converged && std::isinf(report.relative_residual))
-      return StepStatus::failed(
-          {tick, "solid", -1, "system matrix is not positive definite, pivot", 0.0, 0.0});
-    if (!report.converged)
-      return StepStatus::failed({tick, "solid", -1, "relative residual of the linear solve",
-                                 report.relative_residual, m_params.solver.tolerance});
-  }
+  if (!report.converged && std::isinf(report.relative_residual))
+    return StepStatus::failed({tick, "solid", -1, "system matrix is not positive definite, pivot", 0.0, 0.0});
+  if (!report.converged)
+    return StepStatus::failed({tick, "solid", -1, "relative residual of the linear solve",
+                               report.relative_residual, m_params.solver.tolerance});
   if (!is_newton()) {
     set_iterate(1.0);
     return StepStatus::ok();
@@ -87,6 +81,21 @@ StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
     return StepStatus::failed({tick, "solid", -1, "Newton's relative residual",
                                m_rhs.norm() / m_residual_scale, m_params.newton_tolerance});
   return search_line(loads, tick);
+}
+
+/// A δ = r. First guess: the body goes on as before.
+linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
+  if (num_free() == 0) return {true, 0, 0.0};
+  for (int row = 0; row < num_free(); ++row) {
+    const int n = m_node_of_row[static_cast<std::size_t>(row)];
+    for (int k = 0; k < 3; ++k)
+      m_delta(k, row) = is_first && m_constraints.support(k, n) < 0 ? m_v_start(k, n) - m_v(k, n) : 0.0;
+  }
+  Product product(*this, loads.contacts);
+  const linear::SolveReport report = m_solver->solve(m_matrix, product, m_rhs, m_delta);
+  m_counters.linear_iterations += report.iterations;
+  m_counters.residual = report.relative_residual;
+  return report;
 }
 
 }  // namespace argil::solid

@@ -12,6 +12,7 @@
 namespace argil::solid {
 namespace {
 
+constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 constexpr double kEnd = std::numeric_limits<double>::infinity();  // statics: supports at their full way
 
 double sum_products(const Points& a, const Points& b) {
@@ -33,10 +34,22 @@ StepStatus Solid::begin_step(const SolidState& state, const StepLoads& loads, do
   m_x_start = state.x;
   m_v_start = state.v;
   m_x = state.x;
+  keep_damping_frame();
   predict(state, loads, step_s);
   const bool has_moved = place_supports(time, 1.0);
-  m_v = m_params.integrator == Integrator::symplectic_euler ? state.v : Points((m_x - m_x_hat) / m_tau);
-  return has_moved ? update_kinematics(m_x, tick) : StepStatus::ok();
+  m_v = is_explicit() ? state.v : Points((m_x - m_x_hat) / m_tau);
+  // Held components go at their mean velocity; Newmark's own rule would let it swing about that.
+  m_v = (m_constraints.support.array() >= 0).select((m_held_x - state.x) / step_s, m_v);
+  if (is_explicit()) m_x = state.x;  // forces are those of the start
+  return has_moved && !is_explicit() ? update_kinematics(m_x, tick) : StepStatus::ok();
+}
+
+/// Newton's method damps in the frame of the step's start, so that a step has a potential.
+void Solid::keep_damping_frame() {
+  if (is_newton() && m_params.rayleigh_stiffness > 0.0)
+    m_kept_rotation = m_rotation;
+  else
+    m_kept_rotation.resize(3, 0);
 }
 
 /// x̂, v̂, τ of each integrator.
@@ -108,6 +121,7 @@ double Solid::compute_rounding_force() const {
 /// r = M (v̂ − v) + τ (f_ext + M g − f_int − D v − Σ k n n·(x − x₀)); statics: the forces alone.
 void Solid::compute_residual(const StepLoads& loads) {
   assemble_internal_force();
+  m_corner_scale = is_newton() ? m_corner_force.squaredNorm() : 0.0;
   const bool is_viscous = !m_is_static && m_params.rayleigh_stiffness > 0.0 && (m_v.array() != 0.0).any();
   m_product.setZero(3, m_elements.num_nodes());
   if (is_viscous) compute_stiffness_product(m_v, m_params.rayleigh_stiffness, 0.0, m_product);
@@ -121,25 +135,36 @@ void Solid::compute_residual(const StepLoads& loads) {
     const Vec3 applied = m_load_share * (loads.force.col(n) + gravity_mass(n) * m_params.gravity);
     const Vec3 force = applied - m_internal_force.col(n) - m_product.col(n) - a * m_mass(n) * m_v.col(n);
     m_rhs.col(row) = inertia * m_mass(n) * (m_v_hat.col(n) - m_v.col(n)) + m_tau * force;
-    scale += inertia * m_mass(n) * m_v_hat.col(n).norm() +
-             m_tau * (applied.norm() + m_internal_force.col(n).norm());
+    scale += inertia * m_mass(n) * (m_v_hat.col(n).norm() + m_v.col(n).norm()) + m_tau * applied.norm();
   }
   for (const int row : m_held_rows)
     for (int k = 0; k < 3; ++k)
       if (m_constraints.support(k, m_node_of_row[static_cast<std::size_t>(row)]) >= 0) m_rhs(k, row) = 0.0;
-  for (int n = 0; n < m_elements.num_nodes(); ++n)  // what supports bear: all there is where only they act
-    if (m_row_of_node[static_cast<std::size_t>(n)] < 0) scale += m_tau * m_internal_force.col(n).norm();
   m_residual_scale = scale;
+  if (is_newton()) add_reactions_and_rounding();
+}
+
+/// What else the residual is small against: the forces in the supports, and, so that a body at rest is found
+/// to be so, the rounding of corner forces and of the positions that they come from.
+void Solid::add_reactions_and_rounding() {
+  const double reactions = ordered_sum(m_elements.num_nodes(), [&](std::ptrdiff_t n) {
+    return (m_constraints.support.col(n).array() >= 0).select(m_internal_force.col(n), Vec3::Zero()).norm();
+  });
+  m_residual_scale += m_tau * reactions;
+  m_rounding = m_tau * (compute_rounding_force() + kRounding * std::sqrt(m_corner_scale));
+  // Of the energy: force times what rounding moves each corner.
+  const auto corners = static_cast<double>(m_corner_force.cols());
+  m_potential_rounding = kRounding * m_x.cwiseAbs().maxCoeff() * std::sqrt(corners * m_corner_scale);
 }
 
 bool Solid::assemble(const StepLoads& loads) {
   compute_residual(loads);
-  if (m_params.integrator == Integrator::symplectic_euler && !m_is_static) return false;
+  if (is_explicit()) return false;
   if (is_newton()) {
-    const double rounding = m_tau * compute_rounding_force();
-    if (compute_norm(m_rhs) <= m_params.newton_tolerance * m_residual_scale + rounding) return true;
+    if (compute_norm(m_rhs) <= m_params.newton_tolerance * m_residual_scale + m_rounding) return true;
     m_potential = compute_potential(loads);
   }
+  m_is_projected = !is_newton();
   assemble_matrix(loads.contacts);
   return false;
 }
@@ -191,20 +216,20 @@ void Solid::set_iterate(double share) {
 /// promise is below rounding, the full step is taken.
 StepStatus Solid::search_line(const StepLoads& loads, Tick tick) {
   constexpr double kPromised = 1e-4;
-  constexpr double kRounding = 1e-13;
   constexpr int kHalvings = 40;
   const double slope = -sum_products(m_rhs, m_delta);
   const double before = m_potential;
+  const double rounding = m_potential_rounding + kRounding * m_potential_scale;
   m_v_base = m_v;
   double share = 1.0;
   StepStatus status = StepStatus::ok();
   for (int i = 0; i <= kHalvings; ++i, share *= 0.5) {
     set_iterate(share);
-    status = update_kinematics(m_x, tick);
+    status = update_motion(m_x, tick, true);
     if (!status.is_ok()) continue;
     update_volume_change(*m_plastic_strain);
     const double after = compute_potential(loads);
-    if (after <= before + kPromised * share * slope + kRounding * m_potential_scale) return StepStatus::ok();
+    if (after <= before + kPromised * share * slope + rounding) return StepStatus::ok();
   }
   if (!status.is_ok()) return status;
   return StepStatus::failed({tick, "solid", -1, "line search: slope of the potential", slope, 0.0});

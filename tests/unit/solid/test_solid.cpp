@@ -9,63 +9,12 @@
 
 #include <gtest/gtest.h>
 
-#include "support/block_mesh.h"
+#include "support/solid_scene.h"
 
 namespace argil::solid {
 namespace {
 
-struct Scene {
-  mesh::TetMesh mesh;
-  SolidParams params;
-  Solid solid;
-  SolidState state;
-  Points load;
-  double time = 0.0;
-
-  Scene(mesh::TetMesh m, const std::vector<int>& fixed, const SolidParams& p, double E, double nu,
-        int threads = 1)
-      : mesh(std::move(m)),
-        params(p),
-        solid(mesh, mesh::make_topology(mesh), hold(fixed), p, threads),
-        state(solid.make_rest_state()) {
-    load.setZero(3, state.x.cols());
-    for (int t = 0; t < mesh.num_tets(); ++t)
-      solid.set_material(t, {E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu)), 1.0});
-    EXPECT_TRUE(solid.update_kinematics(state.x, 0).is_ok());
-  }
-  static std::vector<Support> hold(const std::vector<int>& nodes) {
-    Support support;
-    support.region.kind = Region::Kind::nodes;
-    support.region.nodes = nodes;
-    return {support};
-  }
-  /// Velocities of the next step, before the body moves.
-  StepStatus solve(double h, std::span<const PointStiffness> contacts = {}) {
-    const StepLoads loads{load, contacts};
-    ARGIL_TRY(solid.begin_step(state, loads, h, time += h, 0));
-    for (bool solved = false; !solved;) {
-      solved = solid.assemble(loads);
-      if (!solved) ARGIL_TRY(solid.solve(loads, 0, solved));
-    }
-    solid.finish_step(state);
-    return StepStatus::ok();
-  }
-  StepStatus step(double h) {
-    ARGIL_TRY(solve(h));
-    solid.move(state);
-    return solid.update_kinematics(state.x, 0);
-  }
-  /// Internal forces at positions x.
-  Points compute_force(const Points& x) {
-    SolidState moved = state;
-    moved.x = x;
-    EXPECT_TRUE(solid.update_kinematics(x, 0).is_ok());
-    const StepLoads loads{load};
-    EXPECT_TRUE(solid.begin_step(moved, loads, 1e-3, 0.0, 0).is_ok());
-    solid.assemble(loads);
-    return solid.internal_force();
-  }
-};
+using test::Scene;
 
 SolidParams make_params(linear::SolverKind solver) {
   SolidParams params;
@@ -127,10 +76,9 @@ TEST(Solid, OscillatorLosesAmplitudeAsBackwardEulerPredicts) {
   // One free vertex is a linear oscillator in each eigendirection of its 3×3 stiffness: |z_{n+1}| =
   // |z_n|/√(1+(hω)²), where z = ωu + iv.
   mesh::TetMesh mesh = test::make_block(1, 1, 1, Vec3(1, 1, 1));
-  std::vector<int> fixed = {0, 1, 2, 3, 4, 5, 6};
   SolidParams params = make_params(linear::SolverKind::cholesky);
   params.model = StrainModel::linear;
-  Scene scene(std::move(mesh), fixed, params, 1e5, 0.0);
+  Scene scene(std::move(mesh), {0, 1, 2, 3, 4, 5, 6}, params, 1e5, 0.0);
   // Stiffness of the free vertex from the force of unit displacements (linear model).
   Mat3 K;
   for (int k = 0; k < 3; ++k) {
