@@ -77,11 +77,11 @@ def draw_manufactured():
 
 
 def draw_beams():
-    figure, panels = make_figure(3)
+    figure, panels = make_figure(4)
     for axes, name, found, exact, title in zip(
-            panels, ("cantilever", "torsion", "cook"), ("deflection_m", "constant", "tip"),
-            ("timoshenko_m", "saint_venant", "literature"),
-            ("cantilever: deflection", "square bar: torsion constant", "Cook's membrane: tip")):
+            panels, ("cantilever", "torsion", "cook", "cook_plane_strain"),
+            ("deflection_m", "constant", "tip", "tip"), ("timoshenko_m", "saint_venant", "literature", "fine"),
+            ("cantilever", "torsion", "Cook, ν = ⅓", "Cook, ν = 0.4999")):
         for element, rows in groups(read(name), "element"):
             axes.semilogx([r["cells"] for r in rows], [r[found] / r[exact] for r in rows], label=element,
                           **STYLE[element])
@@ -91,7 +91,7 @@ def draw_beams():
         axes.minorticks_off()
         axes.set(xlabel="cells across", title=title)
     panels[0].set_ylabel("over the reference")
-    panels[2].legend()
+    panels[3].legend()
     save(figure, "beams")
 
 
@@ -106,7 +106,7 @@ def draw_locking():
     axes.axhline(1.0, color=GREY, linewidth=0.8)
     axes.invert_xaxis()
     axes.set(xlabel="½ − ν", ylabel="tip deflection over the fine one", ylim=(0, 1.08),
-             title="bar 5 : 1, four cells across")
+             title="bar 5 : 1; p1 four cells across, p2 two")
     axes.legend(loc="lower left")
     save(figure, "locking")
 

@@ -53,12 +53,15 @@ void make_beams(const std::string& folder) {
   Table cantilever(folder, "cantilever", "element,cells,deflection_m,timoshenko_m");
   Table torsion(folder, "torsion", "element,cells,constant,saint_venant");
   Table cook(folder, "cook", "element,cells,tip,literature");
+  Table cook_strain(folder, "cook_plane_strain", "element,cells,tip,fine");
+  const double fine = solve_cook(ElementKind::p2, 0.4999, true, 32);
   for (const auto& [element, name] : kElements) {
+    for (const int n : {2, 4, 8, 16}) cook_strain.add(name, n, solve_cook(element, 0.4999, true, n), fine);
+    if (element == ElementKind::p1_nodal) continue;  // up to ν = 0.3 it is p1
     const bool is_quadratic = element == ElementKind::p2;
     for (const int n : {1, 2, 4, 8}) {
       if (is_quadratic && n > 4) continue;
-      if (element != ElementKind::p1_nodal)  // the same as p1 up to ν = 0.3
-        cantilever.add(name, n, solve_cantilever(element, 0.0, n), compute_timoshenko_deflection(0.0));
+      cantilever.add(name, n, solve_cantilever(element, 0.0, n), compute_timoshenko_deflection(0.0));
       torsion.add(name, 2 * n, solve_torsion(element, 2 * n), kSquareTorsion);
     }
     for (const int n : {2, 4, 8, 16, 32})
@@ -80,13 +83,14 @@ void make_manufactured(const std::string& folder) {
 void make_locking(const std::string& folder) {
   Table table(folder, "locking", "element,model,poissons_ratio,deflection_m,reference_m");
   for (const double nu : {0.3, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499, 0.4995, 0.4999}) {
-    const double reference = solve_cantilever(ElementKind::p2, nu, 5);
-    for (const auto& [element, name] : kElements)
-      table.add(name, "linear", nu, solve_cantilever(element, nu, 4), reference);
-    table.add("p1_nodal", "corotational", nu,
-              solve_cantilever(ElementKind::p1_nodal, nu, 4, StrainModel::corotational), reference);
-    table.add("p1_nodal", "neo_hookean", nu,
-              solve_cantilever(ElementKind::p1_nodal, nu, 4, StrainModel::neo_hookean), reference);
+    const double reference = solve_cantilever(ElementKind::p2, nu, 4);
+    const auto add = [&, nu = nu](ElementKind element, const char* name, StrainModel model, const char* law) {
+      const int n = element == ElementKind::p2 ? 2 : 4;  // equally many nodes
+      table.add(name, law, nu, solve_cantilever(element, nu, n, model), reference);
+    };
+    for (const auto& [element, name] : kElements) add(element, name, StrainModel::linear, "linear");
+    add(ElementKind::p1_nodal, "p1_nodal", StrainModel::corotational, "corotational");
+    add(ElementKind::p1_nodal, "p1_nodal", StrainModel::neo_hookean, "neo_hookean");
   }
 }
 
