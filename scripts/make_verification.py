@@ -129,7 +129,7 @@ def draw_time():
     panels[1].plot([], [], color=GREY, label="Newton")
     panels[1].plot([], [], color=GREY, linestyle="--", label="one step")
     panels[1].legend()
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    panels[0].legend(loc="lower right", fontsize=6)
     save(figure, "time")
 
 

@@ -62,7 +62,7 @@ void make_beams(const std::string& folder) {
     for (const int n : {1, 2, 4, 8}) {
       if (is_quadratic && n > 4) continue;
       cantilever.add(name, n, solve_cantilever(element, 0.0, n), compute_timoshenko_deflection(0.0));
-      torsion.add(name, 2 * n, solve_torsion(element, 2 * n), kSquareTorsion);
+      if (n < 8) torsion.add(name, 2 * n, solve_torsion(element, 2 * n), kSquareTorsion);
     }
     for (const int n : {2, 4, 8, 16, 32})
       cook.add(name, n, solve_cook(element, 1.0 / 3.0, false, n), kCookPlaneStress);
