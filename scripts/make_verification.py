@@ -65,12 +65,14 @@ def save(figure, name):
 
 def draw_manufactured():
     figure, panels = make_figure(2)
-    slopes = {"l2": ((0.5, 0.15, 2), (0.5, 0.012, 3)), "h1": ((0.5, 0.25, 1), (0.5, 0.06, 2))}
+    slopes = {"l2": ((0.25, 0.1, 2), (0.25, 0.01, 3)), "h1": ((0.25, 0.35, 1), (0.25, 0.06, 2))}
     for axes, norm, title in zip(panels, ("l2", "h1"), ("displacement, $L^2$", "its gradient, $H^1$")):
         for element, rows in groups(read("manufactured"), "element"):
             axes.loglog([1.0 / r["cells"] for r in rows], [r[norm] for r in rows], label=element, **STYLE[element])
         for slope in slopes[norm]:
             draw_slope(axes, *slope)
+        axes.set_xticks([1 / 2, 1 / 4, 1 / 8, 1 / 16], ["1/2", "1/4", "1/8", "1/16"])
+        axes.minorticks_off()
         axes.set(xlabel="cell of the unit cube", ylabel="relative error", title=title)
     panels[0].legend()
     save(figure, "manufactured")
@@ -116,8 +118,8 @@ def draw_time():
     for integrator, rows in groups(read("swing"), "integrator"):
         panels[0].loglog([0.05 / r["steps"] for r in rows], [r["error"] for r in rows], label=integrator,
                          **STYLE[integrator])
-    draw_slope(panels[0], 1e-3, 4e-1, 1)
-    draw_slope(panels[0], 1e-3, 2e-3, 2)
+    draw_slope(panels[0], 1e-3, 1.5e-2, 1)
+    draw_slope(panels[0], 1e-3, 1.5e-3, 2)
     panels[0].set(xlabel="step [s]", ylabel="relative error", title="thrown bar")
     for axes, drift in zip(panels[1:], ("energy_drift", "momentum_drift")):
         for (integrator, iteration), rows in groups(
@@ -125,7 +127,7 @@ def draw_time():
             axes.loglog([1.0 / r["steps_a_turn"] for r in rows], [max(r[drift], 1e-16) for r in rows],
                         linestyle="-" if iteration == "newton" else "--", **STYLE[integrator])
         axes.set(xlabel="step over turn", title={"energy_drift": "free turn: energy change",
-                                                 "momentum_drift": "free turn: angular momentum"}[drift])
+                                                 "momentum_drift": "its angular momentum"}[drift])
     panels[1].plot([], [], color=GREY, label="Newton")
     panels[1].plot([], [], color=GREY, linestyle="--", label="one step")
     panels[1].legend()

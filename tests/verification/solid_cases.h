@@ -26,7 +26,7 @@ inline constexpr double kSquareTorsion =
 /// (48,60), (0,44), thickness 1, unit shear force on the right edge, E = 1. Plane stress by free faces, or
 /// plane strain by held ones; n cells an edge.
 double solve_cook(solid::ElementKind element, double nu, bool is_plane_strain, int n);
-inline constexpr double kCookPlaneStress = 23.96;  ///< ν = 1/3, converged value of [Long2010]
+inline constexpr double kCookPlaneStress = 23.96;  ///< ν = 1/3: refined solutions of the literature
 
 /// Errors of the manufactured solution u = a sin πx sin πy sin πz on an irregular mesh of the unit cube with
 /// n cells an edge, relative; μ = 1.
