@@ -243,6 +243,9 @@ void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
            "flux: taken by the dry tool.");
   b.number("/water/saturation_increment", w.saturation_increment, between(0, 1), "",
            "increment: of S a water step.");
+  b.number("/water/swelling", w.swelling, between(0, 1), "",
+           "Growth of the rest volume at S = 1, linear in S; 0: none.");
+  b.boolean("/water/adds_mass", w.adds_mass, "The body weighs its water, too; false: the dry clay alone.");
   ToolSpec& t = s.tool;
   const auto only = [&t](ToolKind kind) { return [&t, kind] { return t.kind == kind; }; };
   b.choice<ToolKind>("/tool/shape/kind", t.kind,
@@ -333,6 +336,10 @@ void bind_dynamics(Binder& b, Scenario& s) {
   b.boolean("/dynamics/implicit_contact", d.implicit_contact, "Contact stiffness enters the implicit solve.");
   b.number("/dynamics/min_volume_ratio", d.min_volume_ratio, {-1e300, 1, true, true}, "",
            "det F of a tet at or below which the run stops.");
+  b.number(
+      "/dynamics/rest_speed_m_per_s", s.params.rest_speed, not_negative(), "m/s",
+      "A body that nothing acts on and that is slower for two steps is stopped and not solved for; 0: only "
+      "one that has not moved yet.");
   b.boolean("/dynamics/allow_locking", s.allow_locking,
             "Run nearly incompressible 4-node tets although they lock.");
 }

@@ -36,6 +36,9 @@ struct Params {
   solid::SolidParams solid;
   contact::ContactParams contact;
   device::DeviceLimits device;
+  /// Speed of the fastest node [m/s] at which a body that nothing touches counts as at rest for two steps: it
+  /// is then stopped and not solved for until something acts. 0: only a body that has not moved yet.
+  double rest_speed = 0.0;
   int threads = 1;
 };
 

@@ -1,5 +1,7 @@
 #include "sim/simulation.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/check.h"
@@ -31,8 +33,13 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
   m_external_force.setZero(3, n);
   m_x_before = m_state.solid.x;
   m_dissipation.setZero(m_solid.elements().num_points());
-  refresh_materials(-1.0);
-  const StepStatus rest = m_solid.update_kinematics(m_state.solid.x, 0);
+  m_is_moved = std::any_of(m_body.supports.begin(), m_body.supports.end(),
+                           [](const solid::Support& s) { return s.displacement.norm() > 0.0; });
+  StepStatus rest = m_solid.update_kinematics(m_state.solid.x, 0);
+  ARGIL_ASSERT(rest.is_ok());
+  const bool is_loaded = params.solid.gravity.norm() > 0.0 || m_load_force.norm() > 0.0;
+  if (!m_is_moved && !is_loaded) fall_asleep();
+  rest = refresh_materials(-1.0);
   ARGIL_ASSERT(rest.is_ok());
 }
 
@@ -57,6 +64,7 @@ void Simulation::spread_contact_force(int ticks) {
   double weight = 0.0;
   for (const contact::Contact& c : m_contacts.contacts) {
     if (!acts) break;
+    m_state.is_touched = true;
     for (std::size_t i = 0; i < 3 && c.vertex[i] >= 0; ++i)
       m_state.contact_force.col(c.vertex[i]) += sign * share * c.weight[i] * c.force;
     // A pulling contact has negative stiffness; left out, so that the system stays positive definite.
@@ -115,20 +123,61 @@ void Simulation::exchange_water(int sign, double step_s) {
   m_water.exchange(m_touched_face, m_touched_area, sign, step_s);
 }
 
-/// Gives the solid the moduli and yield of every tet whose saturation moved by more than `tolerance` since
-/// last time.
-void Simulation::refresh_materials(double tolerance) {
+/// Moduli, yield, size and weight of a tet at its present saturation.
+void Simulation::refresh_material(int tet) {
+  const double S = m_water.saturation()(tet);
+  const double scale = m_body.modulus_scale.size() > 0 ? m_body.modulus_scale(tet) : 1.0;
+  const material::WetState wet = m_moisture.at(S);
+  m_solid.set_material(tet, {scale * wet.lambda, scale * wet.mu, wet.yield});
+  if (m_params.water.swelling > 0.0) m_solid.set_swelling(tet, 1.0 + m_params.water.swelling * S);
+  if (m_params.water.adds_mass) m_solid.set_water_mass(tet, m_water.capacity(tet) * S);
+  if (m_moisture.is_isotropic()) return;
+  const Vec3 axis =
+      m_body.pore_axis.cols() > 0 ? Vec3(m_body.pore_axis.col(tet)) : m_params.moisture.medium.axis;
+  m_solid.set_anisotropic_stiffness(tet, scale * m_moisture.stiffness_at(S, axis));
+}
+
+/// Brings the solid up to date with every tet whose saturation moved by more than `tolerance` since last
+/// time.
+StepStatus Simulation::refresh_materials(double tolerance) {
   m_water.collect_changed(tolerance, m_changed_tets);
   for (const int tet : m_changed_tets) {
-    const double S = m_water.saturation()(tet);
-    const double scale = m_body.modulus_scale.size() > 0 ? m_body.modulus_scale(tet) : 1.0;
-    const material::WetState wet = m_moisture.at(S);
-    m_solid.set_material(tet, {scale * wet.lambda, scale * wet.mu, wet.yield});
-    if (m_moisture.is_isotropic()) continue;
-    const Vec3 axis =
-        m_body.pore_axis.cols() > 0 ? Vec3(m_body.pore_axis.col(tet)) : m_params.moisture.medium.axis;
-    m_solid.set_anisotropic_stiffness(tet, scale * m_moisture.stiffness_at(S, axis));
+    refresh_material(tet);
+    if (m_state.is_at_rest && m_solid.is_strained(tet, m_state.solid.plastic_strain))
+      m_state.is_at_rest = false;  // other moduli under strain: another balance
   }
+  const bool gains_weight = m_params.water.adds_mass && m_params.solid.gravity.norm() > 0.0;
+  if (gains_weight && !m_changed_tets.empty()) m_state.is_at_rest = false;
+  const bool may_grow = m_params.water.swelling > 0.0 && !m_changed_tets.empty();
+  if (!may_grow || !(m_water.saturation().array() > 0.0).any()) return StepStatus::ok();
+  m_state.is_at_rest = false;
+  return m_solid.update_kinematics(m_state.solid.x, m_clock.tick);
+}
+
+void Simulation::fall_asleep() {
+  m_state.is_at_rest = true;
+  m_state.slow_steps = 0;
+  m_state.solid.v.setZero();
+  m_state.solid.v_before.setZero();
+  if (m_state.solid.x_before.size() > 0) m_state.solid.x_before = m_state.solid.x;
+  m_rest_energy = m_solid.compute_elastic_energy(m_state.solid.plastic_strain);
+  m_rest_plastic_strain = m_state.solid.plastic_strain.colwise().norm().maxCoeff();
+}
+
+/// Is the body left as it is in this physics step? It falls asleep when nothing has touched it and it has
+/// been slower than rest_speed for two steps, and wakes when anything acts. A body that never moved rests
+/// from the start; only rounding would stir it.
+bool Simulation::rests() {
+  if (m_state.is_touched || m_is_moved) {
+    m_state.is_at_rest = false;
+    m_state.slow_steps = 0;
+    return false;
+  }
+  if (m_state.is_at_rest || m_params.rest_speed == 0.0) return m_state.is_at_rest;
+  const double speed = std::sqrt(m_state.solid.v.colwise().squaredNorm().maxCoeff());
+  m_state.slow_steps = speed <= m_params.rest_speed ? m_state.slow_steps + 1 : 0;
+  if (m_state.slow_steps >= 2) fall_asleep();
+  return m_state.is_at_rest;
 }
 
 HapticRecord Simulation::haptic_record() const {
@@ -152,7 +201,9 @@ PhysicsRecord Simulation::physics_record() const {
   record.tick = m_clock.tick;
   record.time = static_cast<double>(m_clock.tick) * m_clock.period;
   record.kinetic_energy = m_solid.compute_kinetic_energy(m_state.solid);
-  record.elastic_energy = m_solid.compute_elastic_energy(m_state.solid.plastic_strain);
+  const bool is_at_rest = m_state.is_at_rest;
+  record.elastic_energy =
+      is_at_rest ? m_rest_energy : m_solid.compute_elastic_energy(m_state.solid.plastic_strain);
   record.plastic_dissipation = m_state.plastic_dissipation;
   record.contact_work = m_state.contact_work;
   record.water_mass = m_water.mass();
@@ -164,7 +215,8 @@ PhysicsRecord Simulation::physics_record() const {
   record.residual = m_solid.counters().residual;
   record.active_nodes = m_solid.num_free();
   record.min_volume_ratio = m_solid.min_volume_ratio();
-  record.max_plastic_strain = m_state.solid.plastic_strain.colwise().norm().maxCoeff();
+  record.max_plastic_strain =
+      is_at_rest ? m_rest_plastic_strain : m_state.solid.plastic_strain.colwise().norm().maxCoeff();
   return record;
 }
 

@@ -52,7 +52,7 @@ class Simulation {
  private:
   // Stages of a tick, defined in step.cpp in the order in which they run.
   void contact_step(int ticks);
-  void water_step();
+  StepStatus water_step();
   StepStatus physics_step();
   void apply_clay_kernel(double step_s);
   void apply_plastic_flow(double step_s);
@@ -60,7 +60,10 @@ class Simulation {
   void spread_contact_force(int ticks);
   void exchange_water(int sign, double step_s);
   TensorField mean_plastic_strain() const;
-  void refresh_materials(double tolerance);
+  StepStatus refresh_materials(double tolerance);
+  void refresh_material(int tet);
+  void fall_asleep();
+  bool rests();
 
   Params m_params;
   Body m_body;
@@ -80,7 +83,9 @@ class Simulation {
   Points m_load_force;  // 3×n, constant
   Points m_external_force;
   Points m_x_before;
-  Field m_dissipation;  // of each point in the last physics step [J]
+  Field m_dissipation;                                      // of each point in the last physics step [J]
+  bool m_is_moved = false;                                  // some support moves
+  double m_rest_energy = 0.0, m_rest_plastic_strain = 0.0;  // of the body while it is at rest
   StageObserver* m_observer = nullptr;
 };
 

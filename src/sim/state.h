@@ -37,9 +37,12 @@ struct State {
   int force_age = 0;                   ///< [ticks] since it was computed
   Points contact_force;                ///< 3×n on the body, mean over the physics step [N]
   Vec3 contact_centre = Vec3::Zero();  ///< where the body is touched [m], valid while is_pressed
+  bool is_touched = false;             ///< contact_force waits for the next physics step
   bool is_pressed = false;             ///< a push or pull tool exerts a force on the body
   // solid
   solid::SolidState solid;
+  bool is_at_rest = false;  ///< nothing acts on the body and it does not move: no need to solve
+  int slow_steps = 0;       ///< physics steps in a row that were slower than rest_speed
   // ledgers
   double plastic_dissipation = 0.0;  ///< [J] since the start
   double contact_work = 0.0;         ///< [J] done on the body since the start

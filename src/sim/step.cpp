@@ -20,7 +20,7 @@ StepStatus Simulation::tick(const device::DeviceSample& sample) {
     contact_step(rates.physics_period_ticks);
 
   // Physics: what the water and the contact force do to the body.
-  if (m_clock.due(rates.water_period_ticks)) water_step();
+  if (m_clock.due(rates.water_period_ticks)) ARGIL_TRY(water_step());
   if (physics_due) ARGIL_TRY(physics_step());
 
   // Hand: the last force, old or new, through the device's limits.
@@ -44,17 +44,19 @@ void Simulation::contact_step(int ticks) {
 }
 
 /// Uptake from or to the tool, diffusion, then moduli and yield of the tets whose saturation moved (eq. 6).
-void Simulation::water_step() {
+StepStatus Simulation::water_step() {
   const StageScope scope(m_observer, Stage::water);
   const double h = m_clock.seconds(m_params.rates.water_period_ticks);
   const bool wet = m_state.mode == device::ToolMode::wet;
   if (wet || m_state.mode == device::ToolMode::dry) exchange_water(wet ? 1 : -1, h);
   m_water.diffuse(h);
-  refresh_materials(m_params.moisture.refresh_tolerance);
+  return refresh_materials(m_params.moisture.refresh_tolerance);
 }
 
-/// Eq. 2 by one implicit step: solve, scale the velocity (eq. 9), move, then plastic flow.
+/// Eq. 2 by one implicit step: solve, scale the velocity (eq. 9), move, then plastic flow. A body at rest
+/// that nothing acts on is left as it is.
 StepStatus Simulation::physics_step() {
+  if (rests()) return StepStatus::ok();
   const double h = m_clock.seconds(m_params.rates.physics_period_ticks);
   solid::SolidState& solid = m_state.solid;
   m_external_force = m_state.contact_force + m_load_force;
@@ -77,6 +79,7 @@ StepStatus Simulation::physics_step() {
     m_solid.move(solid);
     m_state.contact_work += m_state.contact_force.cwiseProduct(solid.x - m_x_before).sum();
     m_state.contact_force.setZero();
+    m_state.is_touched = false;
   }
   {
     const StageScope scope(m_observer, Stage::kinematics);

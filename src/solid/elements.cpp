@@ -77,9 +77,12 @@ Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology
     const TetGeometry tet = make_tet_geometry(corners);
     ARGIL_ASSERT(tet.volume > 0.0, t, tet.volume);
     e.weight.segment(Q * t, Q).setConstant(tet.volume / Q);
+    for (int i = 0; i < N; ++i) {
+      e.node_volume(e.nodes(i, t)) += tet.volume * e.mass_share(i);
+      e.shape_volume(e.nodes(i, t)) += tet.volume * e.shape_share(i);
+    }
     if (kind != ElementKind::p2) {
       e.gradient.middleCols<4>(4 * t) = tet.gradient;
-      for (int i = 0; i < 4; ++i) e.node_volume(mesh.tets(i, t)) += 0.25 * tet.volume;
       continue;
     }
     for (int q = 0; q < Q; ++q) {
@@ -87,13 +90,7 @@ Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology
       L(q) = kPointFar;
       set_quadratic_gradient(tet.gradient, L, e.gradient.middleCols<10>(10 * (Q * t + q)));
     }
-    // Diagonal of the consistent mass: 6 and 32 times V/420; their sum is 216/420.
-    for (int i = 0; i < 10; ++i) {
-      e.node_volume(e.nodes(i, t)) += tet.volume * (i < 4 ? 6.0 : 32.0) / 216.0;
-      e.shape_volume(e.nodes(i, t)) += tet.volume * (i < 4 ? -0.05 : 0.2);
-    }
   }
-  if (kind != ElementKind::p2) e.shape_volume = e.node_volume;
   return e;
 }
 

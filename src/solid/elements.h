@@ -26,6 +26,10 @@ struct Elements {
   int num_nodes() const { return static_cast<int>(rest.cols()); }
   int num_points() const { return static_cast<int>(weight.size()); }
   int tet_of_point(int point) const { return point / points_per_tet; }
+  /// Share of a tet's mass at its node i in time (p2: diagonal of the consistent mass, 6 and 32 times V/420,
+  /// over their sum), and of its body force in statics.
+  double mass_share(int i) const { return nodes_per_tet == 4 ? 0.25 : (i < 4 ? 6.0 : 32.0) / 216.0; }
+  double shape_share(int i) const { return nodes_per_tet == 4 ? 0.25 : (i < 4 ? -0.05 : 0.2); }
 };
 
 /// p1, p1_nodal: one point, mass in quarters. p2: four points, which is exact for straight-sided tets; mass

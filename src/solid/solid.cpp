@@ -21,6 +21,7 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
       m_supports(std::move(supports)),
       m_constraints(find_constraints(m_elements.rest, m_supports)),
       m_mass(params.density * m_elements.node_volume),
+      m_static_mass(params.density * m_elements.shape_volume),
       m_solver(linear::make_solver(params.solver)) {
   const Eigen::Index num_points = m_elements.num_points();
   const Eigen::Index num_nodes = m_elements.num_nodes();
@@ -104,6 +105,45 @@ void Solid::set_anisotropic_stiffness(int tet, const Mat6& C) {
       m_stiffness[t] = make_isotropic_stiffness(m_material[t].lambda, m_material[t].mu);
   }
   m_stiffness[static_cast<std::size_t>(tet)] = C;
+}
+
+void Solid::set_swelling(int tet, double volume_ratio) {
+  ARGIL_ASSERT(volume_ratio > 0.0, tet, volume_ratio);
+  if (m_dry.weight.size() == 0) {
+    m_dry.gradient = m_elements.gradient;
+    m_dry.weight = m_elements.weight;
+  }
+  const Eigen::Index Q = m_elements.points_per_tet;
+  const Eigen::Index columns = Q * m_elements.nodes_per_tet;
+  m_elements.gradient.middleCols(columns * tet, columns) =
+      m_dry.gradient.middleCols(columns * tet, columns) / std::cbrt(volume_ratio);
+  m_elements.weight.segment(Q * tet, Q) = volume_ratio * m_dry.weight.segment(Q * tet, Q);
+}
+
+/// Sums each of the tet's nodes anew, so that masses are a function of the water alone, not of its history.
+void Solid::set_water_mass(int tet, double mass) {
+  if (m_water_mass.size() == 0) m_water_mass.setZero(m_elements.num_tets());
+  m_water_mass(tet) = mass;
+  const int N = m_elements.nodes_per_tet;
+  for (const int node : m_elements.nodes.col(tet)) {
+    double moving = 0.0, at_rest = 0.0;
+    for (int c = m_elements.node_begin[static_cast<std::size_t>(node)];
+         c < m_elements.node_begin[static_cast<std::size_t>(node) + 1]; ++c) {
+      const int corner = m_elements.node_corners[static_cast<std::size_t>(c)];
+      moving += m_water_mass(corner / N) * m_elements.mass_share(corner % N);
+      at_rest += m_water_mass(corner / N) * m_elements.shape_share(corner % N);
+    }
+    m_mass(node) = m_params.density * m_elements.node_volume(node) + moving;
+    m_static_mass(node) = m_params.density * m_elements.shape_volume(node) + at_rest;
+  }
+}
+
+bool Solid::is_strained(int tet, const TensorField& plastic_strain) const {
+  constexpr double kRounding = 1e-12;  // of a strain; a body at rest has some 1e-16
+  const Eigen::Index Q = m_elements.points_per_tet;
+  for (Eigen::Index p = Q * tet; p < Q * (tet + 1); ++p)
+    if (!((m_strain.col(p) - plastic_strain.col(p)).norm() <= kRounding)) return true;
+  return false;
 }
 
 /// Moduli of a tet; for p1_nodal split into its own part and what acts on the nodes' mean volume change.

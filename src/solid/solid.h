@@ -66,6 +66,12 @@ class Solid {
   void set_material(int tet, const TetMaterial& material);
   void set_anisotropic_stiffness(int tet, const Mat6& C);
 
+  /// Rest volume of a tet over what it was made with (> 0): its shape at rest grows alike in all directions.
+  /// F, forces and energy are those of the grown shape from the next update_kinematics on. Mass stays.
+  void set_swelling(int tet, double volume_ratio);
+  /// Mass [kg] of water in a tet, shared among its nodes like that of the clay.
+  void set_water_mass(int tet, double mass);
+
   /// F → R → ε at positions x. Fails when det F is not above the bound of the parameters.
   StepStatus update_kinematics(const Points& x, Tick tick);
 
@@ -95,6 +101,8 @@ class Solid {
   const TetMaterial& material(int tet) const { return m_material[static_cast<std::size_t>(tet)]; }
   const StepCounters& counters() const { return m_counters; }
   const linear::SolverCost& solver_cost() const { return m_solver->cost(); }
+  /// Does a tet hold elastic strain beyond what rounding leaves in a body at rest?
+  bool is_strained(int tet, const TensorField& plastic_strain) const;
   double min_volume_ratio() const { return m_min_volume_ratio; }
   int num_free() const { return static_cast<int>(m_node_of_row.size()); }
   const Points& internal_force() const { return m_internal_force; }  ///< of the last assembly [N]
@@ -172,6 +180,9 @@ class Solid {
   std::vector<Support> m_supports;
   Constraints m_constraints;
   Field m_mass;
+  Field m_static_mass;  // carries gravity in statics
+  Field m_water_mass;   // of each tet; empty without
+  Elements m_dry;       // gradient and weight of tets that have not swollen; empty without swelling
   std::vector<TetMaterial> m_material;
   std::vector<Mat6> m_stiffness;  // empty while every tet is isotropic
 

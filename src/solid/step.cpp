@@ -100,7 +100,7 @@ bool Solid::place_supports(double time, double share) {
 /// What gravity acts on: in time the lumped mass, so that a free body falls as one; in statics ρ∫N dV, the
 /// elements' own load.
 double Solid::gravity_mass(Eigen::Index node) const {
-  return m_is_static ? m_params.density * m_elements.shape_volume(node) : m_mass(node);
+  return m_is_static ? m_static_mass(node) : m_mass(node);
 }
 
 /// What the rounding of positions alone may leave of a sum of internal forces [N]: ε |x| times each point's

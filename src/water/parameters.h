@@ -32,6 +32,8 @@ struct WaterParams {
   double drying_flux = 0.0;           ///< [kg/(m² s)], ≥ 0, taken by the dry tool
   double saturation_increment = 0.0;  ///< [–], ≥ 0, per water step, `increment` only
   double initial_saturation = 0.0;    ///< S at the start [–], in [0, 1]
+  double swelling = 0.0;   ///< growth of the rest volume at S = 1 over the dry one [–], ≥ 0, linear in S
+  bool adds_mass = false;  ///< the body weighs its water, too; false: the dry clay alone, as in the paper
 };
 
 }  // namespace argil::water
