@@ -40,6 +40,7 @@ struct VertexSide {
   // Of the present interval.
   std::vector<Entry> entries;    ///< by vertex, time, face
   std::vector<int> inside_next;  ///< working array
+  std::vector<int> near;         ///< working array: faces about as near to a vertex as its nearest
   std::vector<int> pressed;      ///< vertices with depth
   std::vector<double> depth;     ///< |∫ nᵀ(p−q) n dt| of each vertex [m]
 

@@ -2,9 +2,20 @@
 
 namespace argil::contact {
 
+/// How deep a pair counts.
+enum class PenaltyKind {
+  continuous,  ///< eqs. 7 and 8: mean over the interval
+  discrete,    ///< what the paper sets itself against: the depth at the end of the interval
+};
+
 struct ContactParams {
   double vertex_face_stiffness = 0.0;  ///< k_vf [N/m], eq. 7
   double edge_edge_stiffness = 0.0;    ///< k_ee [N/m], eq. 8
+  PenaltyKind penalty = PenaltyKind::continuous;
+  /// Faces that are farther from a vertex than its nearest one by less than this share of the distance take
+  /// part in the direction of its force, so that the force does not jerk when the vertex passes from one face
+  /// to the next [–], ≥ 0. 0: the nearest face alone, eq. 7 to the letter. For the continuous penalty.
+  double face_blend = 0.25;
 };
 
 }  // namespace argil::contact

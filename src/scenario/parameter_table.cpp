@@ -283,6 +283,14 @@ void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
   b.number("/contact/edge_edge_stiffness_N_per_m", c.edge_edge_stiffness, not_negative(), "N/m",
            "k_ee of eq. 8, per pair.")
       .required = true;
+  b.choice<contact::PenaltyKind>(
+      "/contact/penalty", c.penalty,
+      {{contact::PenaltyKind::continuous, "continuous"}, {contact::PenaltyKind::discrete, "discrete"}},
+      "Mean depth over the motion (eqs. 7 and 8), or the depth at its end.");
+  b.number(
+      "/contact/face_blend", c.face_blend, between(0, 10), "",
+      "Faces farther from a vertex than its nearest by less than this share of the distance also turn its "
+      "force; 0: the nearest alone (the paper).");
 }
 
 void bind_dynamics(Binder& b, Scenario& s) {

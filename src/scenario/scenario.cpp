@@ -21,6 +21,7 @@ constexpr const char* kPaperPreset = R"({
     "clay_kernel": {"form": "per_step"}
   },
   "water": {"uptake": "increment"},
+  "contact": {"face_blend": 0},
   "dynamics": {"model": "linear", "implicit_contact": false},
   "haptics": {"physics_period_ticks": 14, "water_period_ticks": 14, "frame_period_ticks": 98, "between_frames": "hold"}
 })";

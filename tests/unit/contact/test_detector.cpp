@@ -141,6 +141,77 @@ TEST(Slide, OverFlatAndCurvedGroundTheForceHasNoJumps) {
   }
 }
 
+/// Largest change of the force in one step, over its mean, while a sphere slides over a facetted sphere in
+/// steps of `step` at a depth of 1 mm between the round shapes; after `smaller` such steps.
+double measure_largest_change(const ContactParams& params, double step) {
+  constexpr double kBodyRadius = 0.03;
+  const mesh::TriangleMesh body = make_sphere_tool(kBodyRadius, 3);
+  const auto place = [](double along, double depth) {
+    const double angle = along / kBodyRadius;  // in a plane askew to the mesh
+    const Vec3 a = Vec3(0.3, -0.2, 0.9).normalized();
+    const Vec3 b = a.cross(Vec3(0.5, 0.7, 0.1)).normalized();
+    return Vec3((kBodyRadius + kR - depth) * (std::cos(angle) * a + std::sin(angle) * b));
+  };
+  Scene scene(body, make_sphere_tool(kR, 2), place(0.0, -1e-4));
+  scene.detector = ContactDetector(body.triangles, body.num_vertices(), make_sphere_tool(kR, 2), params);
+  for (int i = 0; i <= 10; ++i) scene.move(place(0.0, 1e-4 * i));
+  scene.move(place(0.0, 1e-3));
+  double change = 0.0;
+  double sum = 0.0;
+  Vec3 last = scene.force();
+  const int steps = static_cast<int>(0.02 / step);
+  for (int i = 1; i <= steps; ++i) {
+    scene.move(place(step * i, 1e-3));
+    change = std::max(change, (scene.force() - last).norm());
+    last = scene.force();
+    sum += last.norm();
+  }
+  return change / (sum / steps);
+}
+
+TEST(Slide, OverFacetsTheForceIsContinuousWhenBlended) {
+  // A continuous force changes by ever less in ever smaller steps; one that jumps where a vertex passes from
+  // face to face does not.
+  const ContactParams blended{kK, kK};
+  ContactParams nearest = blended;
+  nearest.face_blend = 0.0;
+  ContactParams discrete = blended;
+  discrete.penalty = PenaltyKind::discrete;
+  for (const auto& [name, params] :
+       {std::pair{"blended", blended}, std::pair{"nearest face", nearest}, std::pair{"discrete", discrete}}) {
+    std::printf("%-12s largest change of the force in a step of", name);
+    for (const double step : {1e-4, 3e-5, 1e-5})
+      std::printf(" %g mm: %.4f,", 1e3 * step, measure_largest_change(params, step));
+    std::printf(" of the mean force\n");
+  }
+  EXPECT_LT(measure_largest_change(blended, 1e-5), 0.25 * measure_largest_change(blended, 1e-4));
+  EXPECT_GT(measure_largest_change(nearest, 1e-5), 0.5 * measure_largest_change(nearest, 1e-4));
+}
+
+TEST(Discrete, CountsTheDepthAtTheEndOfTheTickAndMissesWhatWentThrough) {
+  // One tool vertex over a flat face, by hand: from 1 mm above to 1 mm below, a quarter mm mean depth, 1 mm
+  // at the end; at rest both count 1 mm.
+  mesh::TriangleMesh spike;  // one vertex down
+  spike.vertices.resize(3, 4);
+  spike.vertices << 0, 0.004, -0.002, -0.002, 0, 0, 0.0035, -0.0035, 0, 0.02, 0.02, 0.02;
+  spike.triangles.resize(3, 4);
+  spike.triangles << 0, 0, 0, 1, 2, 3, 1, 2, 1, 2, 3, 3;
+  for (const bool is_discrete : {false, true}) {
+    ContactParams params{kK, kK};
+    params.penalty = is_discrete ? PenaltyKind::discrete : PenaltyKind::continuous;
+    Scene scene(make_flat_slab(2), spike, {0.011, 0.007, 0.001});
+    scene.detector = ContactDetector(scene.body.triangles, scene.body.num_vertices(), spike, params);
+    scene.move(Vec3(0.011, 0.007, -0.001));
+    EXPECT_NEAR(scene.force().z(), kK * (is_discrete ? 1e-3 : 0.25e-3), 1e-14);
+    scene.move(scene.pose.position);
+    EXPECT_NEAR(scene.force().z(), kK * 1e-3, 1e-14);
+    // Up, and then down through the whole slab of 20 mm and out below in one tick.
+    scene.move(Vec3(0.011, 0.007, 0.001));
+    scene.move(Vec3(0.011, 0.007, -0.2));
+    EXPECT_EQ(scene.force().norm() > 0.1, !is_discrete);
+  }
+}
+
 TEST(LiftOff, LeavesNothingBehind) {
   Scene scene(make_flat_slab(), make_sphere_tool(kR, 2), {0.001, 0.002, kR + 1e-4});
   for (int i = 0; i < 20; ++i) scene.move(scene.pose.position + Vec3(2e-4, 0, i < 15 ? -1e-4 : 0.0));
