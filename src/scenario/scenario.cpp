@@ -183,8 +183,15 @@ void check_effective_medium(Scenario& s) {
 }
 
 /// What the elements and laws cannot do together.
-void check_solid(const Scenario& s) {
+void check_solid(Scenario& s) {
   const solid::SolidParams& p = s.params.solid;
+  const bool is_second_order =
+      p.integrator == solid::Integrator::bdf2 || p.integrator == solid::Integrator::newmark;
+  if (s.mode == Mode::dynamic && is_second_order && p.iteration == solid::Iteration::one &&
+      p.model != solid::StrainModel::linear)
+    s.warnings.push_back(s.file +
+                         ": /dynamics/iteration: one linearised solve with bdf2 or newmark gains energy where "
+                         "the body turns (results/verification); newton does not");
   const bool needs_isotropy =
       p.model == solid::StrainModel::neo_hookean || p.element == solid::ElementKind::p1_nodal;
   const material::EffectiveMedium& medium = s.params.moisture.medium;
@@ -222,7 +229,7 @@ void check_combinations(Scenario& s) {
                      "give a sharper tip");
   const sim::Params& p = s.params;
   if (s.mode == Mode::equilibrium) {
-    if (p.plasticity.enabled)
+    if (p.plasticity.enabled && p.plasticity.yield > 0.0)
       s.warnings.push_back(s.file +
                            ": /material/plasticity: static mode is elastic; plastic flow is left out");
     return;
