@@ -189,9 +189,10 @@ void check_solid(Scenario& s) {
       p.integrator == solid::Integrator::bdf2 || p.integrator == solid::Integrator::newmark;
   if (s.mode == Mode::dynamic && is_second_order && p.iteration == solid::Iteration::one &&
       p.model != solid::StrainModel::linear)
-    s.warnings.push_back(s.file +
-                         ": /dynamics/iteration: one linearised solve with bdf2 or newmark gains energy where "
-                         "the body turns (results/verification); newton does not");
+    s.warnings.push_back(
+        s.file +
+        ": /dynamics/iteration: one linearised solve with bdf2 or newmark gains energy where "
+        "the body turns (results/verification); newton does not");
   const bool needs_isotropy =
       p.model == solid::StrainModel::neo_hookean || p.element == solid::ElementKind::p1_nodal;
   const material::EffectiveMedium& medium = s.params.moisture.medium;
