@@ -191,6 +191,7 @@ void ResultFile::append(const sim::HapticRecord& record) {
   table.put(record.force_age);
   table.put(record.num_contacts);
   table.put(record.gate_events);
+  table.put(record.port_energy);
   if (table.end_row()) m_impl->guarded([&] { table.write(), m_impl->file.flush(); });
 }
 

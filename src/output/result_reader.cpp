@@ -121,6 +121,7 @@ std::vector<sim::HapticRecord> ResultReader::read_haptic() const {
   const ColumnReader<std::int32_t> force_age(group, "force_age", rows, 1);
   const ColumnReader<std::int32_t> num_contacts(group, "num_contacts", rows, 1);
   const ColumnReader<std::uint8_t> gate_events(group, "gate_events", rows, 1);
+  const ColumnReader<double> port_energy(group, "port_energy", rows, 1);
   std::vector<sim::HapticRecord> records(rows);
   for (std::size_t i = 0; i < rows; ++i) {
     sim::HapticRecord& record = records[i];
@@ -137,6 +138,7 @@ std::vector<sim::HapticRecord> ResultReader::read_haptic() const {
     record.force_age = force_age(i);
     record.num_contacts = num_contacts(i);
     record.gate_events = gate_events(i);
+    record.port_energy = port_energy(i);
   }
   return records;
 }

@@ -37,6 +37,10 @@ inline constexpr std::array kHaptic = {
            uint8,
            1,
            {"1", "what the output gate did, sum of 1 not finite, 2 clamped, 4 slew, 8 ramp"}},
+    Column{"port_energy",
+           real64,
+           1,
+           {"J", "work of device force and torque on the hand since the start; > 0: made by the simulation"}},
 };
 
 inline constexpr std::array kPhysics = {

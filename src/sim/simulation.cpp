@@ -53,29 +53,6 @@ bool Simulation::tool_overlaps_body() const {
   return m_detector.overlaps(m_state.solid.x, m_state.tool);
 }
 
-/// Adds this detection's contact forces to the mean over the physics step, and keeps their stiffness for the
-/// solve. Wet and dry tools feel the body but do not deform it.
-void Simulation::spread_contact_force(int ticks) {
-  const bool acts = m_state.mode == device::ToolMode::push || m_state.mode == device::ToolMode::pull;
-  const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;
-  const double share = static_cast<double>(ticks) / m_params.rates.physics_period_ticks;
-  m_contact_stiffness.clear();
-  Vec3 weighted_centre = Vec3::Zero();
-  double weight = 0.0;
-  for (const contact::Contact& c : m_contacts.contacts) {
-    if (!acts) break;
-    m_state.is_touched = true;
-    for (std::size_t i = 0; i < 3 && c.vertex[i] >= 0; ++i)
-      m_state.contact_force.col(c.vertex[i]) += sign * share * c.weight[i] * c.force;
-    // A pulling contact has negative stiffness; left out, so that the system stays positive definite.
-    if (sign > 0.0) m_contact_stiffness.push_back({c.vertex, c.weight, c.normal, c.stiffness});
-    weighted_centre += c.force.norm() * c.point;
-    weight += c.force.norm();
-  }
-  m_state.is_pressed = weight > 0.0;
-  if (m_state.is_pressed) m_state.contact_centre = weighted_centre / weight;
-}
-
 /// v ← G_d^{h/h_ref}(r) v with r from the point of contact (eq. 9). A body that nothing presses is left free,
 /// else clay held in mid-air would freeze in whatever shape it has.
 void Simulation::apply_clay_kernel(double step_s) {
@@ -193,6 +170,7 @@ HapticRecord Simulation::haptic_record() const {
   record.force_age = m_state.force_age;
   record.num_contacts = static_cast<int>(m_contacts.contacts.size());
   record.gate_events = m_gated.events;
+  record.port_energy = m_state.port_energy;
   return record;
 }
 

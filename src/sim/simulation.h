@@ -57,7 +57,11 @@ class Simulation {
   void apply_clay_kernel(double step_s);
   void apply_plastic_flow(double step_s);
 
+  // Between contacts, body and hand: hand.cpp.
+  void book_port_energy(const contact::Pose& next);
   void spread_contact_force(int ticks);
+  void apply_contact_yield();
+
   void exchange_water(int sign, double step_s);
   TensorField mean_plastic_strain() const;
   StepStatus refresh_materials(double tolerance);
@@ -76,8 +80,10 @@ class Simulation {
   contact::Contacts m_contacts;
   device::OutputGate m_gate;
   device::GatedForce m_gated;
-  std::vector<solid::PointStiffness> m_contact_stiffness;
-  std::vector<int> m_touched_face;  // boundary faces under the tool, and how much of each
+  std::vector<solid::PointStiffness>
+      m_contact_stiffness;           // since the last physics step, by their share of it
+  std::size_t m_last_detection = 0;  // where in it the last detection's contacts begin
+  std::vector<int> m_touched_face;   // boundary faces under the tool, and how much of each
   std::vector<double> m_touched_area;
   std::vector<int> m_changed_tets;
   Points m_load_force;  // 3×n, constant

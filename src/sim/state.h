@@ -46,6 +46,7 @@ struct State {
   // ledgers
   double plastic_dissipation = 0.0;  ///< [J] since the start
   double contact_work = 0.0;         ///< [J] done on the body since the start
+  double port_energy = 0.0;          ///< [J] that the device's force has done on the hand since the start
 };
 
 }  // namespace argil::sim

@@ -9,6 +9,7 @@ StepStatus Simulation::tick(const device::DeviceSample& sample) {
   const bool physics_due = m_clock.due(rates.physics_period_ticks);
 
   // Device: the tool goes to where the hand is at the end of the tick.
+  book_port_energy({sample.position, sample.orientation});
   m_state.tool = {sample.position, sample.orientation};
   m_state.mode = sample.mode;
 
@@ -72,7 +73,7 @@ StepStatus Simulation::physics_step() {
   }
   {
     const StageScope scope(m_observer, Stage::solve);
-    m_solid.apply_contact_stiffness(m_contact_stiffness, m_state.contact_force);
+    apply_contact_yield();
     m_solid.finish_step(solid);
     apply_clay_kernel(h);  // v ← G_d^{h/h_ref} v
     m_x_before = solid.x;

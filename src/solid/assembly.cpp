@@ -266,11 +266,19 @@ void Solid::mask_rows() {
   }
 }
 
-void Solid::apply_contact_stiffness(std::span<const PointStiffness> contacts, Points& force) const {
-  if (!m_params.implicit_contact || is_explicit()) return;
+double Solid::compute_contact_change(const PointStiffness& contact) const {
+  if (!m_params.implicit_contact || is_explicit()) return 0.0;
   // Newmark's step takes the mean of both ends.
   const double share = m_params.integrator == Integrator::newmark ? 0.5 : 1.0;
-  add_contact_change(m_x, m_x_start, contacts, -share, force);
+  return -share * contact.stiffness * compute_gap_change(contact, m_x, m_x_start);
+}
+
+void Solid::apply_contact_stiffness(std::span<const PointStiffness> contacts, Points& force) const {
+  for (const PointStiffness& contact : contacts) {
+    const double change = compute_contact_change(contact);
+    for (std::size_t i = 0; i < 3 && contact.vertex[i] >= 0; ++i)
+      force.col(contact.vertex[i]) += contact.weight[i] * change * contact.normal;
+  }
 }
 
 /// scale · Σ k n n·(to − from): how contact forces change on the way.

@@ -86,6 +86,10 @@ class Solid {
   void finish_step(SolidState& state);  ///< v ← v', and what bdf2 must remember
   void move(SolidState& state) const;   ///< x ← x̂ + τ v; prescribed components go where they must
 
+  /// How far the force of a contact, of which a step was told, changed while the body moved: what to add
+  /// along its normal [N] for the force that acted.
+  double compute_contact_change(const PointStiffness& contact) const;
+
   /// Turns the contact forces that were given to the step into those that acted: an implicit step takes them
   /// at its end, f − k n n·(x' − x); newmark takes the mean of both ends.
   void apply_contact_stiffness(std::span<const PointStiffness> contacts, Points& force) const;

@@ -58,6 +58,7 @@ TEST(ResultReader, GivesBackEveryHapticRecordToTheBit) {
     ASSERT_EQ(records[i].force_age, wanted.force_age);
     ASSERT_EQ(records[i].num_contacts, wanted.num_contacts);
     ASSERT_EQ(records[i].gate_events, wanted.gate_events);
+    ASSERT_EQ(records[i].port_energy, wanted.port_energy);
   }
 }
 

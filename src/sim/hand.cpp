@@ -1,0 +1,55 @@
+// Between the contacts, the body and the hand: who gets which force.
+
+#include "sim/simulation.h"
+
+namespace argil::sim {
+
+/// ∫ F·v + T·ω dt over the tick that brings the hand to `next`. The device holds its last force meanwhile, so
+/// that this is force times path, exactly; the turn is taken about one axis.
+void Simulation::book_port_energy(const contact::Pose& next) {
+  const Eigen::AngleAxisd turn(next.orientation * m_state.tool.orientation.conjugate());  // the shorter way
+  m_state.port_energy += m_gated.force.dot(next.position - m_state.tool.position) +
+                         m_gated.torque.dot(turn.angle() * turn.axis());
+}
+
+/// Adds this detection's contact forces, and their stiffness for the solve, to the mean over the physics
+/// step. Wet and dry tools feel the body but do not deform it.
+void Simulation::spread_contact_force(int ticks) {
+  const bool acts = m_state.mode == device::ToolMode::push || m_state.mode == device::ToolMode::pull;
+  const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;
+  const double share = static_cast<double>(ticks) / m_params.rates.physics_period_ticks;
+  m_last_detection = m_contact_stiffness.size();
+  Vec3 weighted_centre = Vec3::Zero();
+  double weight = 0.0;
+  for (const contact::Contact& c : m_contacts.contacts) {
+    if (!acts) break;
+    m_state.is_touched = true;
+    for (std::size_t i = 0; i < 3 && c.vertex[i] >= 0; ++i)
+      m_state.contact_force.col(c.vertex[i]) += sign * share * c.weight[i] * c.force;
+    // A pulling contact has negative stiffness; left out, so that the system stays positive definite.
+    if (sign > 0.0) m_contact_stiffness.push_back({c.vertex, c.weight, c.normal, share * c.stiffness});
+    weighted_centre += c.force.norm() * c.point;
+    weight += c.force.norm();
+  }
+  m_state.is_pressed = weight > 0.0;
+  if (m_state.is_pressed) m_state.contact_centre = weighted_centre / weight;
+}
+
+/// What a step has found the body to yield under the tool lets the forces of its contacts fall: those on the
+/// body, and of the last detection those that the hand feels. With one detection a step, both are equal and
+/// opposite.
+void Simulation::apply_contact_yield() {
+  m_solid.apply_contact_stiffness(m_contact_stiffness, m_state.contact_force);
+  const RateParams& rates = m_params.rates;
+  const double per_share = rates.between_frames == BetweenFrames::hold ? 1.0 : rates.physics_period_ticks;
+  for (std::size_t i = m_last_detection; i < m_contact_stiffness.size(); ++i) {
+    const contact::Contact& c = m_contacts.contacts[i - m_last_detection];
+    const Vec3 change = per_share * m_solid.compute_contact_change(m_contact_stiffness[i]) * c.normal;
+    m_state.hand_force -= change;
+    m_state.hand_torque -= (c.point - m_state.tool.position).cross(change);
+  }
+  m_contact_stiffness.clear();
+  m_last_detection = 0;
+}
+
+}  // namespace argil::sim

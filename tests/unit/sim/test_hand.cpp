@@ -1,0 +1,136 @@
+// What the hand feels, against closed forms of a body that moves in one node.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/one_node.h"
+
+namespace argil::sim {
+namespace {
+
+using device::ToolMode;
+using test::kPenalty;
+using test::press_apex;
+
+/// Goes to `depth` and keeps going: force along z and the energy given to the hand.
+HapticRecord go_to(Simulation& simulation, double depth, ToolMode mode = ToolMode::push) {
+  EXPECT_TRUE(simulation.tick(press_apex(depth, mode)).is_ok());
+  return simulation.haptic_record();
+}
+
+TEST(HandForce, OfAWallIsPenaltyTimesDepth) {
+  // A tool that does not deform the body meets a wall.
+  Simulation simulation = test::make_one_node_simulation(test::make_one_node_params());
+  for (const double depth : {-1e-4, 1e-4, 5e-4, 2e-4})
+    EXPECT_NEAR(go_to(simulation, depth, ToolMode::dry).force.z(), kPenalty * std::max(0.0, depth), 1e-12);
+  EXPECT_EQ(simulation.haptic_record().num_contacts, 1);
+}
+
+TEST(HandForce, OfAnElasticBodyIsThatOfTwoSpringsInSeriesAtOnce) {
+  // The step finds how far the body yields, and the hand feels it: no force of the surface as it was.
+  const Params params = test::make_one_node_params();
+  const double K = test::compute_apex_stiffness(params.elastic);
+  const double series = test::compute_series(kPenalty, K);
+  Simulation simulation = test::make_one_node_simulation(params);
+  for (const double depth : {1e-4, 5e-4, 9e-4, 7e-4})
+    EXPECT_NEAR(go_to(simulation, depth).force.z(), series * depth, 1e-5 * series * depth) << depth;
+}
+
+TEST(HandForce, IsTheOppositeOfWhatActedOnTheBody) {
+  // Work on the body is Σ force · displacement of the apex; the paper's hand feels the surface as it was.
+  for (const bool implicit : {true, false}) {
+    Params params = test::make_one_node_params();
+    params.solid.implicit_contact = implicit;
+    params.solid.density = 1500.0;
+    Simulation simulation = test::make_one_node_simulation(params);
+    double z = test::kHeight;
+    double work = 0.0;
+    for (int k = 1; k <= 50; ++k) {
+      const double force = go_to(simulation, 1e-5 * k).force.z();
+      const double z_next = simulation.state().solid.x(2, 3);
+      work += force * (z - z_next);
+      z = z_next;
+      EXPECT_NEAR(simulation.state().contact_work, work, 1e-15);
+    }
+    EXPECT_GT(work, 1e-7);
+  }
+}
+
+/// Energy that the hand is given in the last of three cycles of depth + amplitude·cos.
+double find_energy_of_cycle(const Params& params, double amplitude, int ticks, ToolMode mode) {
+  Simulation simulation = test::make_one_node_simulation(params);
+  double before = 0.0;
+  HapticRecord record;
+  for (int k = 1; k <= 3 * ticks; ++k) {
+    const double phase = 2.0 * std::numbers::pi * (k % ticks) / ticks;
+    record = go_to(simulation, 3.0 * amplitude + amplitude * std::cos(phase), mode);
+    if (k == 2 * ticks) before = record.port_energy;
+  }
+  return record.port_energy - before;
+}
+
+TEST(PortEnergy, OfAHeldSpringIsThatOfItsDelay) {
+  // A spring K sampled every T seconds and held, on a sine with φ = ωT: Σ F·Δx over a cycle is
+  // πKA² sin²(φ/2)/(φ/2), which a delay of T/2 brings. The mean over the motion is late by another T/2:
+  // πKA² sin²(φ)/φ.
+  constexpr double kAmplitude = 2e-4;
+  constexpr int kFrames = 12;
+  const double phi = 2.0 * std::numbers::pi / kFrames;
+  const double scale = std::numbers::pi * kPenalty * kAmplitude * kAmplitude;
+  for (const int period : {1, 14}) {
+    Params params = test::make_one_node_params();
+    params.rates.physics_period_ticks = period;
+    const double held = find_energy_of_cycle(params, kAmplitude, kFrames * period, ToolMode::dry);
+    EXPECT_NEAR(held, scale * std::pow(std::sin(phi / 2.0), 2) / (phi / 2.0), 1e-9 * scale);
+    if (period > 1) continue;  // over 14 ticks the mean is along the chord
+    params.contact.penalty = contact::PenaltyKind::continuous;
+    const double mean = find_energy_of_cycle(params, kAmplitude, kFrames, ToolMode::dry);
+    EXPECT_NEAR(mean, scale * std::pow(std::sin(phi), 2) / phi, 1e-9 * scale);
+  }
+}
+
+/// Presses `depth` deep and lets go in 2·steps ticks; the last record, and the lowest energy on the way.
+HapticRecord press_and_release(Simulation& simulation, double depth, int steps, double& lowest) {
+  HapticRecord record;
+  lowest = 0.0;
+  for (int k = 0; k <= 2 * steps + 1; ++k) {
+    record = go_to(simulation, depth * std::min(k, 2 * steps - k) / steps);
+    lowest = std::min(lowest, record.port_energy);
+  }
+  return record;
+}
+
+TEST(PortEnergy, OfASlowElasticPressComesBack) {
+  // ½ K X² goes in and comes out; the held force makes K X Δ, one tick's way Δ, besides. The plate leaves the
+  // surface as it last was a tick early, with K Δ² of it.
+  const Params params = test::make_one_node_params();
+  const double K = test::compute_series(kPenalty, test::compute_apex_stiffness(params.elastic));
+  constexpr double kDepth = 1e-3;
+  const double stored = 0.5 * K * kDepth * kDepth;
+  for (const int steps : {100, 1000}) {
+    Simulation simulation = test::make_one_node_simulation(params);
+    double lowest = 0.0;
+    const HapticRecord record = press_and_release(simulation, kDepth, steps, lowest);
+    EXPECT_NEAR(record.port_energy, 2.0 * stored / steps, 1e-5 * stored + 2.0 * stored / (steps * steps));
+    EXPECT_NEAR(lowest, -stored * (1.0 - 1.0 / steps), 1e-5 * stored);
+  }
+}
+
+TEST(PortEnergy, OfAPlasticPressIsLostToTheClay) {
+  // What the hand gave is dissipated or left in the body: nothing else takes energy in a slow press.
+  Params params = test::make_one_node_params();
+  params.plasticity.enabled = true;
+  params.plasticity.form = material::FlowForm::j2;
+  params.plasticity.yield = 0.01;
+  params.plasticity.max = 1.0;
+  Simulation simulation = test::make_one_node_simulation(params);
+  double lowest = 0.0;
+  const HapticRecord record = press_and_release(simulation, 2e-3, 4000, lowest);
+  const PhysicsRecord body = simulation.physics_record();
+  EXPECT_GT(body.plastic_dissipation, -0.1 * lowest);
+  EXPECT_NEAR(-record.port_energy, body.plastic_dissipation + body.elastic_energy, -0.01 * lowest);
+}
+
+}  // namespace
+}  // namespace argil::sim
