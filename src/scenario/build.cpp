@@ -9,6 +9,7 @@
 #include "embed/cage.h"
 #include "mesh/quality.h"
 #include "mesh/readers.h"
+#include "solid/rigid_motion.h"
 
 namespace argil::scenario {
 namespace {
@@ -140,12 +141,11 @@ void fix_and_load(const Scenario& s, sim::Body& body) {
 
 /// An equilibrium has no mass to lean on: the supports alone must hold every part of the body.
 void check_supports(const Scenario& s, const sim::Body& body) {
-  const Points& rest = body.mesh.vertices;
-  const std::string motion =
-      solid::find_rigid_motion(rest, body.mesh.tets, solid::find_constraints(rest, body.supports));
+  const std::string motion = solid::find_rigid_motion(
+      body.mesh, body.topology, solid::find_constraints(body.mesh.vertices, body.supports));
   if (!motion.empty())
     throw InputError(s.file, "/body/fixed", "does not hold the body: " + motion,
-                     "hold at least three vertices that are not on a line");
+                     "hold at least three vertices of it that are not on a line");
 }
 
 /// Explicit diffusion needs so many substeps that the run would never end?

@@ -27,7 +27,8 @@ void describe_region(Binder& b, solid::Region& r) {
   b.vector("/centre_m", r.centre, "m", "sphere: centre.").applies = only(Kind::sphere);
   b.number("/radius_m", r.radius, not_negative(), "m", "sphere: radius.").applies = only(Kind::sphere);
   const auto has_normal = [&r] { return r.kind == Kind::half_space || r.kind == Kind::plane; };
-  b.vector("/normal", r.normal, "", "half_space: vertices with normal·x ≤ offset; plane: with both equal.")
+  b.vector("/normal", r.normal, "",
+           "half_space: vertices with n·x ≤ offset, n the normal at unit length; plane: with both equal.")
       .applies = has_normal;
   b.number("/offset_m", r.offset, any_finite(), "m", "half_space, plane: offset along the normal.").applies =
       has_normal;

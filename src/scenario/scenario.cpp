@@ -209,6 +209,20 @@ void check_solid(Scenario& s) {
                      "set /material/plasticity/deviatoric to true, or use p1 or p2");
 }
 
+void require_normal(const Scenario& s, const solid::Region& region, const std::string& pointer) {
+  const bool has_normal =
+      region.kind == solid::Region::Kind::half_space || region.kind == solid::Region::Kind::plane;
+  if (has_normal && !(region.normal.norm() > 0.0))
+    throw InputError(s.file, pointer + "/normal", "has no length", "give for instance [0, 0, 1]");
+}
+
+void check_regions(const Scenario& s) {
+  for (std::size_t i = 0; i < s.body.fixed.size(); ++i)
+    require_normal(s, s.body.fixed[i].region, "/body/fixed/" + std::to_string(i));
+  for (std::size_t i = 0; i < s.body.loads.pressure.size(); ++i)
+    require_normal(s, s.body.loads.pressure[i].region, "/body/loads/pressure/" + std::to_string(i));
+}
+
 void check_plasticity(const Scenario& s) {
   const material::Plasticity& law = s.params.plasticity;
   if (law.enabled && law.form == material::FlowForm::j2 &&
@@ -218,6 +232,7 @@ void check_plasticity(const Scenario& s) {
 }
 
 void check_combinations(Scenario& s) {
+  check_regions(s);
   check_plasticity(s);
   check_solid(s);
   check_rates(s);

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "base/types.h"
@@ -12,15 +11,15 @@ namespace argil::solid {
 /// Part of space whose nodes at rest are meant.
 struct Region {
   enum class Kind { box, sphere, half_space, plane, nodes } kind = Kind::box;
-  Vec3 lower = Vec3::Zero();   ///< box [m]
-  Vec3 upper = Vec3::Zero();   ///< box [m]
-  Vec3 centre = Vec3::Zero();  ///< sphere [m]
-  double radius = 0.0;         ///< sphere [m]
-  Vec3 normal =
-      Vec3::UnitZ();  ///< half_space: normal·x ≤ offset; plane: |normal·x/|normal| − offset| ≤ thickness
-  double offset = 0.0;      ///< half_space, plane [m]
-  double thickness = 1e-9;  ///< plane: half of it [m]
-  std::vector<int> nodes;   ///< nodes
+  Vec3 lower = Vec3::Zero();    ///< box [m]
+  Vec3 upper = Vec3::Zero();    ///< box [m]
+  Vec3 centre = Vec3::Zero();   ///< sphere [m]
+  double radius = 0.0;          ///< sphere [m]
+  Vec3 normal = Vec3::UnitZ();  ///< of any length, n its direction: half_space: n·x ≤ offset;
+                                ///< plane: |n·x − offset| ≤ thickness
+  double offset = 0.0;          ///< half_space, plane [m]
+  double thickness = 1e-9;      ///< plane: half of it [m]
+  std::vector<int> nodes;       ///< nodes
 };
 
 /// Nodes whose motion is prescribed, in all or some directions.
@@ -47,10 +46,5 @@ Constraints find_constraints(const Points& rest, std::span<const Support> suppor
 
 /// Displacement that a support prescribes at a time.
 Vec3 compute_displacement(const Support& support, double time);
-
-/// Which rigid motion the constraints leave to a connected part of the body, in words ("the part with node 12
-/// can turn about (…)"); empty when they hold every part. `element_nodes`: N×m node numbers.
-std::string find_rigid_motion(const Points& rest, const Eigen::MatrixXi& element_nodes,
-                              const Constraints& constraints);
 
 }  // namespace argil::solid

@@ -195,20 +195,5 @@ TEST(Solid, EqualBitsOnAnyNumberOfThreads) {
   }
 }
 
-TEST(FindNodes, CollectsEveryRegionOnceInOrder) {
-  const mesh::TetMesh mesh = test::make_block(2, 2, 2, Vec3(1, 1, 1));
-  Region bottom;
-  bottom.kind = Region::Kind::half_space;
-  bottom.offset = 1e-9;
-  Region corner;
-  corner.kind = Region::Kind::sphere;
-  corner.radius = 0.1;
-  Region one;
-  one.kind = Region::Kind::nodes;
-  one.nodes = {26, 3};
-  const std::vector<Region> regions = {one, bottom, corner};
-  EXPECT_EQ(find_nodes(mesh.vertices, regions), (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 26}));
-}
-
 }  // namespace
 }  // namespace argil::solid

@@ -118,6 +118,10 @@ TEST_F(StaticMode, SupportsOnALineLeaveATurnAndAreRefused) {
                  {"/body/fixed", "can turn about an axis along (0, 0, ", "not on a line"});
 }
 
+TEST_F(StaticMode, NormalWithoutLengthIsRefused) {
+  expect_refused(make_box(hold_plane("[0, 0, 0]", 0.0, ""), ""), {"/body/fixed/0/normal", "has no length"});
+}
+
 TEST_F(StaticMode, NoSupportsAreRefused) {
   expect_refused(make_box("", kLift), {"/body/fixed", "does not hold the body"});
 }
