@@ -62,13 +62,29 @@ Mat9 compute_neo_hookean_tangent(const Mat3& F, const Mat3& inverse_plastic, con
   return pull.transpose() * A * pull;
 }
 
-/// R Ω σ + R C:(RᵀdF − ΩS) with Ω = [G⁻¹ axial(RᵀdF)]×, G = tr(S) 1 − S: the derivative of Rσ. Its symmetric
-/// part differs from the Hessian only where σ and S do not commute.
+/// G = tr(S) 1 − S, by which a rotation of F resists being changed: Ω = [G⁻¹ axial(RᵀdF)]×.
+Mat3 compute_inverse_inertia(const Mat3& S) {
+  return (S.trace() * Mat3::Identity() - S).inverse();
+}
+
+/// Does the rotation's own derivative enter the stress? Where σ and S always commute it has no part in it.
+bool has_spin(StrainModel model, const Vec6& plastic_strain, const Elasticity& e) {
+  return has_own_rotation(model) && (e.C || (plastic_strain.array() != 0.0).any());
+}
+
+/// w = G⁻¹ k with [k]× = skew(σS): σ:dS with dS = RᵀdF − ΩS is (σ − 2[w]×):RᵀdF.
+Vec3 compute_spin(const Mat3& sigma, const Mat3& S, const Mat3& G_inverse) {
+  return G_inverse * (0.5 * compute_axial(sigma * S));
+}
+
+/// P = R T, T = σ − 2[w]×: dP = R (Ω T + dσ − 2[dw]×), dσ = C:dS, G dw = d(½ axial(σS)) − dG w.
 Mat9 compute_corotational_tangent(const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e) {
+  const bool spins = has_spin(StrainModel::corotational, plastic_strain, e);
   const Mat3 S = compute_symmetric_part(m.R.transpose() * m.F);
-  const Mat3 G_inverse = (S.trace() * Mat3::Identity() - S).inverse();
+  const Mat3 G_inverse = compute_inverse_inertia(S);
   const Mat3 sigma = from_mandel(compute_stress(e, compute_elastic_strain(m, plastic_strain)));
-  const Mat3 total = sigma + e.excess_bulk * e.volume_change * Mat3::Identity();
+  const Vec3 w = spins ? compute_spin(sigma, S, G_inverse) : Vec3(Vec3::Zero());
+  const Mat3 T = sigma + e.excess_bulk * e.volume_change * Mat3::Identity() - 2.0 * make_cross_matrix(w);
   Mat9 A;
   for (int k = 0; k < 9; ++k) {
     Mat3 dF = Mat3::Zero();
@@ -76,10 +92,15 @@ Mat9 compute_corotational_tangent(const PointMotion& m, const Vec6& plastic_stra
     const Mat3 turned = m.R.transpose() * dF;
     const Mat3 omega = make_cross_matrix(G_inverse * compute_axial(turned));
     const Mat3 dS = compute_symmetric_part(turned - omega * S);
-    const Mat3 change = omega * total + from_mandel(compute_stress(e, to_mandel(dS)));
+    const Mat3 dsigma = from_mandel(compute_stress(e, to_mandel(dS)));
+    Mat3 change = omega * T + dsigma;
+    if (spins) {
+      const Vec3 dw = G_inverse * (0.5 * compute_axial(dsigma * S + sigma * dS) - dS.trace() * w + dS * w);
+      change -= 2.0 * make_cross_matrix(dw);
+    }
     A.col(k) = (m.R * change).reshaped();
   }
-  return 0.5 * (A + A.transpose());
+  return 0.5 * (A + A.transpose());  // which it is but for rounding
 }
 
 Mat9 compute_linear_tangent(const Elasticity& e) {
@@ -130,18 +151,15 @@ double compute_energy_density(StrainModel model, const PointMotion& m, const Vec
 }
 
 Mat3 compute_piola(StrainModel model, const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e) {
-  const bool is_plastic = (plastic_strain.array() != 0.0).any();
   if (model == StrainModel::neo_hookean) {
-    if (!is_plastic) return compute_neo_hookean_piola(m.F, e);
+    if (!(plastic_strain.array() != 0.0).any()) return compute_neo_hookean_piola(m.F, e);
     const Mat3 inverse = compute_inverse_plastic_stretch(plastic_strain);
     return compute_neo_hookean_piola(m.F * inverse, e) * inverse.transpose();
   }
   Mat3 sigma = from_mandel(compute_stress(e, compute_elastic_strain(m, plastic_strain)));
-  if (has_own_rotation(model) && (is_plastic || e.C)) {
-    // σ:dS with dS = RᵀdF − ΩS; the part of Ω is −2[G⁻¹k]×:RᵀdF with [k]× = skew(σS).
+  if (has_spin(model, plastic_strain, e)) {
     const Mat3 S = compute_symmetric_part(m.R.transpose() * m.F);
-    const Vec3 k = 0.5 * compute_axial(sigma * S);
-    sigma -= 2.0 * make_cross_matrix((S.trace() * Mat3::Identity() - S).inverse() * k);
+    sigma -= 2.0 * make_cross_matrix(compute_spin(sigma, S, compute_inverse_inertia(S)));
   }
   sigma.diagonal().array() += e.excess_bulk * e.volume_change;
   return m.R * sigma;

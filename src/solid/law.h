@@ -45,8 +45,7 @@ double compute_energy_density(StrainModel model, const PointMotion& motion, cons
 Mat3 compute_piola(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
                    const Elasticity& e);
 
-/// ∂P/∂F, symmetric. Exact for the linear and neo-Hookean laws and the isotropic corotational one without
-/// plastic strain; else the terms of second order in the elastic strain are left out.
+/// ∂P/∂F, the energy's second derivative: exact for every law, symmetric. volume_change counts as given.
 Mat9 compute_tangent(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
                      const Elasticity& e);
 

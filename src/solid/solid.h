@@ -36,7 +36,7 @@ struct TetMaterial {
   double yield = 0.0;   ///< elastic strain norm [–]
 };
 
-/// What the last step took.
+/// What the last step took; statics: with all its shares of the load, those that failed included.
 struct StepCounters {
   int newton_iterations = 0;
   int linear_iterations = 0;
@@ -229,6 +229,7 @@ class Solid {
   double m_rounding = 0.0;      // what rounding alone leaves of a residual
   double m_potential = 0.0, m_potential_scale = 0.0, m_potential_rounding = 0.0;
   StepCounters m_counters;
+  int m_iterations = 0;  // Newton's, of the present step or share of the load
 };
 
 }  // namespace argil::solid

@@ -60,7 +60,8 @@ StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
     set_iterate(1.0);
     return StepStatus::ok();
   }
-  const bool is_first = m_counters.newton_iterations++ == 0;
+  const bool is_first = m_iterations++ == 0;
+  ++m_counters.newton_iterations;
   linear::SolveReport report = solve_system(loads, is_first);
   if (is_newton() && needs_tangents() && !(report.converged && m_rhs.cwiseProduct(m_delta).sum() >= 0.0)) {
     // The true matrix has negative modes here, so that its step need not lead downhill.
@@ -77,7 +78,7 @@ StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
     set_iterate(1.0);
     return StepStatus::ok();
   }
-  if (m_counters.newton_iterations > m_params.newton_max_iterations)
+  if (m_iterations > m_params.newton_max_iterations)
     return StepStatus::failed({tick, "solid", -1, "Newton's relative residual",
                                m_rhs.norm() / m_residual_scale, m_params.newton_tolerance});
   return search_line(loads, tick);

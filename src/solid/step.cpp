@@ -30,6 +30,7 @@ StepStatus Solid::begin_step(const SolidState& state, const StepLoads& loads, do
   m_is_static = false;
   m_load_share = 1.0;
   m_counters = {};
+  m_iterations = 0;
   m_plastic_strain = &state.plastic_strain;
   m_x_start = state.x;
   m_v_start = state.v;
@@ -252,6 +253,7 @@ StepStatus Solid::iterate_static(const SolidState& state, const StepLoads& loads
   m_x = state.x;
   m_x_hat = m_x;
   m_v.setZero();
+  m_iterations = 0;
   place_supports(kEnd, m_load_share);
   ARGIL_TRY(update_kinematics(m_x, 0));
   for (bool solved = false; !solved;) {
@@ -269,10 +271,10 @@ StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
   m_v_hat.setZero();
   m_v_start.setZero(3, m_elements.num_nodes());
   m_x_start = state.x;
+  m_counters = {};
   double done = 0.0;
   for (double step = 1.0; done < 1.0;) {
     m_load_share = std::min(1.0, done + step);
-    m_counters = {};
     const StepStatus status = iterate_static(state, loads);
     if (status.is_ok()) {
       done = m_load_share;

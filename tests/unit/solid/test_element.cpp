@@ -141,11 +141,9 @@ TEST_P(EveryLaw, StressTurnsWithTheBodyAndBalancesMoments) {
 }
 
 TEST_P(EveryLaw, TangentIsTheDerivativeOfTheStress) {
-  const auto [model, is_anisotropic, is_plastic] = GetParam();
-  if (model == StrainModel::corotational && (is_anisotropic || is_plastic))
-    GTEST_SKIP() << "second-order terms are left out there";
-  F = make_random_rotation(rng) *
-      (1.05 * Mat3::Identity() + make_symmetric(0.05));  // stretched: no negative mode
+  const StrainModel model = GetParam().model;
+  e.excess_bulk = 5.0;  // held fast: its own change has another place in the matrix
+  e.volume_change = 0.07;
   const Mat9 A = compute_tangent(model, make_motion(model, F), plastic, e);
   for (int i = 0; i < 9; ++i) {
     const double d = 1e-6;
