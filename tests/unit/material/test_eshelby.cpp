@@ -95,6 +95,21 @@ TEST(Eshelby, DilatationOfTheInclusionIsThatOfTheSphereWhateverTheShape) {
                   4e-14);
 }
 
+TEST(Eshelby, TraceIsThreeWhateverTheShapeAndTheMatrix) {
+  // P_ijij = 3. P is a mean over directions n of Γ(n) : C, and each of these projects onto the strains
+  // sym(n ⊗ u), a space of three dimensions: the trace of a projector is its rank.
+  for (const double nu : {-0.3, 0.0, 0.25, 0.49})
+    for (double c = 1e-3; c < 2e3; c *= 10.0)
+      EXPECT_NEAR(compute_eshelby_tensor(nu, c).trace(), 3.0, 1e-14) << "aspect " << c << " nu " << nu;
+  Mat6 C = make_isotropic(0.3);
+  C(2, 2) *= 0.4;
+  C(3, 3) *= 0.7;
+  C(0, 5) = C(5, 0) = 0.2;  // no symmetry but the plane's
+  for (const Vec3& axes : {Vec3(1.0, 1.0, 1.0), Vec3(3.0, 2.0, 1.0), Vec3(0.3, 1.0, 2.0)})
+    for (const Mat6& matrix : {make_isotropic(0.3), C})
+      EXPECT_NEAR(compute_eshelby_integral(matrix, axes, 1e-12).tensor.trace(), 3.0, 1e-13);
+}
+
 TEST(Eshelby, OfAPennyOfNoThicknessIsThatOfALayer) {
   // All normal and out-of-plane strain of the layer is its own, none of it in the plane [Mura1987, 11.23].
   const double nu = 0.3;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/rng.h"
 #include "support/block_mesh.h"
@@ -111,6 +112,8 @@ TEST(PoreWater, TakesUpFluxTimesAreaTimesTimeUntilFull) {
   for (int i = 0; i < 100000; ++i) water.exchange(triangle, area, 1, 0.01);
   EXPECT_EQ(water.saturation()(tet), 1.0);
   EXPECT_NEAR(water.ledger().added, water.capacity(tet), 1e-15);  // what did not fit stayed with the tool
+  water.exchange(triangle, area, -1, 0.01);
+  EXPECT_DOUBLE_EQ(water.ledger().removed, 0.3 * 2e-3 * 0.01);  // the dry tool's own flux
   for (int i = 0; i < 100000; ++i) water.exchange(triangle, area, -1, 0.01);
   EXPECT_EQ(water.saturation()(tet), 0.0);
   EXPECT_NEAR(water.ledger().removed, water.capacity(tet), 1e-15);
@@ -190,6 +193,20 @@ TEST(Stencil, MonotoneStepIsTheLimitAndNotABitMore) {
   EXPECT_EQ(water.diffuse(0.89 * stencil.monotone_step), 1);
   EXPECT_EQ(water.diffuse(0.91 * stencil.monotone_step), 2);  // a tenth is kept for rounding
   EXPECT_EQ(water.diffuse(90.0 * stencil.monotone_step * (1.0 - 1e-9)), 100);
+}
+
+TEST(PoreWater, TakesSubstepsByTheDiffusivityOfTheWettestTet) {
+  // D(S) = D₀ e^{βS} and the monotone limit falls with it: e³ = 20.0855 and e^{1.5} = 4.4817 as many
+  // substeps.
+  const Body body(test::make_shaken_block(3));
+  WaterParams params = make_params(FluxForm::two_point);
+  params.diffusivity_exponent = 3.0;
+  Field start = Field::Constant(body.mesh.num_tets(), 0.2);
+  for (const auto& [wettest, substeps] : {std::pair(1.0, 2009), std::pair(0.5, 449)}) {
+    start(7) = wettest;
+    PoreWater water(body.mesh, body.topology, params, start);
+    EXPECT_EQ(water.diffuse(90.0 * water.monotone_step()), substeps);  // ⌈100 e^{3S}⌉
+  }
 }
 
 TEST(Stencil, BothSidesOfAFaceHoldTheSameBits) {
