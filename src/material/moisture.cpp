@@ -39,6 +39,10 @@ WetState make_state(double E, double nu, double yield) {
   return {E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu)), yield};
 }
 
+WetState make_state(const MediumResult& medium, double yield) {
+  return {medium.bulk_modulus - 2.0 / 3.0 * medium.shear_modulus, medium.shear_modulus, yield};
+}
+
 /// Place of S in the table: lower node and share of the upper one. Rounding may leave S a last bit outside
 /// [0, 1].
 std::pair<std::size_t, double> locate(double saturation) {
@@ -71,42 +75,63 @@ double compute_suction_factor(const Moisture& m, double saturation) {
 }
 
 MoistureTable::MoistureTable(const Elastic& dry, double yield, const Moisture& moisture, double porosity)
-    : m_dry(dry), m_yield(yield), m_moisture(moisture) {
+    : m_dry(dry), m_yield(yield), m_porosity(porosity), m_moisture(moisture) {
   if (moisture.law != MoistureLaw::effective_medium || !moisture.softens_elasticity) return;
   const bool anisotropic = !material::is_isotropic(moisture.medium);
   for (int i = 0; i <= kIntervals; ++i) {
-    const MediumResult medium = compute_effective_medium(dry, moisture.medium, porosity * i / kIntervals);
-    m_states.push_back({medium.bulk_modulus - 2.0 / 3.0 * medium.shear_modulus, medium.shear_modulus, yield});
+    const MediumResult medium = evaluate(static_cast<double>(i) / kIntervals, dry.youngs_modulus);
+    m_states.push_back(make_state(medium, yield));
     if (anisotropic) m_stiffness.push_back(medium.stiffness);
   }
 }
 
-WetState MoistureTable::at(double saturation) const {
+MediumResult MoistureTable::evaluate(double saturation, double youngs_modulus) const {
   const double S = std::clamp(saturation, 0.0, 1.0);  // rounding may leave it a last bit outside
+  return compute_effective_medium({youngs_modulus, m_dry.poissons_ratio}, m_moisture.medium, m_porosity * S);
+}
+
+/// Do all moduli grow with the dry one? Those of clay with stiff water do not.
+bool MoistureTable::is_proportional() const {
+  const EffectiveMedium& medium = m_moisture.medium;
+  return m_states.empty() || (medium.fluid_bulk_modulus == 0.0 && medium.fluid_shear_modulus == 0.0);
+}
+
+WetState MoistureTable::at(double saturation) const {
+  const double S = std::clamp(saturation, 0.0, 1.0);
   const Moisture& m = m_moisture;
-  WetState state = make_state(m_dry.youngs_modulus, m_dry.poissons_ratio, m_yield);
-  double strength = compute_suction_factor(m, S);  // of modulus and yield stress alike
-  switch (m.law) {
-    case MoistureLaw::effective_medium:
-      if (!m_states.empty()) state = interpolate_state(m_states, S);
-      break;
-    case MoistureLaw::liquidity_index:
-      strength *= compute_liquidity_factor(m, S);
-      break;
-    case MoistureLaw::table: {
-      const double E = interpolate_monotone(m.table_saturation, m.table_youngs_modulus, S);
-      state = make_state(m.softens_elasticity ? E : m_dry.youngs_modulus, m_dry.poissons_ratio,
-                         interpolate_monotone(m.table_saturation, m.table_yield, S));
-      break;
-    }
-  }
+  if (!m_states.empty()) return with_strength(interpolate_state(m_states, S), S);
+  if (m.law != MoistureLaw::table)
+    return with_strength(make_state(m_dry.youngs_modulus, m_dry.poissons_ratio, m_yield), S);
+  const double E = m.softens_elasticity ? interpolate_monotone(m.table_saturation, m.table_youngs_modulus, S)
+                                        : m_dry.youngs_modulus;
+  const double yield = interpolate_monotone(m.table_saturation, m.table_yield, S);
+  return with_strength(make_state(E, m_dry.poissons_ratio, yield), S);
+}
+
+WetState MoistureTable::at(double saturation, double youngs_modulus) const {
+  if (!is_proportional())
+    return with_strength(make_state(evaluate(saturation, youngs_modulus), m_yield), saturation);
+  const Moisture& m = m_moisture;
+  const bool by_table = m.law == MoistureLaw::table && m.softens_elasticity;
+  const double factor = youngs_modulus / (by_table ? m.table_youngs_modulus.front() : m_dry.youngs_modulus);
+  WetState state = at(saturation);
+  state.lambda *= factor;
+  state.mu *= factor;
+  return state;
+}
+
+/// What suction, liquidity and yield law make of modulus and yield strain.
+WetState MoistureTable::with_strength(WetState state, double saturation) const {
+  const Moisture& m = m_moisture;
+  double strength = compute_suction_factor(m, saturation);  // of modulus and yield stress alike
+  if (m.law == MoistureLaw::liquidity_index) strength *= compute_liquidity_factor(m, saturation);
   if (m.softens_elasticity) {
     state.lambda *= strength;
     state.mu *= strength;
   } else {
     state.yield *= strength;
   }
-  if (m.yield_law == YieldLaw::log_linear) state.yield *= std::pow(m.saturated_yield_ratio, S);
+  if (m.yield_law == YieldLaw::log_linear) state.yield *= std::pow(m.saturated_yield_ratio, saturation);
   return state;
 }
 
@@ -114,6 +139,12 @@ Mat6 MoistureTable::stiffness_at(double saturation, const Vec3& axis) const {
   const auto [node, share] = locate(saturation);
   const Mat6 C = (1.0 - share) * m_stiffness[node] + share * m_stiffness[node + 1];
   return compute_suction_factor(m_moisture, saturation) * lay_along(C, axis);
+}
+
+Mat6 MoistureTable::stiffness_at(double saturation, const Vec3& axis, double youngs_modulus) const {
+  if (is_proportional()) return youngs_modulus / m_dry.youngs_modulus * stiffness_at(saturation, axis);
+  return compute_suction_factor(m_moisture, saturation) *
+         lay_along(evaluate(saturation, youngs_modulus).stiffness, axis);
 }
 
 bool MoistureTable::is_isotropic() const {

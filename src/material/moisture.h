@@ -44,12 +44,23 @@ class MoistureTable {
   /// Full stiffness at S (Mandel) with the inclusions' axis along `axis` (unit length). Only when not
   /// is_isotropic().
   Mat6 stiffness_at(double saturation, const Vec3& axis) const;
+
+  /// The same of clay of this dry Young's modulus [Pa] in place of the material's. Nothing but the effective
+  /// medium of water with a stiffness of its own knows more than a factor: there the law is evaluated, which
+  /// costs a scheme each time, for C(E, K_I) is not E times C(1, K_I).  `table`: E(S)/E(0) counts.
+  WetState at(double saturation, double youngs_modulus) const;
+  Mat6 stiffness_at(double saturation, const Vec3& axis, double youngs_modulus) const;
   /// False only for aligned inclusions that are no spheres, in a law that uses them.
   bool is_isotropic() const;
 
  private:
+  WetState with_strength(WetState state, double saturation) const;
+  bool is_proportional() const;
+  MediumResult evaluate(double saturation, double youngs_modulus) const;
+
   Elastic m_dry;
   double m_yield;
+  double m_porosity;
   Moisture m_moisture;
   std::vector<WetState> m_states;  // of the effective medium at S = i/(size−1); empty where it does not count
   std::vector<Mat6> m_stiffness;  // axis 3; empty when isotropic

@@ -220,9 +220,8 @@ Scene build_scene(const Scenario& s) {
           ? Field(Field::Constant(num_tets, s.params.water.initial_saturation))
           : take_field(s, body.mesh, s.body.saturation_field, "/body/mesh/saturation_field", 0.0, 1.0);
   if (!s.body.modulus_field.empty())
-    body.modulus_scale =
-        take_field(s, body.mesh, s.body.modulus_field, "/body/mesh/youngs_modulus_field", 1e-6, 1e15) /
-        s.params.elastic.youngs_modulus;
+    body.youngs_modulus =
+        take_field(s, body.mesh, s.body.modulus_field, "/body/mesh/youngs_modulus_field", 1e-6, 1e15);
   if (!s.body.pore_axis_field.empty()) body.pore_axis = take_axes(s, body.mesh);
   check_diffusion(s, body);
   fix_and_load(s, body);

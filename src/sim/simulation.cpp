@@ -103,15 +103,17 @@ void Simulation::exchange_water(int sign, double step_s) {
 /// Moduli, yield, size and weight of a tet at its present saturation.
 void Simulation::refresh_material(int tet) {
   const double S = m_water.saturation()(tet);
-  const double scale = m_body.modulus_scale.size() > 0 ? m_body.modulus_scale(tet) : 1.0;
-  const material::WetState wet = m_moisture.at(S);
-  m_solid.set_material(tet, {scale * wet.lambda, scale * wet.mu, wet.yield});
+  const bool has_own_modulus = m_body.youngs_modulus.size() > 0;
+  const double E = has_own_modulus ? m_body.youngs_modulus(tet) : m_params.elastic.youngs_modulus;
+  const material::WetState wet = has_own_modulus ? m_moisture.at(S, E) : m_moisture.at(S);
+  m_solid.set_material(tet, {wet.lambda, wet.mu, wet.yield});
   if (m_params.water.swelling > 0.0) m_solid.set_swelling(tet, 1.0 + m_params.water.swelling * S);
   if (m_params.water.adds_mass) m_solid.set_water_mass(tet, m_water.capacity(tet) * S);
   if (m_moisture.is_isotropic()) return;
   const Vec3 axis =
       m_body.pore_axis.cols() > 0 ? Vec3(m_body.pore_axis.col(tet)) : m_params.moisture.medium.axis;
-  m_solid.set_anisotropic_stiffness(tet, scale * m_moisture.stiffness_at(S, axis));
+  m_solid.set_anisotropic_stiffness(
+      tet, has_own_modulus ? m_moisture.stiffness_at(S, axis, E) : m_moisture.stiffness_at(S, axis));
 }
 
 /// Brings the solid up to date with every tet whose saturation moved by more than `tolerance` since last

@@ -17,7 +17,7 @@ struct Body {
   mesh::Topology topology;
   std::vector<solid::Support> supports;  ///< where its motion is prescribed
   Field initial_saturation;              ///< per tet [–]
-  Field modulus_scale;                   ///< per tet: modulus over the material's [–]; empty: 1 everywhere
+  Field youngs_modulus;                  ///< per tet, dry [Pa]; empty: the material's everywhere
   Points pore_axis;  ///< 3×tets, unit: of aligned pores; empty: the material's everywhere
   solid::Loads loads;
   mesh::TriangleMesh skin;  ///< empty without a skin
@@ -32,6 +32,7 @@ struct State {
   // contact
   contact::Pose contact_tool;          ///< tool at the end of the last detection
   Points contact_x;                    ///< body at the end of the last detection [m]
+  bool has_moved = false;              ///< the body has since: else it is still at contact_x
   Vec3 hand_force = Vec3::Zero();      ///< [N] that the hand feels
   Vec3 hand_torque = Vec3::Zero();     ///< [N m] about the hand's point
   int force_age = 0;                   ///< [ticks] since it was computed

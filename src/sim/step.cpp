@@ -1,5 +1,7 @@
 // One haptic tick: the paper's loop. Equation numbers are the paper's, listed in src/README.md.
 
+#include <optional>
+
 #include "sim/simulation.h"
 
 namespace argil::sim {
@@ -33,9 +35,11 @@ StepStatus Simulation::tick(const device::DeviceSample& sample) {
 /// Detection over the last `ticks` ticks; both paths start where the last detection ended, so none has a gap.
 void Simulation::contact_step(int ticks) {
   const StageScope scope(m_observer, Stage::contact);
-  m_detector.find_contacts(m_state.contact_x, m_state.solid.x, m_state.contact_tool, m_state.tool,
-                           m_contacts);
-  m_state.contact_x = m_state.solid.x;
+  const std::optional<double> body_motion = m_state.has_moved ? std::optional<double>() : 0.0;
+  m_detector.find_contacts(m_state.contact_x, m_state.solid.x, m_state.contact_tool, m_state.tool, m_contacts,
+                           body_motion);
+  if (m_state.has_moved) m_state.contact_x = m_state.solid.x;
+  m_state.has_moved = false;
   m_state.contact_tool = m_state.tool;
   const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;  // pull: force reversed
   m_state.hand_force = sign * m_contacts.force_on_tool;
@@ -78,6 +82,7 @@ StepStatus Simulation::physics_step() {
     apply_clay_kernel(h);  // v ← G_d^{h/h_ref} v
     m_x_before = solid.x;
     m_solid.move(solid);
+    m_state.has_moved = true;
     m_state.contact_work += m_state.contact_force.cwiseProduct(solid.x - m_x_before).sum();
     m_state.contact_force.setZero();
     m_state.is_touched = false;

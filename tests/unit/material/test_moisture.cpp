@@ -143,6 +143,21 @@ TEST(MoistureTable, OfAUserPassesThroughTheDataAndNeverOvershoots) {
   }
 }
 
+TEST(MoistureTable, OfAUserBendsByTheHarmonicMeanOfTheSecants) {
+  // Secants of −20 and −140 kPa: the slope between them is 2ab/(a+b) = −35 kPa [Fritsch & Butland 1984], at
+  // the ends the secant. Hermite's cubic is (y₀+y₁)/2 + h(m₀−m₁)/8 in the middle. A mean of −80 kPa would lie
+  // beyond three times the flat secant, where no cubic is monotone [Fritsch & Carlson 1980].
+  Moisture moisture;
+  moisture.law = MoistureLaw::table;
+  moisture.table_saturation = {0.0, 0.5, 1.0};
+  moisture.table_youngs_modulus = {1e5, 9e4, 2e4};
+  moisture.table_yield = {0.02, 0.018, 0.004};
+  const MoistureTable table(kClay, kYield, moisture, kPorosity);
+  EXPECT_NEAR(youngs_modulus(table.at(0.25)), 95e3 + 0.5 / 8.0 * (-20e3 + 35e3), 1e-8);
+  EXPECT_NEAR(youngs_modulus(table.at(0.75)), 55e3 + 0.5 / 8.0 * (-35e3 + 140e3), 1e-8);
+  EXPECT_NEAR(table.at(0.25).yield, 0.019 + 0.5 / 8.0 * (-0.004 + 0.007), 1e-16);
+}
+
 TEST(MoistureTable, OfAUserWithTwoPointsIsAStraightLine) {
   Moisture moisture;
   moisture.law = MoistureLaw::table;
@@ -166,6 +181,10 @@ TEST(MoistureTable, HasAPreferredAxisOnlyForAlignedSpheroids) {
   // Laid along x: what was C₃₃ is C₁₁ now.
   EXPECT_NEAR(table.stiffness_at(0.377, Vec3::UnitX())(0, 0), exact(2, 2), 2e-6 * exact(2, 2));
   EXPECT_LT(exact(2, 2), 0.8 * exact(0, 0));
+  moisture.suction_peak_ratio = 1.8;
+  moisture.suction_peak_saturation = 0.377;
+  const MoistureTable sucked(kClay, kYield, moisture, kPorosity);
+  EXPECT_LT((sucked.stiffness_at(0.377, Vec3::UnitZ()) - 1.8 * exact).norm(), 4e-6 * exact.norm());
   moisture.softens_elasticity = false;
   EXPECT_TRUE(MoistureTable(kClay, kYield, moisture, kPorosity).is_isotropic());
 }

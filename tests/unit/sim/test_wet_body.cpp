@@ -37,10 +37,10 @@ solid::Support make_roller(int direction, double at, double displacement) {
   return roller;
 }
 
-/// Saturated bar on three smooth walls.
-Body make_bar(double saturation) {
+/// Wet bar of `cells` along its length on three smooth walls.
+Body make_bar(double saturation, int cells = 5) {
   Body body;
-  body.mesh = test::make_block(5, 2, 2, Vec3(kLength, kWidth, kWidth));
+  body.mesh = test::make_block(cells, 2, 2, Vec3(kLength, kWidth, kWidth));
   body.topology = mesh::make_topology(body.mesh);
   for (int k = 0; k < 3; ++k) body.supports.push_back(make_roller(k, 0.0, 0.0));
   body.initial_saturation = Field::Constant(body.mesh.num_tets(), saturation);
@@ -94,6 +94,104 @@ TEST(AlignedPores, GiveABarTheModuliOfTheirDirection) {
       EXPECT_NEAR(energy, 0.5 / c.along * 1e-4 * kLength * kWidth * kWidth, 1e-9 * energy);
     }
   EXPECT_GT(S(2, 2), 1.5 * S(0, 0));  // flat pores: far softer along their axis
+}
+
+/// A bar held between six smooth walls and pulled: its halves are two springs in a row, each as stiff as clay
+/// in uniaxial strain, and the middle goes C₂/(C₁ + C₂) of the way.
+double find_middle(Body body, const Params& params) {
+  body.supports.push_back(make_roller(0, kLength, 0.01 * kLength));
+  for (const int k : {1, 2}) body.supports.push_back(make_roller(k, kWidth, 0.0));
+  const Points rest = body.mesh.vertices;
+  Simulation simulation = make_simulation(std::move(body), params);
+  EXPECT_TRUE(simulation.settle().is_ok());
+  Eigen::Index node = 0;
+  (rest.colwise() - Vec3(0.5 * kLength, 0.5 * kWidth, 0.5 * kWidth)).colwise().norm().minCoeff(&node);
+  EXPECT_LT(std::abs(rest(0, node) - 0.5 * kLength), 1e-15);
+  return (simulation.state().solid.x(0, node) - rest(0, node)) / (0.01 * kLength);
+}
+
+/// Is the tet in the half at the wall x = 0?
+bool is_in_first_half(const mesh::TetMesh& mesh, int tet) {
+  double x = 0.0;
+  for (int i = 0; i < 4; ++i) x += 0.25 * mesh.vertices(0, mesh.tets(i, tet));
+  return x < 0.5 * kLength;
+}
+
+TEST(AlignedPores, OfEachHalfOfABarGiveThatHalfItsStiffness) {
+  Params params = make_params();
+  params.moisture.medium.aspect = 0.1;
+  params.moisture.medium.orientation = material::Orientation::aligned;
+  const Mat6 C = material::compute_effective_medium(params.elastic, params.moisture.medium, 0.4).stiffness;
+  EXPECT_GT(C(0, 0), 1.5 * C(2, 2));
+  for (const bool first : {false, true}) {
+    Body body = make_bar(1.0, 6);
+    body.pore_axis.resize(3, body.mesh.num_tets());
+    for (int t = 0; t < body.mesh.num_tets(); ++t)
+      body.pore_axis.col(t) =
+          is_in_first_half(body.mesh, t) == first ? Vec3(Vec3::UnitX()) : Vec3(Vec3::UnitZ());
+    const double soft = C(2, 2) / (C(0, 0) + C(2, 2));  // along x lies the soft direction of the marked half
+    EXPECT_NEAR(find_middle(std::move(body), params), first ? 1.0 - soft : soft, 1e-10);
+  }
+}
+
+TEST(YoungsModulus, OfEachTetIsTheDryOneThatItsWaterIsAddedTo) {
+  // Halves of 100 and 300 kPa. Drained clay: their moduli stay as 1 to 3. With water of 1 MPa the stiffness
+  // of each is that of eq. 6's relatives for its own E; the same for aligned pores.
+  for (const material::Orientation orientation :
+       {material::Orientation::random, material::Orientation::aligned})
+    for (const double K_I : {0.0, 1e6}) {
+      Params params = make_params();
+      params.moisture.medium.aspect = 0.2;
+      params.moisture.medium.orientation = orientation;
+      params.moisture.medium.axis = Vec3::UnitX();
+      params.moisture.medium.fluid_bulk_modulus = K_I;
+      const auto compute_stiffness = [&](double E) {
+        const Mat6 C = material::compute_effective_medium({E, 0.3}, params.moisture.medium, 0.4).stiffness;
+        return C(2, 2);  // axis 3 of the pores, along x
+      };
+      Body body = make_bar(1.0, 6);
+      body.youngs_modulus.resize(body.mesh.num_tets());
+      for (int t = 0; t < body.mesh.num_tets(); ++t)
+        body.youngs_modulus(t) = is_in_first_half(body.mesh, t) ? 1e5 : 3e5;
+      const double C1 = compute_stiffness(1e5);
+      const double C2 = compute_stiffness(3e5);
+      EXPECT_NEAR(find_middle(std::move(body), params), C2 / (C1 + C2), 1e-10);
+      if (K_I == 0.0)
+        EXPECT_NEAR(C2 / C1, 3.0, 1e-13);
+      else
+        EXPECT_LT(C2 / C1, 2.8);
+    }
+}
+
+TEST(YoungsModulus, OfAMeshReplacesTheMaterialsWhateverThatWas) {
+  // The same field over a material of 100 kPa and of 1 MPa: the same bar, under every law of moisture.
+  const auto sag = [](const Params& base, double material_E) {
+    Params params = base;
+    params.elastic.youngs_modulus = material_E;
+    params.solid.gravity = {9.81, 0.0, 0.0};
+    if (params.moisture.law ==
+        material::MoistureLaw::table)  // a curve is the material's own, from dry to wet
+      params.moisture.table_youngs_modulus = {material_E, 0.7 * material_E, 0.2 * material_E};
+    Body body = make_bar(0.377);
+    body.youngs_modulus = Field::Constant(body.mesh.num_tets(), 1e5);
+    Simulation simulation = make_simulation(std::move(body), params);
+    EXPECT_TRUE(simulation.settle().is_ok());
+    return Points(simulation.state().solid.x - simulation.body().mesh.vertices);
+  };
+  std::vector<Params> laws(4, make_params());
+  laws[0].moisture.medium.fluid_bulk_modulus = 1e6;
+  laws[1].moisture.medium.fluid_bulk_modulus = 1e6;
+  laws[1].moisture.medium.aspect = 0.2;
+  laws[1].moisture.medium.orientation = material::Orientation::aligned;
+  laws[2].moisture.law = material::MoistureLaw::liquidity_index;
+  laws[3].moisture.law = material::MoistureLaw::table;
+  laws[3].moisture.table_saturation = {0.0, 0.4, 1.0};
+  laws[3].moisture.table_yield = {0.02, 0.02, 0.02};
+  for (const Params& params : laws) {
+    const Points soft = sag(params, 1e5);
+    EXPECT_GT(soft.norm(), 1e-4);
+    EXPECT_LT((sag(params, 1e6) - soft).norm(), 1e-12 * soft.norm());
+  }
 }
 
 TEST(Swelling, MakesAFreeBarGrowAlikeInAllDirectionsWithoutStress) {
@@ -182,6 +280,33 @@ Params make_touch_params() {
   return params;
 }
 
+TEST(Uptake, IsFluxTimesTheFootprintOfAFlatToolTimesTime) {
+  // A box of 30 mm × 10 mm, flat on the middle of the bar's upper side: its footprint is 3 cm², however the
+  // faces below are cut. One tick of 1 ms; a dry tool takes at its own rate. Wholly wet tets would take less.
+  const mesh::TetMesh block = test::make_block(1, 1, 1, Vec3(0.03, 0.01, 0.01));
+  const mesh::TriangleMesh tool{block.vertices, mesh::make_topology(block).boundary};
+  for (const solid::ElementKind element : {solid::ElementKind::p1, solid::ElementKind::p2})
+    for (const bool wet : {true, false}) {
+      Params params = make_touch_params();
+      params.solid.element = element;
+      params.water.wetting_flux = 2.0;
+      params.water.drying_flux = 0.7;
+      Body body = make_floor_bar();
+      body.initial_saturation.setConstant(0.5);
+      const device::ToolMode mode = wet ? device::ToolMode::wet : device::ToolMode::dry;
+      device::DeviceSample sample;
+      sample.position = {0.031, 0.0047, 0.021};
+      sample.mode = mode;
+      Simulation simulation(std::move(body), tool, params, sample);
+      sample.position.z() = 0.0195;
+      ASSERT_TRUE(simulation.tick(sample).is_ok());
+      const water::WaterLedger ledger = simulation.pore_water().ledger();
+      const double moved = (wet ? 2.0 : 0.7) * 0.03 * 0.01 * 0.001;
+      EXPECT_NEAR(ledger.added, wet ? moved : 0.0, 1e-12 * moved);
+      EXPECT_NEAR(ledger.removed, wet ? 0.0 : moved, 1e-12 * moved);
+    }
+}
+
 TEST(Rest, AWetToolLeavesAnUntouchedBodyInPlaceBitForBit) {
   Simulation simulation(make_floor_bar(), contact::make_sphere_tool(0.005, 1), make_touch_params(),
                         at_height(0.03, device::ToolMode::wet));
@@ -190,6 +315,26 @@ TEST(Rest, AWetToolLeavesAnUntouchedBodyInPlaceBitForBit) {
   EXPECT_GT(simulation.pore_water().mass(), 1e-6);
   EXPECT_TRUE(simulation.state().is_at_rest);
   EXPECT_EQ(simulation.state().solid.x, simulation.solid().elements().rest);
+}
+
+TEST(Rest, ContactTakesTheBodyFromWhereTheLastDetectionLeftIt) {
+  // No motion of the body is skipped and none seen twice, whether it rests or not: a detection ends at the
+  // body before the tick's own step, and there the next begins.
+  Params params = make_touch_params();
+  params.rest_speed = 1e-6;
+  Simulation simulation(make_floor_bar(), contact::make_sphere_tool(0.005, 1), params,
+                        at_height(0.03, device::ToolMode::push));
+  int moved = 0, slept = 0;
+  for (int k = 0; k < 800; ++k) {
+    const Points x = simulation.state().solid.x;
+    const bool presses = k < 60 || k > 700;
+    ASSERT_TRUE(simulation.tick(at_height(presses ? 0.0242 : 0.03, device::ToolMode::push)).is_ok());
+    ASSERT_EQ(simulation.state().contact_x, x) << k;
+    moved += simulation.state().solid.x != x;
+    slept += simulation.state().is_at_rest;
+  }
+  EXPECT_GT(moved, 100);
+  EXPECT_GT(slept, 200);
 }
 
 TEST(Rest, ABodyAtRestWakesToTheForceThatItWouldHaveGiven) {
