@@ -15,6 +15,7 @@
 #include "output/info.h"
 #include "scenario/build.h"
 #include "scenario/probe.h"
+#include "study/output_name.h"
 #include "study/run.h"
 
 namespace {
@@ -23,6 +24,7 @@ using namespace argil;
 using study::ExitCode;
 
 int make_cage_file(const std::string& surface, const std::string& output, int target_tets, double scale) {
+  study::check_cage_name(surface, output);
   const embed::Cage cage = embed::make_cage(mesh::read_triangle_mesh(surface, scale), {target_tets}, surface);
   mesh::write_gmsh(cage.mesh, output);
   const embed::CageReport& r = cage.report;
@@ -129,7 +131,7 @@ int main(int argc, char** argv) {
   double scale = 1.0;
   CLI::App* cage = app.add_subcommand("cage", "make a tetrahedral cage that encloses a surface");
   cage->add_option("SURFACE", first, "OBJ, STL or PLY, clean or not")->required();
-  cage->add_option("-o,--output", second, "cage (Gmsh)")->required();
+  cage->add_option("-o,--output", second, "cage (Gmsh, .msh)")->required();
   cage->add_option("--tets", target_tets, "wanted number of tets")->check(CLI::Range(50, 5000000));
   cage->add_option("--scale", scale, "metres per unit of the file")->check(CLI::PositiveNumber);
   cage->callback([&] { code = make_cage_file(first, second, target_tets, scale); });

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "base/error.h"
 #include "material/effective_medium.h"
@@ -282,6 +283,21 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
   read_parameters(make_parameter_table(s, file), document, file, "");
   check_combinations(s);
   return s;
+}
+
+std::vector<InputFile> list_input_files(const Scenario& scenario) {
+  Scenario copy = scenario;
+  std::vector<InputFile> list = {{"", scenario.file}};
+  for (const Parameter& row : make_parameter_table(copy, scenario.file)) {
+    if (row.type != ValueType::path || (row.applies && !row.applies())) continue;
+    const std::filesystem::path file = row.write().get<std::string>();
+    if (file.empty()) continue;
+    list.push_back({row.pointer, file.string()});
+    for (const auto& [one, other] : {std::pair{".node", ".ele"}, std::pair{".ele", ".node"}})
+      if (file.extension() == one)
+        list.push_back({row.pointer, std::filesystem::path(file).replace_extension(other).string()});
+  }
+  return list;
 }
 
 std::string print_resolved(const Scenario& scenario) {

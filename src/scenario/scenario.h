@@ -92,6 +92,15 @@ Setting parse_setting(const std::string& text);
 /// file cannot be read.
 Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings);
 
+/// A file that a run reads.
+struct InputFile {
+  std::string pointer;  ///< of the key that names it; empty: the scenario itself
+  std::string file;
+};
+
+/// The scenario and every file that it names, both of a TetGen pair.
+std::vector<InputFile> list_input_files(const Scenario& scenario);
+
 /// The scene with every default written out, keys in the table's order, as JSON. Loading it gives it again.
 std::string print_resolved(const Scenario& scenario);
 

@@ -17,6 +17,7 @@
 #include "scenario/build.h"
 #include "sim/simulation.h"
 #include "study/build_info.h"
+#include "study/output_name.h"
 #include "study/progress.h"
 
 namespace argil::study {
@@ -171,7 +172,7 @@ int run_static(const scenario::Scenario& s, scenario::Scene& scene, const RunOpt
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   file.append_timing({{"solve", seconds}, {"total", seconds}});
   file.finish(failure);
-  output::write_xdmf(result, std::filesystem::path(result).replace_extension(".xdmf").string());
+  output::write_xdmf(result, name_xdmf(result));
   if (failure) return print_failure(*failure);
   if (!options.quiet) {
     const Points moved = simulation.state().solid.x - simulation.solid().elements().rest;
@@ -195,6 +196,7 @@ scenario::Scenario load(const RunOptions& options) {
 
 int run(const RunOptions& options) {
   const scenario::Scenario s = load(options);
+  check_result_name(s, name_result(s, options));
   scenario::Scene scene = scenario::build_scene(s);
   if (s.mode == scenario::Mode::equilibrium) return run_static(s, scene, options);
   const mesh::TriangleMesh tool = scene.tool;
@@ -218,7 +220,7 @@ int run(const RunOptions& options) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   file.append_timing(clock.seconds(seconds, simulation.clock().tick));
   file.finish(failure, g_interrupted != 0 && !failure);
-  output::write_xdmf(result, std::filesystem::path(result).replace_extension(".xdmf").string());
+  output::write_xdmf(result, name_xdmf(result));
   if (failure) return print_failure(*failure);
   if (g_interrupted) {
     std::fprintf(stderr, "argil: interrupted after tick %lld; %s is readable up to there\n",

@@ -90,6 +90,20 @@ class ExitCodes(unittest.TestCase):
             self.assertTrue(error.startswith("argil: "), error)
         self.assertEqual(sorted(self.folder.iterdir()), before)
 
+    def test_2_an_input_is_never_written_over(self):
+        corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+        (self.folder / "body.obj").write_text(corners)
+        before = {file: file.read_bytes() for file in sorted(self.folder.iterdir())}
+        for arguments in (["run", "scene.json", "-o", "scene.json"],
+                          ["run", "scene.json", "--trace", "press.csv", "-o", "press.csv"],
+                          ["run", "scene.json", "-o", "out.xdmf"],
+                          ["cage", "body.obj", "-o", "body.obj"],
+                          ["cage", "body.obj", "-o", "cage.vtk"]):
+            code, out, error = self.call(*arguments)
+            self.assertEqual((code, out, error.count("\n")), (2, "", 1), f"{arguments}: {error}")
+            self.assertIn(arguments[-1], error)
+        self.assertEqual({file: file.read_bytes() for file in sorted(self.folder.iterdir())}, before)
+
     def test_2_bad_command_lines(self):
         for arguments in ([], ["rum"], ["run"], ["run", "scene.json", "--threads", "0"], ["run", "scene.json", "--sett"]):
             self.assertEqual(self.call(*arguments)[0], 2, arguments)

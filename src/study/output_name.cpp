@@ -1,0 +1,48 @@
+#include "study/output_name.h"
+
+#include <filesystem>
+
+#include "base/error.h"
+
+namespace argil::study {
+namespace {
+
+/// `input` is called `what` in the message.
+void require_other_file(const std::string& output, const std::string& input, const std::string& what) {
+  std::error_code missing;  // a file that is not there is no input
+  if (std::filesystem::equivalent(output, input, missing))
+    throw InputError(output, "", "is " + what + " and would be overwritten", "give another name to -o");
+}
+
+bool has_ending(const std::string& file, const char* ending) {
+  return std::filesystem::path(file).extension() == ending;
+}
+
+}  // namespace
+
+std::string name_xdmf(const std::string& result) {
+  return std::filesystem::path(result).replace_extension(".xdmf").string();
+}
+
+void check_result_name(const scenario::Scenario& s, const std::string& result) {
+  if (has_ending(result, ".xdmf"))
+    throw InputError(result, "", "is the name of the XDMF that is written beside a result",
+                     "give -o a name such as " +
+                         std::filesystem::path(result).replace_extension(".h5").filename().string());
+  for (const scenario::InputFile& input : scenario::list_input_files(s)) {
+    const std::string what =
+        input.pointer.empty() ? "the scenario" : "a file that the run reads (" + input.pointer + ")";
+    require_other_file(result, input.file, what);
+    require_other_file(name_xdmf(result), input.file, what);
+  }
+}
+
+void check_cage_name(const std::string& surface, const std::string& cage) {
+  require_other_file(cage, surface, "the surface");
+  if (!has_ending(cage, ".msh"))
+    throw InputError(cage, "", "does not end in .msh, and a cage is written as Gmsh",
+                     "give -o a name such as " +
+                         std::filesystem::path(cage).replace_extension(".msh").filename().string());
+}
+
+}  // namespace argil::study

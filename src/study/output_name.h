@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "scenario/scenario.h"
+
+namespace argil::study {
+
+/// The XDMF that is written beside a result.
+std::string name_xdmf(const std::string& result);
+
+/// Refuses a result name under which, or under whose XDMF's, a file lies that the run reads, and a name that
+/// ends in .xdmf itself. Links count as what they lead to. Throws InputError.
+void check_result_name(const scenario::Scenario& s, const std::string& result);
+
+/// The same for the cage of a surface; its name must end in .msh. Throws InputError.
+void check_cage_name(const std::string& surface, const std::string& cage);
+
+}  // namespace argil::study
