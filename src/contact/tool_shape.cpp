@@ -154,20 +154,20 @@ mesh::TriangleMesh make_stylus_tool(double tip_radius, double radius, double len
   return revolve(profile, segments);
 }
 
-void require_closed_tool(const mesh::TriangleMesh& tool, const std::string& file) {
-  if (tool.num_triangles() < 4)
-    throw InputError(file, "", "has " + std::to_string(tool.num_triangles()) + " triangles",
-                     "a tool is a closed surface of at least 4");
+void require_closed_surface(const mesh::TriangleMesh& surface, const std::string& file) {
+  if (surface.num_triangles() < 4)
+    throw InputError(file, "", "has " + std::to_string(surface.num_triangles()) + " triangles",
+                     "a closed surface has at least 4");
   std::map<std::pair<int, int>, int> direction;  // half-edge → triangle
   double volume = 0.0;
-  for (int t = 0; t < tool.num_triangles(); ++t) {
+  for (int t = 0; t < surface.num_triangles(); ++t) {
     const std::string place = "triangle " + std::to_string(t);
-    const Eigen::Vector3i f = tool.triangles.col(t);
-    if (f.minCoeff() < 0 || f.maxCoeff() >= tool.num_vertices())
+    const Eigen::Vector3i f = surface.triangles.col(t);
+    if (f.minCoeff() < 0 || f.maxCoeff() >= surface.num_vertices())
       throw InputError(file, place, "uses a vertex that the file does not have", "give all vertices");
-    const Vec3 a = tool.vertices.col(f(0));
-    const Vec3 b = tool.vertices.col(f(1));
-    const Vec3 c = tool.vertices.col(f(2));
+    const Vec3 a = surface.vertices.col(f(0));
+    const Vec3 b = surface.vertices.col(f(1));
+    const Vec3 c = surface.vertices.col(f(2));
     const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     constexpr double kFlat = 1e-12;  // height over length of a triangle that rounding cannot tell from a line
     if (!((b - a).cross(c - a).norm() > kFlat * longest))
@@ -184,7 +184,7 @@ void require_closed_tool(const mesh::TriangleMesh& tool, const std::string& file
     if (!direction.contains({edge.second, edge.first}))
       throw InputError(file, "edge " + std::to_string(edge.first) + "-" + std::to_string(edge.second),
                        "belongs to triangle " + std::to_string(t) + " only: the surface is open",
-                       "close the surface; a tool needs an inside");
+                       "close it: what is touched needs an inside");
   if (!(volume > 0.0))
     throw InputError(file, "", "encloses the volume " + std::to_string(volume) + " m3",
                      "turn the triangles round so that their normals point out");

@@ -18,10 +18,10 @@ mesh::TriangleMesh make_capsule_tool(double radius, double length, int segments)
 /// closed flat.
 mesh::TriangleMesh make_stylus_tool(double tip_radius, double radius, double length, int segments);
 
-/// Throws InputError naming `file` and the first edge or triangle at fault unless the surface can be a tool:
+/// Throws InputError naming `file` and the first edge or triangle at fault unless the surface can be touched:
 /// at least a tetrahedron, finite, every edge shared by two triangles that run along it in opposite
 /// directions (closed, manifold and oriented alike), no triangle without area, and normals pointing out
 /// (positive volume).
-void require_closed_tool(const mesh::TriangleMesh& tool, const std::string& file);
+void require_closed_surface(const mesh::TriangleMesh& surface, const std::string& file);
 
 }  // namespace argil::contact

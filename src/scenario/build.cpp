@@ -177,22 +177,16 @@ mesh::TriangleMesh make_tool(const Scenario& s) {
       break;
   }
   mesh::TriangleMesh tool = mesh::read_triangle_mesh(s.tool.file, s.tool.scale);
-  const mesh::SurfaceReport report = mesh::compute_surface_report(tool);
-  if (!report.is_closed() || report.num_degenerate > 0)
-    throw InputError(
-        s.tool.file, "",
-        "the tool's surface is not closed and clean: " + std::to_string(report.num_boundary_edges) +
-            " open edges, " + std::to_string(report.num_non_manifold_edges) + " non-manifold edges, " +
-            std::to_string(report.num_degenerate) + " degenerate triangles",
-        "repair it; a tool must have an inside");
-  double volume = 0.0;
-  for (Eigen::Index t = 0; t < tool.triangles.cols(); ++t)
-    volume += mesh::compute_tet_volume(Vec3::Zero(), tool.vertices.col(tool.triangles(0, t)),
-                                       tool.vertices.col(tool.triangles(1, t)),
-                                       tool.vertices.col(tool.triangles(2, t)));
-  if (!(volume > 0.0))
-    throw InputError(s.tool.file, "", "the tool's triangles point inwards", "turn their orientation round");
+  contact::require_closed_surface(tool, s.tool.file);
   return tool;
+}
+
+void check_skin(const Scenario& s, const mesh::TriangleMesh& skin) {
+  if (s.params.contact_surface != sim::SurfaceKind::skin) return;
+  if (skin.num_triangles() == 0)
+    throw InputError(s.file, "/contact/surface", "is \"skin\" but the body has none",
+                     "give /body/surface or /body/shape/skin_triangles, or set \"cage\"");
+  contact::require_closed_surface(skin, s.body.kind == BodyKind::surface ? s.body.file : s.file);
 }
 
 void check_trace(const Scenario& s, const device::Trace& trace) {
@@ -230,6 +224,7 @@ Scene build_scene(const Scenario& s) {
     check_supports(s, body);
     return scene;
   }
+  check_skin(s, body.skin);
   scene.trace = device::read_trace(s.trace.file, s.trace.options);
   check_trace(s, scene.trace);
   return scene;

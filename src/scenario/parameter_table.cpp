@@ -284,6 +284,10 @@ void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
   b.number("/contact/edge_edge_stiffness_N_per_m", c.edge_edge_stiffness, not_negative(), "N/m",
            "k_ee of eq. 8, per pair.")
       .required = true;
+  b.choice<sim::SurfaceKind>("/contact/surface", s.params.contact_surface,
+                             {{sim::SurfaceKind::cage, "cage"}, {sim::SurfaceKind::skin, "skin"}},
+                             "What the tool meets: the boundary of the solid (the paper), or the skin that "
+                             "the eye sees.");
   b.choice<contact::PenaltyKind>(
       "/contact/penalty", c.penalty,
       {{contact::PenaltyKind::continuous, "continuous"}, {contact::PenaltyKind::discrete, "discrete"}},

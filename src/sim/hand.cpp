@@ -24,15 +24,23 @@ void Simulation::spread_contact_force(int ticks) {
   for (const contact::Contact& c : m_contacts.contacts) {
     if (!acts) break;
     m_state.is_touched = true;
-    for (std::size_t i = 0; i < 3 && c.vertex[i] >= 0; ++i)
-      m_state.contact_force.col(c.vertex[i]) += sign * share * c.weight[i] * c.force;
+    m_surface.add_force(c, sign * share, m_state.contact_force);
     // A pulling contact has negative stiffness; left out, so that the system stays positive definite.
-    if (sign > 0.0) m_contact_stiffness.push_back({c.vertex, c.weight, c.normal, share * c.stiffness});
+    if (sign > 0.0) add_contact_stiffness(c, c.normal, share * c.stiffness);
     weighted_centre += c.force.norm() * c.point;
     weight += c.force.norm();
   }
   m_state.is_pressed = weight > 0.0;
   if (m_state.is_pressed) m_state.contact_centre = weighted_centre / weight;
+}
+
+void Simulation::add_contact_stiffness(const contact::Contact& contact, const Vec3& direction,
+                                       double stiffness) {
+  m_surface.add_stiffness(contact, direction, stiffness, m_solid.elements(), m_contact_stiffness);
+  // One entry stands for the contact as a whole, more of them for one of its vertices each.
+  const std::size_t added = m_contact_stiffness.size() - m_yield_points.size();
+  for (std::size_t i = 0; i < added; ++i)
+    m_yield_points.push_back(added == 1 ? contact.point : Vec3(m_state.contact_x.col(contact.vertex[i])));
 }
 
 /// What a step has found the body to yield under the tool lets the forces of its contacts fall: those on the
@@ -43,12 +51,13 @@ void Simulation::apply_contact_yield() {
   const RateParams& rates = m_params.rates;
   const double per_share = rates.between_frames == BetweenFrames::hold ? 1.0 : rates.physics_period_ticks;
   for (std::size_t i = m_last_detection; i < m_contact_stiffness.size(); ++i) {
-    const contact::Contact& c = m_contacts.contacts[i - m_last_detection];
-    const Vec3 change = per_share * m_solid.compute_contact_change(m_contact_stiffness[i]) * c.normal;
+    const solid::PointStiffness& stiffness = m_contact_stiffness[i];
+    const Vec3 change = per_share * m_solid.compute_contact_change(stiffness) * stiffness.normal;
     m_state.hand_force -= change;
-    m_state.hand_torque -= (c.point - m_state.tool.position).cross(change);
+    m_state.hand_torque -= (m_yield_points[i] - m_state.tool.position).cross(change);
   }
   m_contact_stiffness.clear();
+  m_yield_points.clear();
   m_last_detection = 0;
 }
 

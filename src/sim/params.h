@@ -16,6 +16,12 @@ enum class BetweenFrames {
   re_evaluate,  ///< contact every tick against the last surface
 };
 
+/// What the tool meets.
+enum class SurfaceKind {
+  cage,  ///< the boundary of the solid (the paper)
+  skin,  ///< the embedded surface: what the eye sees
+};
+
 /// Rates as whole numbers of haptic ticks.
 struct RateParams {
   double haptic_period = 0.001;  ///< δ [s]
@@ -35,6 +41,7 @@ struct Params {
   water::WaterParams water;
   solid::SolidParams solid;
   contact::ContactParams contact;
+  SurfaceKind contact_surface = SurfaceKind::cage;
   device::DeviceLimits device;
   /// Speed of the fastest node [m/s] at which a body that nothing touches counts as at rest for two steps: it
   /// is then stopped and not solved for until something acts. 0: only a body that has not moved yet.

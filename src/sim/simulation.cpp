@@ -19,7 +19,8 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
       m_moisture(params.elastic, params.plasticity.yield, params.moisture, params.water.porosity),
       m_solid(m_body.mesh, m_body.topology, m_body.supports, params.solid, params.threads),
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation),
-      m_detector(m_solid.elements().surface, m_solid.elements().num_nodes(), tool, params.contact),
+      m_surface(params.contact_surface, m_body, m_solid.elements()),
+      m_detector(m_surface.triangles(), m_surface.num_vertices(), tool, params.contact),
       m_gate(params.device, params.rates.haptic_period) {
   m_clock.period = params.rates.haptic_period;
   const Eigen::Index n = m_solid.elements().num_nodes();
@@ -27,7 +28,7 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
   m_state.mode = start.mode;
   m_state.contact_tool = m_state.tool;
   m_state.solid = m_solid.make_rest_state();
-  m_state.contact_x = m_state.solid.x;
+  m_surface.find_positions(m_state.solid.x, m_state.contact_x);
   m_state.contact_force.setZero(3, n);
   m_load_force = solid::compute_load_force(m_solid.elements(), m_body.topology.boundary, m_body.loads);
   m_external_force.setZero(3, n);
@@ -45,12 +46,14 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
 
 StepStatus Simulation::settle() {
   ARGIL_TRY(m_solid.find_equilibrium(m_state.solid, {m_load_force}));
-  m_state.contact_x = m_state.solid.x;
+  m_surface.find_positions(m_state.solid.x, m_state.contact_x);
   return StepStatus::ok();
 }
 
 bool Simulation::tool_overlaps_body() const {
-  return m_detector.overlaps(m_state.solid.x, m_state.tool);
+  Points x;
+  m_surface.find_positions(m_state.solid.x, x);
+  return m_detector.overlaps(x, m_state.tool);
 }
 
 /// v ← G_d^{h/h_ref}(r) v with r from the point of contact (eq. 9). A body that nothing presses is left free,
@@ -83,21 +86,9 @@ void Simulation::apply_plastic_flow(double step_s) {
       ordered_sum(m_dissipation.size(), [&](std::ptrdiff_t p) { return m_dissipation(p); });
 }
 
-/// Water through the touched part of every boundary face; a quadratic tet's face is touched as four
-/// triangles.
 void Simulation::exchange_water(int sign, double step_s) {
-  const int per_face = m_solid.elements().surface_per_face;
-  m_touched_face.clear();
-  m_touched_area.clear();
-  for (std::size_t i = 0; i < m_contacts.touched_triangle.size(); ++i) {
-    const int face = m_contacts.touched_triangle[i] / per_face;
-    if (m_touched_face.empty() || m_touched_face.back() != face) {
-      m_touched_face.push_back(face);
-      m_touched_area.push_back(0.0);
-    }
-    m_touched_area.back() += m_contacts.touched_area[i];
-  }
-  m_water.exchange(m_touched_face, m_touched_area, sign, step_s);
+  m_surface.find_touched_tets(m_contacts, m_touched_tet, m_touched_area);
+  m_water.exchange_tets(m_touched_tet, m_touched_area, sign, step_s);
 }
 
 /// Moduli, yield, size and weight of a tet at its present saturation.

@@ -5,6 +5,7 @@
 
 #include "material/moisture.h"
 #include "sim/clock.h"
+#include "sim/contact_surface.h"
 #include "sim/params.h"
 #include "sim/record.h"
 #include "sim/stage.h"
@@ -60,6 +61,7 @@ class Simulation {
   // Between contacts, body and hand: hand.cpp.
   void book_port_energy(const contact::Pose& next);
   void spread_contact_force(int ticks);
+  void add_contact_stiffness(const contact::Contact& contact, const Vec3& direction, double stiffness);
   void apply_contact_yield();
 
   void exchange_water(int sign, double step_s);
@@ -76,16 +78,19 @@ class Simulation {
   material::MoistureTable m_moisture;
   solid::Solid m_solid;
   water::PoreWater m_water;
+  ContactSurface m_surface;
   contact::ContactDetector m_detector;
   contact::Contacts m_contacts;
   device::OutputGate m_gate;
   device::GatedForce m_gated;
   std::vector<solid::PointStiffness>
       m_contact_stiffness;           // since the last physics step, by their share of it
+  std::vector<Vec3> m_yield_points;  // where the force of each acts [m]
   std::size_t m_last_detection = 0;  // where in it the last detection's contacts begin
-  std::vector<int> m_touched_face;   // boundary faces under the tool, and how much of each
+  std::vector<int> m_touched_tet;    // tets under the tool, and how much of their surface
   std::vector<double> m_touched_area;
   std::vector<int> m_changed_tets;
+  Points m_surface_x;   // 3×vertices of the surface, as it is now
   Points m_load_force;  // 3×n, constant
   Points m_external_force;
   Points m_x_before;

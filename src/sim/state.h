@@ -31,8 +31,8 @@ struct State {
   device::ToolMode mode = device::ToolMode::push;
   // contact
   contact::Pose contact_tool;          ///< tool at the end of the last detection
-  Points contact_x;                    ///< body at the end of the last detection [m]
-  bool has_moved = false;              ///< the body has since: else it is still at contact_x
+  Points contact_x;                    ///< touched surface at the end of the last detection [m]
+  bool has_moved = false;              ///< the body has since: else its surface is still at contact_x
   Vec3 hand_force = Vec3::Zero();      ///< [N] that the hand feels
   Vec3 hand_torque = Vec3::Zero();     ///< [N m] about the hand's point
   int force_age = 0;                   ///< [ticks] since it was computed

@@ -35,10 +35,12 @@ StepStatus Simulation::tick(const device::DeviceSample& sample) {
 /// Detection over the last `ticks` ticks; both paths start where the last detection ended, so none has a gap.
 void Simulation::contact_step(int ticks) {
   const StageScope scope(m_observer, Stage::contact);
-  const std::optional<double> body_motion = m_state.has_moved ? std::optional<double>() : 0.0;
-  m_detector.find_contacts(m_state.contact_x, m_state.solid.x, m_state.contact_tool, m_state.tool, m_contacts,
-                           body_motion);
-  if (m_state.has_moved) m_state.contact_x = m_state.solid.x;
+  const bool has_moved = m_state.has_moved;
+  if (has_moved) m_surface.find_positions(m_state.solid.x, m_surface_x);
+  m_detector.find_contacts(m_state.contact_x, has_moved ? m_surface_x : m_state.contact_x,
+                           m_state.contact_tool, m_state.tool, m_contacts,
+                           has_moved ? std::optional<double>() : 0.0);
+  if (has_moved) m_state.contact_x.swap(m_surface_x);
   m_state.has_moved = false;
   m_state.contact_tool = m_state.tool;
   const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;  // pull: force reversed

@@ -236,8 +236,8 @@ void Solid::assemble_rows() {
 void Solid::add_contacts(std::span<const PointStiffness> contacts) {
   for (const PointStiffness& contact : contacts) {
     const Mat3 block = m_tau * m_tau * contact.stiffness * contact.normal * contact.normal.transpose();
-    for (std::size_t i = 0; i < 3 && contact.vertex[i] >= 0; ++i)
-      for (std::size_t j = 0; j < 3 && contact.vertex[j] >= 0; ++j) {
+    for (std::size_t i = 0; i < contact.count(); ++i)
+      for (std::size_t j = 0; j < contact.count(); ++j) {
         const int row = m_row_of_node[static_cast<std::size_t>(contact.vertex[i])];
         const int column = m_row_of_node[static_cast<std::size_t>(contact.vertex[j])];
         if (row < 0 || column < 0) continue;
@@ -276,7 +276,7 @@ double Solid::compute_contact_change(const PointStiffness& contact) const {
 void Solid::apply_contact_stiffness(std::span<const PointStiffness> contacts, Points& force) const {
   for (const PointStiffness& contact : contacts) {
     const double change = compute_contact_change(contact);
-    for (std::size_t i = 0; i < 3 && contact.vertex[i] >= 0; ++i)
+    for (std::size_t i = 0; i < contact.count(); ++i)
       force.col(contact.vertex[i]) += contact.weight[i] * change * contact.normal;
   }
 }
@@ -286,14 +286,14 @@ void Solid::add_contact_change(const Points& to, const Points& from, std::span<c
                                double scale, Points& force) const {
   for (const PointStiffness& contact : contacts) {
     const Vec3 change = scale * contact.stiffness * compute_gap_change(contact, to, from) * contact.normal;
-    for (std::size_t i = 0; i < 3 && contact.vertex[i] >= 0; ++i)
+    for (std::size_t i = 0; i < contact.count(); ++i)
       force.col(contact.vertex[i]) += contact.weight[i] * change;
   }
 }
 
 double Solid::compute_gap_change(const PointStiffness& contact, const Points& to, const Points& from) {
   Vec3 mean = Vec3::Zero();
-  for (std::size_t i = 0; i < 3 && contact.vertex[i] >= 0; ++i)
+  for (std::size_t i = 0; i < contact.count(); ++i)
     mean += contact.weight[i] * (to.col(contact.vertex[i]) - from.col(contact.vertex[i]));
   return contact.normal.dot(mean);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <span>
@@ -23,10 +24,14 @@ struct SolidState {
 
 /// Stiffness that a penalty contact adds between its nodes: k·wᵢwⱼ n⊗n.
 struct PointStiffness {
-  std::array<int, 3> vertex = {-1, -1, -1};  ///< −1 beyond the last; all on one surface triangle
-  std::array<double, 3> weight = {};
+  /// −1 beyond the last; all of one tet.
+  std::array<int, 10> vertex = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+  std::array<double, 10> weight = {};
   Vec3 normal = Vec3::Zero();
   double stiffness = 0.0;  ///< k [N/m]
+  std::size_t count() const {
+    return static_cast<std::size_t>(std::find(vertex.begin(), vertex.end(), -1) - vertex.begin());
+  }
 };
 
 /// Stiffness and strength of one tet as the water left them.

@@ -153,17 +153,22 @@ void PoreWater::give(int tet, double mass) {
 
 void PoreWater::exchange(std::span<const int> triangle, std::span<const double> area, int sign,
                          double step_s) {
-  ARGIL_ASSERT(triangle.size() == area.size() || m_params.uptake == UptakeForm::increment);
+  m_touched.clear();
+  for (const int face : triangle) m_touched.push_back(m_boundary_tet[static_cast<std::size_t>(face)]);
+  exchange_tets(m_touched, area, sign, step_s);
+}
+
+void PoreWater::exchange_tets(std::span<const int> tet, std::span<const double> area, int sign,
+                              double step_s) {
+  ARGIL_ASSERT(tet.size() == area.size() || m_params.uptake == UptakeForm::increment);
   if (m_params.uptake == UptakeForm::flux) {
     const double flux = sign > 0 ? m_params.wetting_flux : -m_params.drying_flux;
-    for (std::size_t i = 0; i < triangle.size(); ++i)
-      give(m_boundary_tet[static_cast<std::size_t>(triangle[i])], flux * area[i] * step_s);
+    for (std::size_t i = 0; i < tet.size(); ++i) give(tet[i], flux * area[i] * step_s);
   } else {
-    m_touched.clear();
-    for (const int face : triangle) m_touched.push_back(m_boundary_tet[static_cast<std::size_t>(face)]);
-    std::sort(m_touched.begin(), m_touched.end());
-    m_touched.erase(std::unique(m_touched.begin(), m_touched.end()), m_touched.end());
-    for (const int tet : m_touched) give(tet, sign * m_params.saturation_increment * m_capacity(tet));
+    m_once.assign(tet.begin(), tet.end());
+    std::sort(m_once.begin(), m_once.end());
+    m_once.erase(std::unique(m_once.begin(), m_once.end()), m_once.end());
+    for (const int t : m_once) give(t, sign * m_params.saturation_increment * m_capacity(t));
   }
   sort_active();
   if (sign < 0) leave_dry();

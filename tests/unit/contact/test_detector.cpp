@@ -269,7 +269,7 @@ TEST(Ridge, EdgesCarryWhatNoVertexReaches) {
   tool.triangles << 0, 0, 0, 0, 2, 2, 0, 1,  //
       2, 3, 5, 1, 4, 5, 4, 3,                //
       3, 1, 4, 5, 5, 3, 2, 5;
-  ASSERT_NO_THROW(require_closed_tool(tool, "wedge"));
+  ASSERT_NO_THROW(require_closed_surface(tool, "wedge"));
   Scene scene(make_slab(20, 0.1, 0.1, roof), tool, {0.0, 0.0011, 1e-4});
   for (int i = 0; i < 6; ++i) scene.move(scene.pose.position + Vec3(0, 0, -1e-4));
   scene.move(scene.pose.position);

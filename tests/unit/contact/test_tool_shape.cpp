@@ -26,7 +26,7 @@ TEST(ToolShape, SphereLiesOnItsRadiusAndItsVolumeConverges) {
   double last = 0.0;
   for (int level = 0; level <= 4; ++level) {
     const mesh::TriangleMesh m = make_sphere_tool(0.01, level);
-    EXPECT_NO_THROW(require_closed_tool(m, "sphere"));
+    EXPECT_NO_THROW(require_closed_surface(m, "sphere"));
     EXPECT_EQ(m.num_triangles(), 20 << (2 * level));
     EXPECT_NEAR(m.vertices.colwise().norm().minCoeff(), 0.01, 1e-16);
     EXPECT_NEAR(m.vertices.colwise().norm().maxCoeff(), 0.01, 1e-16);
@@ -43,7 +43,7 @@ TEST(ToolShape, CapsuleHasTheVolumeOfItsParts) {
   const double r = 0.004;
   const double length = 0.02;
   const mesh::TriangleMesh m = make_capsule_tool(r, length, 64);
-  EXPECT_NO_THROW(require_closed_tool(m, "capsule"));
+  EXPECT_NO_THROW(require_closed_surface(m, "capsule"));
   const double exact = std::numbers::pi * r * r * (length + 4.0 / 3.0 * r);
   EXPECT_NEAR(compute_volume(m) / exact, 1.0, 0.005);  // chords of 64 pieces: 2π²/(3·64²) and the same again
   EXPECT_NEAR(m.vertices.row(2).minCoeff(), -r, 1e-15);
@@ -52,7 +52,7 @@ TEST(ToolShape, CapsuleHasTheVolumeOfItsParts) {
 
 TEST(ToolShape, StylusHasARoundTipThatMeetsItsConeSmoothly) {
   const mesh::TriangleMesh m = make_stylus_tool(0.002, 0.006, 0.04, 48);
-  EXPECT_NO_THROW(require_closed_tool(m, "stylus"));
+  EXPECT_NO_THROW(require_closed_surface(m, "stylus"));
   EXPECT_NEAR(m.vertices.row(2).minCoeff(), -0.002, 1e-15);
   EXPECT_NEAR(m.vertices.row(2).maxCoeff(), 0.04, 1e-15);
   EXPECT_NEAR(m.vertices.topRows(2).colwise().norm().maxCoeff(), 0.006, 1e-15);
@@ -62,7 +62,7 @@ TEST(ToolShape, StylusHasARoundTipThatMeetsItsConeSmoothly) {
 
 std::string refusal(const mesh::TriangleMesh& m) {
   try {
-    require_closed_tool(m, "tool.obj");
+    require_closed_surface(m, "tool.obj");
   } catch (const InputError& error) {
     return error.what();
   }

@@ -28,7 +28,7 @@ struct Pressed {
     const Triangles& surface = scene.solid.elements().surface;
     for (const Eigen::Index f : {surface.cols() - 1, surface.cols() / 2}) {
       PointStiffness contact{
-          {surface(0, f), surface(1, f), surface(2, f)}, {0.2, 0.5, 0.3}, Vec3(1, 2, -2) / 3.0, 3e4};
+          {surface(0, f), surface(1, f), surface(2, f), -1}, {0.2, 0.5, 0.3}, Vec3(1, 2, -2) / 3.0, 3e4};
       for (int k = 0; k < 3; ++k)
         scene.load.col(surface(k, f)) += contact.weight[static_cast<std::size_t>(k)] * Vec3(4, -3, -9);
       contacts.push_back(contact);

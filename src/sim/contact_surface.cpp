@@ -1,0 +1,130 @@
+#include "sim/contact_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "mesh/quadratic.h"
+
+namespace argil::sim {
+namespace {
+
+/// Does one tet have all the nodes of this stiffness?
+bool shares_tet(const solid::PointStiffness& s, const solid::Elements& elements) {
+  const auto first = static_cast<std::size_t>(s.vertex[0]);
+  for (int c = elements.node_begin[first]; c < elements.node_begin[first + 1]; ++c) {
+    const auto nodes =
+        elements.nodes.col(elements.node_corners[static_cast<std::size_t>(c)] / elements.nodes_per_tet);
+    bool has_all = true;
+    for (std::size_t i = 1; has_all && i < s.count(); ++i) has_all = (nodes.array() == s.vertex[i]).any();
+    if (has_all) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+ContactSurface::ContactSurface(SurfaceKind kind, const Body& body, const solid::Elements& elements) {
+  m_begin.push_back(0);
+  const auto add = [this](int node, double weight) {
+    m_node.push_back(node);
+    m_weight.push_back(weight);
+  };
+  const auto close = [this] { m_begin.push_back(static_cast<int>(m_node.size())); };
+  if (kind == SurfaceKind::cage) {
+    m_triangles = elements.surface;
+    for (int v = 0; v < elements.num_nodes(); ++v) {
+      add(v, 1.0);
+      close();
+    }
+    for (const int tet : body.topology.boundary_tet)
+      m_tets.insert(m_tets.end(), static_cast<std::size_t>(elements.surface_per_face), tet);
+    return;
+  }
+  const embed::Embedding& embedding = body.skin_embedding;
+  ARGIL_ASSERT(embedding.num_points() > 0);
+  m_triangles = body.skin.triangles;
+  for (int v = 0; v < embedding.num_points(); ++v) {
+    const auto nodes = elements.nodes.col(embedding.tet[static_cast<std::size_t>(v)]);
+    Eigen::VectorXd shape = embedding.weights.col(v);
+    if (nodes.size() == 10) shape = mesh::compute_quadratic_shape(embedding.weights.col(v));
+    for (Eigen::Index k = 0; k < nodes.size(); ++k) add(nodes(k), shape(k));
+    close();
+  }
+  m_tets_per_triangle = 3;
+  for (Eigen::Index t = 0; t < m_triangles.cols(); ++t)
+    for (Eigen::Index k = 0; k < 3; ++k)
+      m_tets.push_back(embedding.tet[static_cast<std::size_t>(m_triangles(k, t))]);
+}
+
+void ContactSurface::find_positions(const Points& x, Points& out) const {
+  out.resize(3, num_vertices());
+  for (int v = 0; v < num_vertices(); ++v) {
+    Vec3 sum = Vec3::Zero();
+    const auto i = static_cast<std::size_t>(v);
+    for (auto k = static_cast<std::size_t>(m_begin[i]); k < static_cast<std::size_t>(m_begin[i + 1]); ++k)
+      sum += m_weight[k] * x.col(m_node[k]);
+    out.col(v) = sum;
+  }
+}
+
+void ContactSurface::add_force(const contact::Contact& contact, double scale, Points& force) const {
+  for (std::size_t c = 0; c < 3 && contact.vertex[c] >= 0; ++c) {
+    const Vec3 share = scale * contact.weight[c] * contact.force;
+    const auto i = static_cast<std::size_t>(contact.vertex[c]);
+    for (auto k = static_cast<std::size_t>(m_begin[i]); k < static_cast<std::size_t>(m_begin[i + 1]); ++k)
+      force.col(m_node[k]) += m_weight[k] * share;
+  }
+}
+
+/// False when the nodes do not fit in.
+bool ContactSurface::add_nodes(int vertex, double weight, solid::PointStiffness& out) const {
+  constexpr double kNothing = 1e-9;  // weight of a node that a point on a face or corner of its tet rounds to
+  const auto i = static_cast<std::size_t>(vertex);
+  for (auto k = static_cast<std::size_t>(m_begin[i]); k < static_cast<std::size_t>(m_begin[i + 1]); ++k) {
+    if (std::abs(m_weight[k]) < kNothing) continue;
+    std::size_t place = 0;
+    while (place < out.vertex.size() && out.vertex[place] >= 0 && out.vertex[place] != m_node[k]) ++place;
+    if (place == out.vertex.size()) return false;
+    out.vertex[place] = m_node[k];
+    out.weight[place] += weight * m_weight[k];
+  }
+  return true;
+}
+
+void ContactSurface::add_stiffness(const contact::Contact& contact, const Vec3& direction, double stiffness,
+                                   const solid::Elements& elements,
+                                   std::vector<solid::PointStiffness>& list) const {
+  const auto start = [&](double share) {
+    solid::PointStiffness s;
+    s.normal = direction;
+    s.stiffness = share * stiffness;
+    return s;
+  };
+  solid::PointStiffness whole = start(1.0);
+  bool fits = true;
+  for (std::size_t c = 0; c < 3 && contact.vertex[c] >= 0; ++c)
+    fits = fits && add_nodes(contact.vertex[c], contact.weight[c], whole);
+  if (fits && shares_tet(whole, elements)) {
+    list.push_back(whole);
+    return;
+  }
+  for (std::size_t c = 0; c < 3 && contact.vertex[c] >= 0; ++c) {
+    list.push_back(start(contact.weight[c]));
+    add_nodes(contact.vertex[c], 1.0, list.back());
+  }
+}
+
+void ContactSurface::find_touched_tets(const contact::Contacts& contacts, std::vector<int>& tet,
+                                       std::vector<double>& area) const {
+  tet.clear();
+  area.clear();
+  for (std::size_t i = 0; i < contacts.touched_triangle.size(); ++i)
+    for (int k = 0; k < m_tets_per_triangle; ++k) {
+      const int place = m_tets_per_triangle * contacts.touched_triangle[i] + k;
+      tet.push_back(m_tets[static_cast<std::size_t>(place)]);
+      area.push_back(contacts.touched_area[i] / m_tets_per_triangle);
+    }
+}
+
+}  // namespace argil::sim

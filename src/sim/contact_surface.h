@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "contact/contact.h"
+#include "sim/params.h"
+#include "sim/state.h"
+
+namespace argil::sim {
+
+/// What the tool touches: the boundary of the solid, or the skin embedded in it. Its vertices lie at x_s = W
+/// x, and what acts on them acts on the nodes as f = Wᵀ f_s: the same weights, so that force, torque and work
+/// are the same on both.
+class ContactSurface {
+ public:
+  ContactSurface(SurfaceKind kind, const Body& body, const solid::Elements& elements);
+
+  const Triangles& triangles() const { return m_triangles; }
+  int num_vertices() const { return static_cast<int>(m_begin.size()) - 1; }
+
+  /// Positions of the vertices [m] for nodes at x.
+  void find_positions(const Points& x, Points& out) const;
+
+  /// Adds scale · Wᵀ f of a contact to the nodes' forces [N].
+  void add_force(const contact::Contact& contact, double scale, Points& force) const;
+
+  /// Appends a contact's stiffness [N/m] along a direction, between nodes. What hangs on nodes that share no
+  /// tet is taken as one stiffness for each vertex of the contact, in proportion to its weight: no softer, as
+  /// Σ wᵢ (n·uᵢ)² ≥ (n·Σ wᵢ uᵢ)², and the same where they move alike.
+  void add_stiffness(const contact::Contact& contact, const Vec3& direction, double stiffness,
+                     const solid::Elements& elements, std::vector<solid::PointStiffness>& list) const;
+
+  /// Tets under the touched area and how much of it each has [m²], triangle by triangle; a skin's triangle
+  /// gives a third to the tet of each of its corners.
+  void find_touched_tets(const contact::Contacts& contacts, std::vector<int>& tet,
+                         std::vector<double>& area) const;
+
+ private:
+  bool add_nodes(int vertex, double weight, solid::PointStiffness& out) const;
+
+  Triangles m_triangles;
+  std::vector<int> m_begin, m_node;  // nodes that carry each vertex
+  std::vector<double> m_weight;      // N of each
+  std::vector<int> m_tets;           // the tets under each triangle, m_tets_per_triangle of them
+  int m_tets_per_triangle = 1;
+};
+
+}  // namespace argil::sim
