@@ -43,7 +43,7 @@ class StageClock final : public sim::StageObserver {
     std::vector<std::pair<std::string, double>> list;
     for (std::size_t i = 0; i < kNames.size(); ++i) list.emplace_back(kNames[i], m_seconds[i]);
     list.emplace_back("total", total);
-    list.emplace_back("ticks_per_second", total > 0.0 ? static_cast<double>(ticks) / total : 0.0);
+    list.emplace_back("tick_rate_Hz", total > 0.0 ? static_cast<double>(ticks) / total : 0.0);
     return list;
   }
 

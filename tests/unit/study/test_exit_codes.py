@@ -73,6 +73,12 @@ class ExitCodes(unittest.TestCase):
         self.assertAlmostEqual(last, 0.1, delta=1e-12)
         self.assertEqual(frames, 6)  # one at the start and one every 20 of 100 ticks
         self.assertTrue((self.folder / "out.xdmf").exists())
+        with h5py.File(self.folder / "out.h5") as file:
+            total, rate = file["timing/total"], file["timing/tick_rate_Hz"]
+            for name, timing in file["timing"].items():
+                self.assertEqual(timing.attrs["units"], b"Hz" if name == "tick_rate_Hz" else b"s", name)
+            self.assertAlmostEqual(rate[0] * total[0], 100.0, delta=1e-9)  # ticks
+        self.assertRegex(self.call("info", "out.h5")[1], r"tick_rate_Hz: [0-9.e+]+ Hz\n")
 
     def test_0_version_and_help(self):
         self.assertEqual(self.call("--version")[0], 0)
