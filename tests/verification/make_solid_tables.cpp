@@ -52,6 +52,7 @@ class Table {
 void make_beams(const std::string& folder) {
   Table cantilever(folder, "cantilever", "element,cells,deflection_m,timoshenko_m");
   Table torsion(folder, "torsion", "element,cells,constant,saint_venant");
+  Table twisted(folder, "twisted_beam", "element,force,cells,tip,literature");
   Table cook(folder, "cook", "element,cells,tip,literature");
   Table cook_strain(folder, "cook_plane_strain", "element,cells,tip,fine");
   const double fine = solve_cook(ElementKind::p2, 0.4999, true, 32);
@@ -63,6 +64,12 @@ void make_beams(const std::string& folder) {
       if (is_quadratic && n > 4) continue;
       cantilever.add(name, n, solve_cantilever(element, 0.0, n), compute_timoshenko_deflection(0.0));
       if (n < 8) torsion.add(name, 2 * n, solve_torsion(element, 2 * n), kSquareTorsion);
+    }
+    for (const int n : {1, 2, 4}) {
+      twisted.add(name, "along_width", n, solve_twisted_beam(element, TipForce::along_width, n),
+                  kTwistedAlongWidth);
+      twisted.add(name, "along_thickness", n, solve_twisted_beam(element, TipForce::along_thickness, n),
+                  kTwistedAlongThickness);
     }
     for (const int n : {2, 4, 8, 16, 32})
       cook.add(name, n, solve_cook(element, 1.0 / 3.0, false, n), kCookPlaneStress);

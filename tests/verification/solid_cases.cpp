@@ -1,6 +1,7 @@
 #include "solid_cases.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 
 #include <algorithm>
 #include <limits>
@@ -182,6 +183,25 @@ double solve_torsion(ElementKind element, int n) {
   return torque / (0.5 * twist);  // rate of twist: the ends turn by ±twist/2 over the length 2
 }
 
+double solve_twisted_beam(ElementKind element, TipForce force, int n) {
+  const double length = 12.0, width = 1.1, thickness = 0.32;
+  mesh::TetMesh mesh = test::make_block(12 * n, 2 * n, n, Vec3(length, width, thickness));
+  for (Eigen::Index v = 0; v < mesh.vertices.cols(); ++v) {
+    const Vec3 x = mesh.vertices.col(v);
+    const double angle = 0.5 * kPi * x(0) / length;
+    const double y = x(1) - 0.5 * width;
+    const double z = x(2) - 0.5 * thickness;
+    mesh.vertices.col(v) << x(0), std::cos(angle) * y - std::sin(angle) * z,
+        std::sin(angle) * y + std::cos(angle) * z;
+  }
+  Scene scene(std::move(mesh), std::vector{hold_plane(0, 0.0)}, make_static_params(element), 29e6, 0.22);
+  const int axis = force == TipForce::along_width ? 2 : 1;  // the tip's width lies along z
+  scene.load = make_end_traction(scene, length, Vec3::Unit(axis));
+  scene.load /= scene.load.row(axis).sum();
+  expect(scene.find_equilibrium());
+  return scene.load.row(axis).dot(scene.displacement().row(axis));  // the mean that the load sees
+}
+
 double solve_cook(ElementKind element, double nu, bool is_plane_strain, int n) {
   mesh::TetMesh mesh = test::make_block(n, n, 1, Vec3::Ones());
   for (Eigen::Index v = 0; v < mesh.vertices.cols(); ++v) {
@@ -255,33 +275,67 @@ std::vector<double> find_frequencies(ElementKind element, double nu, int n, int 
   return found;
 }
 
-SpinDrift solve_spin(solid::Integrator integrator, solid::Iteration iteration, int steps) {
+namespace {
+
+/// A free bar spinning about its centre, and what it has of energy and angular momentum.
+const Vec3 kSpin(0, 0, 8.0);  // [rad/s]
+const Vec3 kSpinCentre(0.1, 0.05, 0.05);
+
+Scene make_spinning_bar(solid::Integrator integrator, solid::Iteration iteration, double youngs_modulus) {
   SolidParams params = make_static_params(ElementKind::p1, StrainModel::corotational);
   params.integrator = integrator;
   params.iteration = iteration;
-  Scene scene(test::make_block(4, 2, 2, Vec3(0.2, 0.1, 0.1)), {}, params, 3e4, 0.3);
-  const Vec3 centre(0.1, 0.05, 0.05);
-  const Vec3 rate(0, 0, 8.0);
-  const Points arm = scene.rest().colwise() - centre;
-  for (int v = 0; v < scene.num_nodes(); ++v) scene.state.v.col(v) = rate.cross(arm.col(v));
-  const auto energy = [&] {
-    return scene.solid.compute_kinetic_energy(scene.state) +
-           scene.solid.compute_elastic_energy(scene.state.plastic_strain);
-  };
-  const auto momentum = [&] {
-    Vec3 sum = Vec3::Zero();
-    for (int v = 0; v < scene.num_nodes(); ++v)
-      sum += scene.solid.mass()(v) * (scene.state.x.col(v) - centre).cross(scene.state.v.col(v));
-    return sum;
-  };
-  const double energy_before = energy();
-  const Vec3 momentum_before = momentum();
-  const double h = 2.0 * kPi / 8.0 / steps;
+  Scene scene(test::make_block(4, 2, 2, Vec3(0.2, 0.1, 0.1)), {}, params, youngs_modulus, 0.3);
+  for (int v = 0; v < scene.num_nodes(); ++v)
+    scene.state.v.col(v) = kSpin.cross(scene.rest().col(v) - kSpinCentre);
+  return scene;
+}
+
+double compute_energy(const Scene& scene) {
+  return scene.solid.compute_kinetic_energy(scene.state) +
+         scene.solid.compute_elastic_energy(scene.state.plastic_strain);
+}
+
+Vec3 compute_momentum(const Scene& scene) {
+  Vec3 sum = Vec3::Zero();
+  for (int v = 0; v < scene.num_nodes(); ++v)
+    sum += scene.solid.mass()(v) * (scene.state.x.col(v) - kSpinCentre).cross(scene.state.v.col(v));
+  return sum;
+}
+
+/// Moves a bar through one turn; `step` may fail by returning false.
+template <typename Step>
+SpinDrift turn_once(Scene& scene, int steps, Step&& step) {
+  const double energy = compute_energy(scene);
+  const Vec3 momentum = compute_momentum(scene);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   for (int k = 0; k < steps; ++k)
-    if (!scene.step(h).is_ok() || !(energy() < 10.0 * energy_before))
-      return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-  return {std::abs(energy() / energy_before - 1.0),
-          (momentum() - momentum_before).norm() / momentum_before.norm()};
+    if (!step(2.0 * kPi / kSpin.norm() / steps) || !(compute_energy(scene) < 10.0 * energy))
+      return {kNone, kNone};
+  return {std::abs(compute_energy(scene) / energy - 1.0),
+          (compute_momentum(scene) - momentum).norm() / momentum.norm()};
+}
+
+}  // namespace
+
+SpinDrift solve_spin(solid::Integrator integrator, solid::Iteration iteration, int steps,
+                     double youngs_modulus) {
+  Scene scene = make_spinning_bar(integrator, iteration, youngs_modulus);
+  return turn_once(scene, steps, [&](double h) { return scene.step(h).is_ok(); });
+}
+
+SpinDrift compute_rigid_spin(int steps) {
+  Scene scene = make_spinning_bar(solid::Integrator::backward_euler, solid::Iteration::one, 1.0);
+  const Points arm = scene.rest().colwise() - kSpinCentre;
+  return turn_once(scene, steps, [&](double h) {
+    const Points aim = (scene.state.x + h * scene.state.v).colwise() - kSpinCentre;
+    const Eigen::JacobiSVD<Mat3> svd(aim * scene.solid.mass().asDiagonal() * arm.transpose(),
+                                     Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Points next = (svd.matrixU() * svd.matrixV().transpose() * arm).colwise() + kSpinCentre;
+    scene.state.v = (next - scene.state.x) / h;
+    scene.state.x = next;
+    return true;
+  });
 }
 
 double solve_swing(solid::Integrator integrator, int steps) {

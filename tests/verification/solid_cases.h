@@ -22,6 +22,14 @@ double solve_torsion(solid::ElementKind element, int n);
 inline constexpr double kSquareTorsion =
     0.1405770;  ///< Saint-Venant's series [Timoshenko & Goodier 1970, §109]
 
+/// Displacement along a unit force at the tip of a twisted beam [MacNeal1985]: 12 long, 1.1 wide, 0.32 thick,
+/// turned by 90° from root to tip, E = 29e6, ν = 0.22, clamped at the root; the force, spread over the end,
+/// acts along the tip's width or along its thickness; n cells across the thickness, 2n across the width.
+enum class TipForce { along_width, along_thickness };
+double solve_twisted_beam(solid::ElementKind element, TipForce force, int n);
+inline constexpr double kTwistedAlongWidth = 5.424e-3;      ///< beam theory [MacNeal1985, table 5]
+inline constexpr double kTwistedAlongThickness = 1.754e-3;  ///< likewise
+
 /// Vertical displacement of the right edge's middle in Cook's membrane [Cook1974]: corners (0,0), (48,44),
 /// (48,60), (0,44), thickness 1, unit shear force on the right edge, E = 1. Plane stress by free faces, or
 /// plane strain by held ones; n cells an edge.
@@ -39,12 +47,18 @@ FieldErrors solve_manufactured(solid::ElementKind element, double nu, int n);
 /// Lowest natural frequencies above the six rigid ones of a free cube [rad/s]; n cells an edge.
 std::vector<double> find_frequencies(solid::ElementKind element, double nu, int n, int count);
 
-/// What a free bar has lost after one turn: relative changes. NaN when a step failed or the body flew apart.
+/// What a free bar (E = 30 kPa by default) has lost after one turn: relative changes. NaN when a step failed
+/// or the body flew apart.
 struct SpinDrift {
   double energy = 0.0;
   double momentum = 0.0;  ///< angular, norm of the change
 };
-SpinDrift solve_spin(solid::Integrator integrator, solid::Iteration iteration, int steps);
+SpinDrift solve_spin(solid::Integrator integrator, solid::Iteration iteration, int steps,
+                     double youngs_modulus = 3e4);
+
+/// The same of a rigid body with the bar's masses in backward Euler: each step goes to the turn of the rest
+/// shape that is nearest to x + h v in the norm of the masses, found by singular value decomposition.
+SpinDrift compute_rigid_spin(int steps);
 
 /// Position and velocity error of a thrown, strongly bent bar against a fine reference, relative.
 double solve_swing(solid::Integrator integrator, int steps);

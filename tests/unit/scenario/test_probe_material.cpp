@@ -186,6 +186,15 @@ TEST(ProbePlasticUpdate, NormsDifferInShear) {
   EXPECT_EQ(shear("voigt6"), 0.0);
 }
 
+TEST(ProbePlasticUpdate, J2ReturnsTheDeviatorToTheYieldNorm) {
+  // dev ε = 0.1 (2, −1, −1)/3 of norm 0.1 √(2/3): what is left of it has the norm of the yield strain.
+  const Json result = flow(R"(, "max": 1, "form": "j2")");
+  const double flown = 1.0 - 0.02 / (0.1 * std::sqrt(2.0 / 3.0));
+  EXPECT_NEAR(at(result, 0, 0), 0.2 / 3.0 * flown, 1e-16);
+  EXPECT_NEAR(at(result, 1, 1), -0.1 / 3.0 * flown, 1e-16);
+  EXPECT_NEAR(at(result, 2, 2), -0.1 / 3.0 * flown, 1e-16);
+}
+
 TEST(ProbePlasticUpdate, MandelStrainGivesMandelPlasticStrain) {
   const Json result = probe_one("plastic_update", R"({"strain": [0.1,0,0,0,0,0], "yield": 0.02,
     "creep_per_s": 20, "max": 1, "step_s": 0.01, "form": "literal"})")["plastic_strain"];
