@@ -204,6 +204,29 @@ TEST(DirectSolver, RefusesAnIndefiniteMatrixInBothForms) {
   }
 }
 
+TEST(DirectSolver, DoesNotCallASolutionConvergedThatIsNone) {
+  const BlockMatrix a = make_random_spd(30, 17);
+  MatrixOperator product(a, 1);
+  Points b = make_random_vector(30, 18);
+  b(1, 3) = std::nan("");
+  for (const SolverKind kind : {SolverKind::cholesky, SolverKind::supernodal}) {
+    Points x = Points::Zero(3, 30);
+    EXPECT_FALSE(make_solver({kind})->solve(a, product, b, x).converged);
+  }
+}
+
+TEST(JacobiSolver, SeesThatAMatrixIsNotPositiveDefinite) {
+  // −A is solved as well as A by the same recurrence; its pᵀAp alone tells them apart.
+  BlockMatrix a = make_random_spd(30, 19);
+  a.values *= -1.0;
+  MatrixOperator product(a, 1);
+  Points x = Points::Zero(3, 30);
+  const SolveReport report =
+      make_solver({SolverKind::pcg_jacobi})->solve(a, product, make_random_vector(30, 20), x);
+  EXPECT_FALSE(report.converged);
+  EXPECT_TRUE(std::isinf(report.relative_residual));
+}
+
 TEST(KeptFactorSolver, RenewsItsFactorAfterASlowSolveOnly) {
   SolverParams params;
   params.refactor_iterations = 3;

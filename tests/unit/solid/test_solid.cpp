@@ -136,6 +136,23 @@ TEST(Solid, LumpedMassIsDensityTimesVolume) {
   EXPECT_NEAR(scene.solid.mass().sum(), 1500.0 * 0.3 * 0.2 * 0.1, 1e-12);
 }
 
+TEST(Solid, QuadraticMassIsLumpedInProportionToTheConsistentDiagonal) {
+  // ∫Lᵃ dV = 6V a!/(a+3)! and ∫L₁²L₂² dV = 24V/7!, with N = L(2L − 1) at corners, 4 L₁L₂ between them.
+  const double corner = 4.0 * 6.0 * 24.0 / 5040.0 - 4.0 * 6.0 * 6.0 / 720.0 + 6.0 * 2.0 / 120.0;  // ∫N²/V
+  const double middle = 16.0 * 24.0 / 5040.0;
+  mesh::TetMesh mesh;
+  mesh.vertices.resize(3, 4);
+  mesh.vertices << 0, 2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1;  // V = 1
+  mesh.tets.resize(4, 1);
+  mesh.tets << 0, 1, 2, 3;
+  SolidParams params = make_params(linear::SolverKind::cholesky);
+  params.element = ElementKind::p2;
+  const Scene scene(mesh, {}, params, 1e5, 0.3);
+  const double scale = 1500.0 / (4.0 * corner + 6.0 * middle);
+  for (int n = 0; n < 10; ++n)
+    EXPECT_NEAR(scene.solid.mass()(n), scale * (n < 4 ? corner : middle), 1e-10) << n;
+}
+
 TEST(Solid, PlasticStrainIsTheStressFreeShape) {
   // A body whose total strain equals its plastic strain is at rest in the deformed place.
   Scene scene(test::make_block(2, 2, 2, Vec3(0.1, 0.1, 0.1)), {}, make_params(linear::SolverKind::cholesky),
