@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/ordered_sum.h"
 #include "base/parallel.h"
+#include "solid/tet_lanes.h"
 
 namespace argil::solid {
 
@@ -30,7 +31,10 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   m_rotation.resize(3, 3 * num_points);
   m_strain.setZero(6, num_points);
   m_volume_ratio.setOnes(num_points);
-  m_turned_gradient.resize(3, m_elements.gradient.cols());
+  m_turned_gradient.setZero(3, m_elements.gradient.cols());
+  m_lambda.resize(m_elements.num_tets());
+  m_mu.resize(m_elements.num_tets());
+  m_is_tet_changed.resize(m_material.size(), 1);
   m_corner_force.setZero(3, m_elements.nodes.size());
   m_internal_force.setZero(3, num_nodes);
   m_product.setZero(3, num_nodes);
@@ -38,6 +42,7 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   m_x_hat = m_x = m_held_x = m_x_start = m_elements.rest;
   m_v_hat.setZero(3, num_nodes);
   m_v = m_v_base = m_v_start = m_zero = m_v_hat;
+  m_is_row_stale.resize(m_node_of_row.size(), 1);
   m_rhs.setZero(3, num_free());
   m_delta.setZero(3, num_free());
 }
@@ -92,6 +97,7 @@ SolidState Solid::make_rest_state() const {
 
 void Solid::set_material(int tet, const TetMaterial& material) {
   m_material[static_cast<std::size_t>(tet)] = material;
+  m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
   if (!m_stiffness.empty())
     m_stiffness[static_cast<std::size_t>(tet)] = make_isotropic_stiffness(material.lambda, material.mu);
   if (m_nodal) m_nodal->set_excess(tet, elasticity(tet).excess_bulk);
@@ -105,6 +111,7 @@ void Solid::set_anisotropic_stiffness(int tet, const Mat6& C) {
       m_stiffness[t] = make_isotropic_stiffness(m_material[t].lambda, m_material[t].mu);
   }
   m_stiffness[static_cast<std::size_t>(tet)] = C;
+  m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
 }
 
 void Solid::set_swelling(int tet, double volume_ratio) {
@@ -117,6 +124,7 @@ void Solid::set_swelling(int tet, double volume_ratio) {
   const Eigen::Index columns = Q * m_elements.nodes_per_tet;
   m_elements.gradient.middleCols(columns * tet, columns) =
       m_dry.gradient.middleCols(columns * tet, columns) / std::cbrt(volume_ratio);
+  m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
   m_elements.weight.segment(Q * tet, Q) = volume_ratio * m_dry.weight.segment(Q * tet, Q);
 }
 
@@ -134,6 +142,8 @@ void Solid::set_water_mass(int tet, double mass) {
       at_rest += m_water_mass(corner / N) * m_elements.shape_share(corner % N);
     }
     m_mass(node) = m_params.density * m_elements.node_volume(node) + moving;
+    if (const int row = m_row_of_node[static_cast<std::size_t>(node)]; row >= 0)
+      m_is_row_stale[static_cast<std::size_t>(row)] = 1;
     m_static_mass(node) = m_params.density * m_elements.shape_volume(node) + at_rest;
   }
 }
@@ -164,8 +174,23 @@ PointMotion Solid::motion(int point) const {
           m_rotation.middleCols<3>(3 * static_cast<Eigen::Index>(point))};
 }
 
-template <int N>
-void Solid::set_motion(const Points& x, bool keeps_frame) {
+void Solid::set_tet_motion(const Points& x, bool keeps_frame) {
+  const TetArrays tets{x.data(),
+                       m_elements.nodes.data(),
+                       m_elements.gradient.data(),
+                       m_params.model == StrainModel::linear,
+                       m_deformation.data(),
+                       m_rotation.data(),
+                       keeps_frame ? nullptr : m_turned_gradient.data(),
+                       m_strain.data(),
+                       m_volume_ratio.data(),
+                       m_is_tet_changed.data()};
+  for_batches(m_elements.num_tets(), m_threads,
+              [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_motions(tets, begin, end); });
+}
+
+void Solid::set_quadratic_motion(const Points& x, bool keeps_frame) {
+  constexpr int N = 10;
   parallel_for(m_elements.num_points(), m_threads, [&](std::ptrdiff_t p) {
     const int tet = m_elements.tet_of_point(static_cast<int>(p));
     const Eigen::Matrix<double, 3, N> gradient = m_elements.gradient.middleCols<N>(N * p);
@@ -188,9 +213,9 @@ StepStatus Solid::update_kinematics(const Points& x, Tick tick) {
 StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frame) {
   keeps_frame = keeps_frame && m_kept_rotation.size() > 0;
   if (m_elements.nodes_per_tet == 4)
-    set_motion<4>(x, keeps_frame);
+    set_tet_motion(x, keeps_frame);
   else
-    set_motion<10>(x, keeps_frame);
+    set_quadratic_motion(x, keeps_frame);
   Eigen::Index worst = 0;
   m_min_volume_ratio = m_volume_ratio.minCoeff(&worst);
   const bool finite = m_volume_ratio.allFinite();  // minCoeff may pass over a NaN

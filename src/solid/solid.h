@@ -45,7 +45,8 @@ struct TetMaterial {
 struct StepCounters {
   int newton_iterations = 0;
   int linear_iterations = 0;
-  double residual = 0.0;  ///< relative, of the last linear solve
+  double residual = 0.0;   ///< relative, of the last linear solve
+  int assembled_rows = 0;  ///< rows of the matrix that were gathered anew; the others stayed as they were
 };
 
 /// What acts on the body during a step.
@@ -130,12 +131,13 @@ class Solid {
     double mass = 0.0;
     double kept = 0.0;
     double exact = 0.0;
+    bool operator==(const MatrixShares&) const = default;
   };
 
   // solid.cpp
   void number_rows();
-  template <int N>
-  void set_motion(const Points& x, bool keeps_frame);
+  void set_tet_motion(const Points& x, bool keeps_frame);
+  void set_quadratic_motion(const Points& x, bool keeps_frame);
   Elasticity elasticity(int tet) const;
   PointMotion motion(int point) const;
   Field compute_volume_changes(const TensorField& plastic_strain) const;
@@ -143,13 +145,9 @@ class Solid {
   StepStatus update_motion(const Points& x, Tick tick, bool keeps_frame);
 
   // assembly.cpp
-  bool needs_tangents() const;
-  MatrixShares shares() const;
   void assemble_internal_force();
-  void assemble_tangents();
-  void assemble_matrix(std::span<const PointStiffness> contacts);
-  template <int N>
-  void assemble_rows();
+  bool takes_lanes() const;
+  void set_tet_forces();
   template <int N>
   void set_corner_forces();
   template <int N>
@@ -157,14 +155,25 @@ class Solid {
   void compute_stiffness_product(const Points& u, double kept, double exact, Points& force);
   Mat3 volume_gradient(int tet) const;
   Mat3 kept_rotation(int point) const;
-  void add_nodal_stiffness(const Eigen::Matrix3Xd& gradient, double scale);
-  void add_contacts(std::span<const PointStiffness> contacts);
-  void mask_rows();
   void gather(Points& force) const;
   void add_contact_change(const Points& to, const Points& from, std::span<const PointStiffness> contacts,
                           double scale, Points& force) const;
   static double compute_gap_change(const PointStiffness& contact, const Points& to, const Points& from);
   void clear_held(Points& u) const;
+
+  // matrix.cpp
+  bool needs_tangents() const;
+  MatrixShares shares() const;
+  void assemble_tangents();
+  void assemble_matrix(std::span<const PointStiffness> contacts);
+  void assemble_rows();
+  void mark_rows(bool all);
+  void scale_moduli(double share);
+  template <int N>
+  void gather_row(int row, const MatrixShares& share);
+  void add_nodal_stiffness(const Eigen::Matrix3Xd& gradient, double scale);
+  void add_contacts(std::span<const PointStiffness> contacts);
+  void mask_rows();
   bool has_only_diagonal() const { return m_params.solver.kind == linear::SolverKind::pcg_matrix_free; }
 
   // step.cpp
@@ -194,6 +203,7 @@ class Solid {
   Elements m_dry;       // gradient and weight of tets that have not swollen; empty without swelling
   std::vector<TetMaterial> m_material;
   std::vector<Mat6> m_stiffness;  // empty while every tet is isotropic
+  Field m_lambda, m_mu;           // of each tet for a loop over lanes
 
   Eigen::Matrix3Xd m_deformation;  // F, 3 columns a point
   Eigen::Matrix3Xd m_rotation;     // R, 3 columns a point
@@ -214,6 +224,9 @@ class Solid {
   std::vector<int> m_held_rows;             // rows with a held component
   std::vector<int> m_block_of_corner_pair;  // N² a tet: place of block (i, j), −1 where there is none
   linear::BlockMatrix m_matrix;
+  MatrixShares m_stored_shares;        // of the matrix that is stored
+  std::vector<char> m_is_tet_changed;  // its stiffness or frame, since then
+  std::vector<char> m_is_row_stale;    // holds something that the next matrix may not
   std::unique_ptr<linear::Solver> m_solver;
   std::unique_ptr<NodalVolume> m_nodal;  // p1_nodal
 

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "base/lanes.h"
+
+namespace argil::solid {
+
+template <class Real>
+ARGIL_INLINE void add_squares(const Real33<Real>& a, Real& sum) {
+  sum = a.m[0] * a.m[0] + a.m[1] * a.m[1] + a.m[2] * a.m[2];
+  sum += a.m[3] * a.m[3] + a.m[4] * a.m[4] + a.m[5] * a.m[5];
+  sum += a.m[6] * a.m[6] + a.m[7] * a.m[7] + a.m[8] * a.m[8];
+}
+
+/// Cofactors and determinant.
+template <class Real>
+ARGIL_INLINE void set_cofactor(const Real33<Real>& a, Real33<Real>& cofactor, Real& determinant) {
+  for (int k = 0; k < 3; ++k) {
+    const Real* p = a.m + 3 * ((k + 1) % 3);
+    const Real* q = a.m + 3 * ((k + 2) % 3);
+    cofactor.m[3 * k] = p[1] * q[2] - p[2] * q[1];
+    cofactor.m[3 * k + 1] = p[2] * q[0] - p[0] * q[2];
+    cofactor.m[3 * k + 2] = p[0] * q[1] - p[1] * q[0];
+  }
+  determinant = a.m[0] * cofactor.m[0] + a.m[1] * cofactor.m[1] + a.m[2] * cofactor.m[2];
+}
+
+/// Rotation of F = R S by X ← ½(γX + (γX)⁻ᵀ) with the scaling γ of [Higham1986], for one matrix or for eight.
+/// `found` is false where F is inverted or nearly flat or the iteration does not end; R means nothing there.
+template <class Real>
+ARGIL_INLINE void iterate_rotation(const Real33<Real>& F, Real33<Real>& R, MaskOf<Real>& found) {
+  // Newton is quadratically convergent; from a condition number of 1e3 the scaled iteration needs at most 9
+  // steps.
+  constexpr int kMaxIterations = 12;
+  constexpr double kSmallestRelativeDeterminant = 1e-8;
+  // Error is half the change once the iteration is near; 1e-9 now means below 1e-18 after this step.
+  constexpr double kSquaredChange = 1e-18;
+  const Real one = Real{} + 1.0;
+  Real33<Real> inverse;  // transposed
+  Real determinant, squares;
+  set_cofactor(F, inverse, determinant);
+  add_squares(F, squares);
+  Real norm;
+  set_root(norm, squares);
+  found = determinant > kSmallestRelativeDeterminant * norm * squares;
+  MaskOf<Real> active = found;
+  R = F;
+  for (int iteration = 0; iteration < kMaxIterations && any(active); ++iteration) {
+    set_cofactor(R, inverse, determinant);
+    const Real scale = 1.0 / determinant;
+    Real33<Real> difference;
+    for (int k = 0; k < 9; ++k) {
+      inverse.m[k] *= scale;
+      difference.m[k] = R.m[k] - inverse.m[k];
+    }
+    Real change;
+    add_squares(difference, change);
+    const MaskOf<Real> far = change >= 1e-2;
+    Real gamma = one;
+    if (any(far & active)) {
+      Real size, inverse_size, root;
+      add_squares(R, size);
+      add_squares(inverse, inverse_size);
+      const Real ratio = inverse_size / size;
+      set_root(root, ratio);
+      set_root(gamma, root);
+      gamma = far ? gamma : one;
+    }
+    const Real share = 0.5 * gamma;
+    const Real inverse_share = 0.5 / gamma;
+    for (int k = 0; k < 9; ++k) {
+      const Real next = share * R.m[k] + inverse_share * inverse.m[k];
+      R.m[k] = active ? next : R.m[k];
+    }
+    active = active & (change >= kSquaredChange);
+  }
+  found = found & (active == MaskOf<Real>{});
+}
+
+}  // namespace argil::solid

@@ -1,0 +1,197 @@
+#include "solid/tet_lanes.h"
+
+#include <algorithm>
+
+#include "base/mandel.h"
+#include "solid/polar.h"
+#include "solid/polar_newton.h"
+
+namespace argil::solid {
+namespace {
+
+/// Reads `Count` numbers of each of eight tets; the last one fills the lanes that are left over.
+template <int Count>
+ARGIL_INLINE void read_lanes(const double* from, std::ptrdiff_t begin, std::ptrdiff_t last, Lanes* to) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const double* item = from + Count * std::min(begin + lane, last);
+    for (int k = 0; k < Count; ++k) to[k][lane] = item[k];
+  }
+}
+
+template <int Count>
+ARGIL_INLINE void write_lanes(const Lanes* from, std::ptrdiff_t begin, std::ptrdiff_t end, double* to) {
+  for (std::ptrdiff_t t = begin; t < end; ++t)
+    for (int k = 0; k < Count; ++k) to[Count * t + k] = from[k][t - begin];
+}
+
+/// b = a g for four columns g.
+ARGIL_INLINE void turn_gradient(const Real33<Lanes>& a, const Lanes* gradient, Lanes* turned) {
+  for (int i = 0; i < 4; ++i) {
+    const Lanes* g = gradient + 3 * i;
+    for (int k = 0; k < 3; ++k) turned[3 * i + k] = a.m[k] * g[0] + a.m[3 + k] * g[1] + a.m[6 + k] * g[2];
+  }
+}
+
+void set_rotation_by_svd(const Real33<Lanes>& F, int lane, Real33<Lanes>& R) {
+  Mat3 from;
+  for (int k = 0; k < 9; ++k) from(k) = F.m[k][lane];
+  const Mat3 rotation = compute_rotation(from);
+  for (int k = 0; k < 9; ++k) R.m[k][lane] = rotation(k);
+}
+
+}  // namespace
+
+ARGIL_EVERY_PROCESSOR void compute_motions(const TetArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  Lanes corner[12];
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const int* nodes = tets.nodes + 4 * std::min(begin + lane, end - 1);
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) corner[3 * i + k][lane] = tets.x[3 * nodes[i] + k];
+  }
+  Lanes gradient[12];
+  read_lanes<12>(tets.gradient, begin, end - 1, gradient);
+
+  Real33<Lanes> F, R;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      F.m[3 * c + r] = corner[r] * gradient[c] + corner[3 + r] * gradient[3 + c] +
+                       corner[6 + r] * gradient[6 + c] + corner[9 + r] * gradient[9 + c];
+  if (tets.is_linear) {
+    for (int k = 0; k < 9; ++k) R.m[k] = Lanes{} + (k % 4 == 0 ? 1.0 : 0.0);
+  } else {
+    LaneMask found;
+    iterate_rotation(F, R, found);
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (!found[lane]) set_rotation_by_svd(F, lane, R);
+  }
+
+  const auto set_dot = [&](int i, int j, Lanes& dot) __attribute__((always_inline)) {
+    dot = R.m[3 * i] * F.m[3 * j] + R.m[3 * i + 1] * F.m[3 * j + 1] + R.m[3 * i + 2] * F.m[3 * j + 2];
+  };
+  Lanes S[9];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) set_dot(i, j, S[3 * i + j]);
+  const Lanes strain[6] = {S[0] - 1.0,
+                           S[4] - 1.0,
+                           S[8] - 1.0,
+                           kSqrt2 * (0.5 * (S[5] + S[7])),
+                           kSqrt2 * (0.5 * (S[2] + S[6])),
+                           kSqrt2 * (0.5 * (S[1] + S[3]))};
+  Real33<Lanes> cofactor;
+  Lanes determinant;
+  set_cofactor(F, cofactor, determinant);
+
+  write_lanes<9>(F.m, begin, end, tets.F);
+  write_lanes<9>(R.m, begin, end, tets.R);
+  write_lanes<6>(strain, begin, end, tets.strain);
+  write_lanes<1>(&determinant, begin, end, tets.volume_ratio);
+  if (!tets.turned_gradient) return;
+  Lanes turned[12];
+  turn_gradient(R, gradient, turned);
+  for (std::ptrdiff_t t = begin; t < end; ++t)
+    for (int k = 0; k < 12; ++k) {
+      double& stored = tets.turned_gradient[12 * t + k];
+      if (stored != turned[k][t - begin]) tets.is_turned[t] = 1;
+      stored = turned[k][t - begin];
+    }
+}
+
+ARGIL_EVERY_PROCESSOR void compute_corner_forces(const ForceArrays& tets, std::ptrdiff_t begin,
+                                                 std::ptrdiff_t end) {
+  const std::ptrdiff_t last = end - 1;
+  Lanes strain[6], plastic[6], lambda, mu, weight, gradient[12];
+  Real33<Lanes> R;
+  read_lanes<6>(tets.strain, begin, last, strain);
+  read_lanes<6>(tets.plastic_strain, begin, last, plastic);
+  read_lanes<1>(tets.lambda, begin, last, &lambda);
+  read_lanes<1>(tets.mu, begin, last, &mu);
+  read_lanes<1>(tets.weight, begin, last, &weight);
+  read_lanes<9>(tets.R, begin, last, R.m);
+  read_lanes<12>(tets.gradient, begin, last, gradient);
+
+  // σ = 2μ ε_e + λ tr ε_e, as 11 22 33 23 13 12.
+  constexpr double s = 1.0 / kSqrt2;
+  const Lanes pressure =
+      lambda * (strain[0] - plastic[0] + (strain[1] - plastic[1]) + (strain[2] - plastic[2]));
+  const Lanes twice_mu = 2.0 * mu;
+  Lanes sigma[6];
+  for (int k = 0; k < 3; ++k) sigma[k] = twice_mu * (strain[k] - plastic[k]) + pressure;
+  for (int k = 3; k < 6; ++k) sigma[k] = s * (twice_mu * (strain[k] - plastic[k]));
+
+  // P in the turned frame: σ, and where plastic strain turns σ away from S = 1 + ε the rotation's own
+  // derivative, −2[G⁻¹k]× with [k]× = skew(σS), G = tr(S) 1 − S.
+  Real33<Lanes> P = {
+      {sigma[0], sigma[5], sigma[4], sigma[5], sigma[1], sigma[3], sigma[4], sigma[3], sigma[2]}};
+  LaneMask is_plastic = {};
+  for (int k = 0; k < 6; ++k) is_plastic |= plastic[k] != 0.0;
+  if (!tets.is_linear && any(is_plastic)) {
+    const Lanes S[6] = {strain[0] + 1.0, strain[1] + 1.0, strain[2] + 1.0,
+                        s * strain[3],   s * strain[4],   s * strain[5]};
+    // Axial vector of σS over 2: (σS)₃₂ − (σS)₂₃ and so on.
+    const Lanes k[3] = {0.5 * (sigma[4] * S[5] + sigma[3] * S[1] + sigma[2] * S[3] -
+                               (sigma[5] * S[4] + sigma[1] * S[3] + sigma[3] * S[2])),
+                        0.5 * (sigma[0] * S[4] + sigma[5] * S[3] + sigma[4] * S[2] -
+                               (sigma[4] * S[0] + sigma[3] * S[5] + sigma[2] * S[4])),
+                        0.5 * (sigma[5] * S[0] + sigma[1] * S[5] + sigma[3] * S[4] -
+                               (sigma[0] * S[5] + sigma[5] * S[1] + sigma[4] * S[3]))};
+    const Real33<Lanes> G = {
+        {S[1] + S[2], -S[5], -S[4], -S[5], S[0] + S[2], -S[3], -S[4], -S[3], S[0] + S[1]}};
+    Real33<Lanes> adjugate;
+    Lanes determinant;
+    set_cofactor(G, adjugate, determinant);
+    const Lanes scale = 2.0 / determinant;
+    Lanes w[3];
+    for (int i = 0; i < 3; ++i) {
+      w[i] = scale * (adjugate.m[i] * k[0] + adjugate.m[3 + i] * k[1] + adjugate.m[6 + i] * k[2]);
+      w[i] = is_plastic ? w[i] : Lanes{};
+    }
+    P.m[1] -= w[2];
+    P.m[2] += w[1];
+    P.m[3] += w[2];
+    P.m[5] -= w[0];
+    P.m[6] -= w[1];
+    P.m[7] += w[0];
+  }
+
+  Real33<Lanes> piola;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      piola.m[3 * c + r] =
+          weight * (R.m[r] * P.m[3 * c] + R.m[3 + r] * P.m[3 * c + 1] + R.m[6 + r] * P.m[3 * c + 2]);
+  Lanes force[12];
+  turn_gradient(piola, gradient, force);
+  write_lanes<12>(force, begin, end, tets.corner_force);
+}
+
+ARGIL_EVERY_PROCESSOR void set_isotropic_row(const RowArrays& rows, int begin, int end, int first_block,
+                                             int num_blocks) {
+  using Quad = double __attribute__((vector_size(32)));  // a column, its last number zero
+  Quad sum[3 * kLongestRow];
+  for (int k = 0; k < 3 * num_blocks; ++k) sum[k] = Quad{};
+  for (int c = begin; c < end; ++c) {
+    const int corner = rows.corners[c];
+    const std::ptrdiff_t tet = corner / 4;
+    const double* gradient = rows.turned_gradient + 12 * tet;
+    const double* own = gradient + 3 * (corner % 4);
+    const Quad ci = {own[0], own[1], own[2], 0.0};
+    const Quad li = rows.lambda[tet] * ci;
+    const Quad mi = rows.mu[tet] * ci;
+    const int* blocks = rows.block_of_pair + 4 * static_cast<std::ptrdiff_t>(corner);
+    for (int j = 0; j < 4; ++j) {
+      if (blocks[j] < 0) continue;
+      const double* other = gradient + 3 * j;
+      const Quad cj = {other[0], other[1], other[2], 0.0};
+      const Quad product = mi * cj;
+      const double dot = product[0] + product[1] + product[2];
+      Quad* block = sum + 3 * (blocks[j] - first_block);
+      block[0] += li * cj[0] + cj * mi[0] + Quad{dot, 0.0, 0.0, 0.0};
+      block[1] += li * cj[1] + cj * mi[1] + Quad{0.0, dot, 0.0, 0.0};
+      block[2] += li * cj[2] + cj * mi[2] + Quad{0.0, 0.0, dot, 0.0};
+    }
+  }
+  double* out = rows.values + 9 * static_cast<std::ptrdiff_t>(first_block);
+  for (int k = 0; k < 3 * num_blocks; ++k)
+    for (int i = 0; i < 3; ++i) out[3 * k + i] = sum[k][i];
+}
+
+}  // namespace argil::solid

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "base/lanes.h"
+#include "base/parallel.h"
+
+namespace argil::solid {
+
+/// Arrays of a body of 4-node tets as the loops below read and write them, column by column.
+struct TetArrays {
+  const double* x = nullptr;          ///< 3 a node
+  const int* nodes = nullptr;         ///< 4 a tet
+  const double* gradient = nullptr;   ///< ∇Nᵢ, 12 a tet
+  bool is_linear = false;             ///< R = 1
+  double* F = nullptr;                ///< 9 a tet
+  double* R = nullptr;                ///< 9 a tet
+  double* turned_gradient = nullptr;  ///< R ∇Nᵢ, 12 a tet; may be null: not wanted
+  double* strain = nullptr;           ///< ε, Mandel, 6 a tet
+  double* volume_ratio = nullptr;     ///< det F
+  char* is_turned = nullptr;          ///< set to 1 where the turned gradient changed
+};
+
+/// body(begin, end) for the tets in runs of kLanes; the same runs at any number of threads.
+template <class Body>
+void for_batches(std::ptrdiff_t num_tets, int threads, Body body) {
+  parallel_for((num_tets + kLanes - 1) / kLanes, threads,
+               [&](std::ptrdiff_t batch) { body(batch * kLanes, std::min((batch + 1) * kLanes, num_tets)); });
+}
+
+/// F = Σ xᵢ ⊗ ∇Nᵢ, R, ε = sym(RᵀF) − 1 and det F of tets begin … end−1, at most kLanes of them.
+void compute_motions(const TetArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
+
+/// What forces are computed from.
+struct ForceArrays {
+  const double* gradient = nullptr;        ///< 12 a tet
+  const double* R = nullptr;               ///< 9 a tet
+  const double* strain = nullptr;          ///< 6 a tet
+  const double* plastic_strain = nullptr;  ///< 6 a tet
+  const double* weight = nullptr;          ///< volume
+  const double* lambda = nullptr;          ///< 1 a tet [Pa]
+  const double* mu = nullptr;              ///< 1 a tet [Pa]
+  bool is_linear = false;                  ///< R = 1 has no derivative
+  double* corner_force = nullptr;          ///< 12 a tet [N]
+};
+
+/// fᵢ = V P ∇Nᵢ of the isotropic linear and corotational laws, as compute_piola has them.
+void compute_corner_forces(const ForceArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
+
+/// What rows of the matrix are gathered from.
+struct RowArrays {
+  const double* turned_gradient = nullptr;  ///< 12 a tet
+  const double* lambda = nullptr;           ///< volume times Lamé's constant, 1 a tet
+  const double* mu = nullptr;
+  const int* corners = nullptr;        ///< 4·tet + corner of each tet around each node
+  const int* block_of_pair = nullptr;  ///< 16 a tet: place of block (i, j), −1 where there is none
+  double* values = nullptr;            ///< 9 a block
+};
+
+/// Longest row that add_isotropic_row can gather.
+inline constexpr int kLongestRow = 96;
+
+/// Blocks first_block … first_block + num_blocks − 1 of one row: Σ λ cᵢ⊗cⱼ + μ cⱼ⊗cᵢ + μ cᵢ·cⱼ 1 over the
+/// corners `begin` … `end` − 1, c the turned gradients.
+void set_isotropic_row(const RowArrays& rows, int begin, int end, int first_block, int num_blocks);
+
+}  // namespace argil::solid

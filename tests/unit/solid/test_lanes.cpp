@@ -1,0 +1,108 @@
+// Eight tets at once against the law of a single point, in batches that are full and not.
+#include "solid/tet_lanes.h"
+
+#include <Eigen/Geometry>
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/rng.h"
+#include "solid/element.h"
+
+namespace argil::solid {
+namespace {
+
+constexpr int kTets = 2 * kLanes + 3;
+
+/// Tets that are turned by any angle, stretched, flat, inverted; every third without plastic strain.
+struct Tets {
+  Points x{3, 4 * kTets};
+  Eigen::Matrix4Xi nodes{4, kTets};
+  Eigen::Matrix3Xd gradient{3, 4 * kTets}, turned{3, 4 * kTets}, force{3, 4 * kTets};
+  Eigen::Matrix3Xd F{3, 3 * kTets}, R{3, 3 * kTets};
+  TensorField strain{6, kTets}, plastic{6, kTets};
+  Field volume_ratio{kTets}, weight{kTets}, lambda{kTets}, mu{kTets};
+  std::vector<char> is_turned = std::vector<char>(kTets, 0);
+
+  Tets() {
+    Rng rng(3);
+    for (int t = 0; t < kTets; ++t) {
+      Mat34 rest;
+      rest << 0, 1, 0.1, 0.2, 0, 0.1, 1.2, 0.3, 0, -0.1, 0.2, 0.9;
+      for (int i = 0; i < 12; ++i) rest(i) += rng.uniform(-0.1, 0.1);
+      const TetGeometry tet = make_tet_geometry(rest);
+      gradient.middleCols<4>(4 * t) = tet.gradient;
+      weight(t) = tet.volume;
+      const Vec3 turn(rng.uniform(-3.0, 3.0), rng.uniform(-3.0, 3.0), rng.uniform(-3.0, 3.0));
+      Mat3 motion = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+      for (int k = 0; k < 9; ++k) motion(k) += rng.uniform(-0.3, 0.3);
+      if (t % 5 == 3) motion.col(2) *= -1.0;
+      if (t % 5 == 4) motion.col(2) = motion.col(0) + 1e-10 * motion.col(1);
+      x.middleCols<4>(4 * t) = motion * rest;
+      for (int i = 0; i < 4; ++i) nodes(i, t) = 4 * t + i;
+      for (int k = 0; k < 6; ++k) plastic(k, t) = t % 3 == 0 ? 0.0 : rng.uniform(-0.2, 0.2);
+      lambda(t) = rng.uniform(1e3, 1e5);
+      mu(t) = rng.uniform(1e3, 1e5);
+    }
+    turned.setZero();
+  }
+  void move(StrainModel model) {
+    const TetArrays arrays{
+        x.data(), nodes.data(),  gradient.data(), model == StrainModel::linear, F.data(),
+        R.data(), turned.data(), strain.data(),   volume_ratio.data(),          is_turned.data()};
+    for_batches(kTets, 1,
+                [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_motions(arrays, begin, end); });
+  }
+  void press(StrainModel model) {
+    const ForceArrays arrays{gradient.data(), R.data(),      strain.data(), plastic.data(),
+                             weight.data(),   lambda.data(), mu.data(),     model == StrainModel::linear,
+                             force.data()};
+    for_batches(kTets, 1,
+                [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_corner_forces(arrays, begin, end); });
+  }
+};
+
+class Lanes8 : public testing::TestWithParam<StrainModel> {};
+
+TEST_P(Lanes8, MoveAndPressAsTheLawOfAPointDoes) {
+  Tets tets;
+  tets.move(GetParam());
+  tets.press(GetParam());
+  for (int t = 0; t < kTets; ++t) {
+    const Mat34 gradient = tets.gradient.middleCols<4>(4 * t);
+    const Mat3 F = compute_deformation_gradient(tets.x.middleCols<4>(4 * t), gradient);
+    const PointMotion motion = make_motion(GetParam(), F);
+    EXPECT_LT((tets.F.middleCols<3>(3 * t) - F).norm(), 1e-14) << t;
+    EXPECT_NEAR(tets.volume_ratio(t), F.determinant(), 1e-14) << t;
+    if (t % 5 == 4) continue;  // flat: the rotation about the fold is any
+    EXPECT_LT((tets.R.middleCols<3>(3 * t) - motion.R).norm(), 1e-13) << t;
+    EXPECT_LT((tets.turned.middleCols<4>(4 * t) - motion.R * gradient).norm(), 1e-12) << t;
+    EXPECT_LT((tets.strain.col(t) - compute_strain(F, motion.R)).norm(), 1e-13) << t;
+    const Elasticity e{tets.lambda(t), tets.mu(t)};
+    const Mat34 expected =
+        compute_element_force({gradient, tets.weight(t)}, GetParam(), motion, tets.plastic.col(t), e);
+    EXPECT_LT((tets.force.middleCols<4>(4 * t) - expected).norm(), 1e-12 * (1.0 + expected.norm())) << t;
+  }
+}
+
+TEST_P(Lanes8, NameTheTetsWhoseFrameChanged) {
+  Tets tets;
+  tets.move(GetParam());
+  EXPECT_EQ(tets.is_turned, std::vector<char>(kTets, 1));
+  tets.is_turned.assign(kTets, 0);
+  constexpr int kMoved = kLanes + 1;
+  tets.x.col(4 * kMoved) += Vec3(0.01, -0.02, 0.03);
+  tets.move(GetParam());
+  std::vector<char> expected(kTets, 0);
+  if (GetParam() == StrainModel::corotational) expected[kMoved] = 1;  // the linear law has one frame for ever
+  EXPECT_EQ(tets.is_turned, expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Lanes8, testing::Values(StrainModel::linear, StrainModel::corotational),
+                         [](const auto& instance) {
+                           return instance.param == StrainModel::linear ? "linear" : "corotational";
+                         });
+
+}  // namespace
+}  // namespace argil::solid

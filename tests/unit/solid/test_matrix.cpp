@@ -1,0 +1,89 @@
+// The matrix is updated where something changed and nowhere else, and is then what a new one would be.
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "support/solid_scene.h"
+
+namespace argil::solid {
+namespace {
+
+using test::Scene;
+
+constexpr double kStep = 1e-3;
+constexpr int kWet = 17, kSwollen = 60, kHeavy = 101;
+
+Scene make_scene(StrainModel model) {
+  SolidParams params;
+  params.model = model;
+  params.solver.kind = linear::SolverKind::cholesky;  // the matrix's bits decide the solution's
+  Scene scene(test::make_irregular_block(4, 4, 3, Vec3(0.1, 0.1, 0.08)), {0, 1, 2, 3, 4}, params, 2e5, 0.3);
+  scene.load.col(scene.num_nodes() - 1) = Vec3(0.3, -0.2, 0.4);
+  return scene;
+}
+
+void change_three_tets(Scene& scene) {
+  scene.solid.set_material(kWet, test::make_material(3e4, 0.4));
+  scene.solid.set_swelling(kSwollen, 1.1);
+  scene.solid.set_water_mass(kHeavy, 1e-3);
+  ASSERT_TRUE(scene.solid.update_kinematics(scene.state.x, 0).is_ok());
+}
+
+std::vector<PointStiffness> make_contact(const Scene& scene) {
+  const mesh::Topology topology = mesh::make_topology(scene.mesh);
+  PointStiffness contact;
+  for (std::size_t i = 0; i < 3; ++i) {
+    contact.vertex[i] = topology.boundary(static_cast<int>(i), 7);
+    contact.weight[i] = 1.0 / 3.0;
+  }
+  contact.normal = Vec3::UnitZ();
+  contact.stiffness = 500.0;
+  return {contact};
+}
+
+class MatrixUpdate : public testing::TestWithParam<StrainModel> {};
+
+TEST_P(MatrixUpdate, LeavesTheMatrixThatANewBodyWouldHave) {
+  Scene scene = make_scene(GetParam());
+  ASSERT_TRUE(scene.step(kStep, make_contact(scene)).is_ok());
+  ASSERT_TRUE(scene.step(kStep).is_ok());
+  change_three_tets(scene);
+
+  Scene fresh = make_scene(GetParam());
+  fresh.state = scene.state;
+  change_three_tets(fresh);
+
+  ASSERT_TRUE(scene.solve(kStep).is_ok());
+  ASSERT_TRUE(fresh.solve(kStep).is_ok());
+  EXPECT_EQ(fresh.solid.counters().assembled_rows, fresh.solid.num_free());
+  EXPECT_EQ((scene.state.v - fresh.state.v).cwiseAbs().maxCoeff(), 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, MatrixUpdate, testing::Values(StrainModel::linear, StrainModel::corotational),
+                         [](const auto& instance) {
+                           return instance.param == StrainModel::linear ? "linear" : "corotational";
+                         });
+
+TEST(MatrixUpdate, GathersTheRowsAroundChangedTetsAlone) {
+  Scene scene = make_scene(StrainModel::linear);
+  ASSERT_TRUE(scene.step(kStep).is_ok());
+  ASSERT_TRUE(scene.step(kStep).is_ok());
+  EXPECT_EQ(scene.solid.counters().assembled_rows, 0);
+  change_three_tets(scene);
+  std::set<int> rows;
+  for (const int tet : {kWet, kSwollen, kHeavy})
+    for (const int node : scene.mesh.tets.col(tet))
+      if (!scene.solid.constraints().is_held(node)) rows.insert(node);
+  ASSERT_TRUE(scene.step(kStep).is_ok());
+  EXPECT_EQ(scene.solid.counters().assembled_rows, static_cast<int>(rows.size()));
+}
+
+TEST(MatrixUpdate, GathersAllRowsForAnotherStep) {
+  Scene scene = make_scene(StrainModel::linear);
+  ASSERT_TRUE(scene.step(kStep).is_ok());
+  ASSERT_TRUE(scene.step(2.0 * kStep).is_ok());
+  EXPECT_EQ(scene.solid.counters().assembled_rows, scene.solid.num_free());
+}
+
+}  // namespace
+}  // namespace argil::solid
