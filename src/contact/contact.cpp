@@ -29,6 +29,8 @@ void Contacts::clear() {
   touched_area.clear();
   force_on_tool.setZero();
   torque_on_tool.setZero();
+  resistance_on_tool.setZero();
+  resistance_torque_on_tool.setZero();
 }
 
 ContactDetector::Impl::Impl(const Triangles& surface, int num_body_vertices,
@@ -83,8 +85,10 @@ ContactDetector& ContactDetector::operator=(ContactDetector&&) noexcept = defaul
 
 void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, const Pose& pose_t0,
                                     const Pose& pose_t1, Contacts& contacts,
-                                    std::optional<double> body_motion) {
+                                    std::optional<double> body_motion, double seconds) {
   Impl& impl = *m_impl;
+  ARGIL_ASSERT(impl.params.damping == 0.0 || seconds > 0.0, seconds);
+  impl.seconds = seconds;
   contacts.clear();
   if (!impl.body_tree) {  // a start
     impl.body_tree = std::make_unique<BoundingTree>(x_t0, impl.body.triangles);
@@ -97,7 +101,10 @@ void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, cons
 
   const Bounds tool_bounds = impl.tool_bounds(pose_t0, pose_t1);
   const bool is_carrying = !impl.tool_vertices.inside.empty() || !impl.body_vertices.inside.empty();
-  if (!is_carrying && !tool_bounds.overlaps(impl.body_tree->bounds())) return;
+  if (!is_carrying && !tool_bounds.overlaps(impl.body_tree->bounds())) {
+    impl.edge_springs.clear();
+    return;
+  }
 
   impl.place_tool(pose_t0, impl.tool_t0);
   impl.place_tool(pose_t1, impl.tool_t1);
@@ -110,6 +117,8 @@ void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, cons
   for (const Contact& c : contacts.contacts) {
     contacts.force_on_tool -= c.force;
     contacts.torque_on_tool -= (c.point - pose_t1.position).cross(c.force);
+    contacts.resistance_on_tool -= c.resistance;
+    contacts.resistance_torque_on_tool -= (c.point - pose_t1.position).cross(c.resistance);
   }
 }
 
@@ -148,22 +157,37 @@ ContactState ContactDetector::state() const {
   state.body_vertex = m_impl->body_vertices.inside;
   for (const int v : state.body_vertex)
     state.tool_face.push_back(m_impl->body_vertices.face_of_vertex[static_cast<std::size_t>(v)]);
+  if (m_impl->params.friction == 0.0) return state;
+  for (const int v : state.tool_vertex)
+    state.tool_stretch.push_back(m_impl->tool_vertices.stretch[static_cast<std::size_t>(v)]);
+  for (const int v : state.body_vertex)
+    state.body_stretch.push_back(m_impl->body_vertices.stretch[static_cast<std::size_t>(v)]);
+  for (const EdgeSpring& spring : m_impl->edge_springs) {
+    state.edges.push_back(spring.key);
+    state.edge_stretch.push_back(spring.stretch);
+  }
   return state;
 }
 
 void ContactDetector::restore(const ContactState& state) {
   const auto fill = [](VertexSide& side, const std::vector<int>& vertices, const std::vector<int>& faces,
-                       Eigen::Index num_faces) {
+                       const std::vector<Vec3>& stretch, Eigen::Index num_faces) {
     ARGIL_ASSERT(vertices.size() == faces.size() && std::is_sorted(vertices.begin(), vertices.end()));
     std::fill(side.face_of_vertex.begin(), side.face_of_vertex.end(), -1);
     side.inside = vertices;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       ARGIL_ASSERT(faces[i] >= 0 && faces[i] < num_faces, faces[i]);
       side.face_of_vertex.at(static_cast<std::size_t>(vertices[i])) = faces[i];
+      if (!stretch.empty()) side.stretch.at(static_cast<std::size_t>(vertices[i])) = stretch.at(i);
     }
   };
-  fill(m_impl->tool_vertices, state.tool_vertex, state.body_face, m_impl->body.triangles.cols());
-  fill(m_impl->body_vertices, state.body_vertex, state.tool_face, m_impl->tool.triangles.cols());
+  fill(m_impl->tool_vertices, state.tool_vertex, state.body_face, state.tool_stretch,
+       m_impl->body.triangles.cols());
+  fill(m_impl->body_vertices, state.body_vertex, state.tool_face, state.body_stretch,
+       m_impl->tool.triangles.cols());
+  m_impl->edge_springs.clear();
+  for (std::size_t i = 0; i < state.edges.size(); ++i)
+    m_impl->edge_springs.push_back({state.edges[i], state.edge_stretch.at(i)});
   m_impl->body_tree.reset();
 }
 

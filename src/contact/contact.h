@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "contact/parameters.h"
@@ -25,6 +26,11 @@ struct Contact {
   Vec3 force =
       Vec3::Zero();  ///< k·∫ nᵀ(p−q) n dt: mean force of a push tool on the body over the interval [N]
   double stiffness = 0.0;  ///< k [N/m] × share of the tick in penetration: curvature for the implicit solve
+  Vec3 resistance =
+      Vec3::Zero();         ///< damping and friction on the body [N]; a pull tool does not reverse them
+  double damping = 0.0;     ///< c of the damping force c n·v [N s/m]
+  double body_speed = 0.0;  ///< n·v of the body [m/s], which that force counted with
+  double sticking = 0.0;    ///< stiffness along the surface while the pair sticks [N/m]
   Vec3 point =
       Vec3::Zero();  ///< where the force acts at the end of the tick [m], for the torque and the picture
 };
@@ -32,20 +38,28 @@ struct Contact {
 /// What one detection over [t₀, t₁] found, in an order that depends on the meshes alone.
 struct Contacts {
   std::vector<Contact> contacts;
-  bool with_touched = true;            ///< asked by the caller: also find the touched area (costs time)
-  std::vector<int> touched_triangle;   ///< body triangles with an inside point, increasing
-  std::vector<double> touched_area;    ///< [m²] part of each that lies inside the tool
-  Vec3 force_on_tool = Vec3::Zero();   ///< [N], push sense: −Σ force
-  Vec3 torque_on_tool = Vec3::Zero();  ///< [N m] about the hand's point at t₁
-  void clear();                        ///< of results; keeps with_touched
+  bool with_touched = true;                ///< asked by the caller: also find the touched area (costs time)
+  std::vector<int> touched_triangle;       ///< body triangles with an inside point, increasing
+  std::vector<double> touched_area;        ///< [m²] part of each that lies inside the tool
+  Vec3 force_on_tool = Vec3::Zero();       ///< [N], push sense: −Σ force
+  Vec3 torque_on_tool = Vec3::Zero();      ///< [N m] about the hand's point at t₁
+  Vec3 resistance_on_tool = Vec3::Zero();  ///< [N]: −Σ resistance
+  Vec3 resistance_torque_on_tool = Vec3::Zero();  ///< [N m] about the hand's point at t₁
+  void clear();                                   ///< of results; keeps with_touched
 };
 
 /// Which vertices lie inside at the end of an interval, increasing, and the face each of them presses on.
+/// With friction also how far the springs of sticking are stretched [m], of vertices and of (tool edge, body
+/// edge).
 struct ContactState {
   std::vector<int> tool_vertex;
   std::vector<int> body_face;
   std::vector<int> body_vertex;
   std::vector<int> tool_face;
+  std::vector<Vec3> tool_stretch;
+  std::vector<Vec3> body_stretch;
+  std::vector<std::pair<int, int>> edges;
+  std::vector<Vec3> edge_stretch;
 };
 
 /// Detects contact between a deforming body surface and a rigidly moving tool, interval after interval, and
@@ -62,9 +76,10 @@ class ContactDetector {
   /// Contacts while the body's vertices go linearly from x_t0 to x_t1 and the tool's vertices linearly
   /// between their places at the two poses. Successive calls must join: x_t0, pose_t0 equal the last x_t1,
   /// pose_t1. `body_motion` bounds how far any body vertex moves along any axis [m]; without it that is found
-  /// by looking at all of them, the only part of the work that grows with the body.
+  /// by looking at all of them, the only part of the work that grows with the body. `seconds`: how long the
+  /// interval lasts, for damping alone.
   void find_contacts(const Points& x_t0, const Points& x_t1, const Pose& pose_t0, const Pose& pose_t1,
-                     Contacts& contacts, std::optional<double> body_motion = {});
+                     Contacts& contacts, std::optional<double> body_motion = {}, double seconds = 0.0);
 
   /// Do the two solids have a point in common at one instant? (A start must have none.)
   bool overlaps(const Points& x, const Pose& pose) const;

@@ -25,6 +25,22 @@ struct EdgePair {
   auto key() const { return std::pair(tool_edge, body_edge); }
 };
 
+/// What friction carries of a pair of edges to the next interval.
+struct EdgeSpring {
+  std::pair<int, int> key;
+  Vec3 stretch = Vec3::Zero();
+};
+
+/// How a pair in contact moved.
+struct PairMotion {
+  double stiffness = 0.0;  ///< k [N/m]
+  double depth_t0 = 0.0;   ///< [m]; 0: outside
+  double depth_t1 = 0.0;
+  Vec3 tool_path = Vec3::Zero();  ///< of the tool's point over the interval [m]
+  Vec3 body_path = Vec3::Zero();  ///< and of the body's
+  double share = 1.0;             ///< of the interval in contact
+};
+
 /// A vertex that met a face in this interval.
 struct Entry {
   int vertex = -1;
@@ -36,6 +52,7 @@ struct Entry {
 struct VertexSide {
   std::vector<int> face_of_vertex;  ///< face each vertex lies behind; −1: outside
   std::vector<int> inside;          ///< vertices that lie behind a face, increasing
+  std::vector<Vec3> stretch;        ///< of each vertex's spring of sticking [m]; of friction alone
 
   // Of the present interval.
   std::vector<Entry> entries;    ///< by vertex, time, face
@@ -46,6 +63,7 @@ struct VertexSide {
 
   explicit VertexSide(int num_vertices)
       : face_of_vertex(static_cast<std::size_t>(num_vertices), -1),
+        stretch(static_cast<std::size_t>(num_vertices), Vec3::Zero()),
         depth(static_cast<std::size_t>(num_vertices), 0.0) {}
 };
 
@@ -95,7 +113,9 @@ struct ContactDetector::Impl {
 
   // Working arrays; they grow to what a scene needs and stay so.
   std::vector<int> body_candidates, tool_candidates;
-  std::vector<EdgePair> edge_pairs;  // of the present interval, by key
+  std::vector<EdgePair> edge_pairs;                         // of the present interval, by key
+  std::vector<EdgeSpring> edge_springs, edge_springs_next;  // by key
+  double seconds = 0.0;                                     // length of the interval
   std::vector<Vec3> polygon, clip_work;
 
   Impl(const Triangles& surface, int num_body_vertices, const mesh::TriangleMesh& tool_mesh,
@@ -120,6 +140,14 @@ struct ContactDetector::Impl {
   void press_edges(const Motion& m, Contacts& out);
   double compute_uncovered_share(const EdgePair& pair, double depth) const;
   bool is_edge_pair_inside(const EdgePair& pair, const Motion& m, double t);
+
+  // resist.cpp
+  bool resists() const { return params.damping > 0.0 || params.friction > 0.0; }
+  void resist(const PairMotion& motion, Vec3& stretch, Contact& c) const;
+  void resist_vertex(const VertexFaceMotion& m, int v, const PairPath& path, const Penalty& penalty,
+                     bool was_inside, bool inside, Contact& c) const;
+  void resist_edges(const EdgePair& pair, const PairPath& path, const Penalty& penalty, double share,
+                    Contact& c);
 
   // touched.cpp
   void measure_touched(const Motion& m, Contacts& out);

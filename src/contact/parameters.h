@@ -16,6 +16,11 @@ struct ContactParams {
   /// part in the direction of its force, so that the force does not jerk when the vertex passes from one face
   /// to the next [–], ≥ 0. 0: the nearest face alone, eq. 7 to the letter. For the continuous penalty.
   double face_blend = 0.25;
+  /// λ [s/m], ≥ 0: the normal force is k d (1 + λ ḋ) instead of k d, never below 0 [Hunt1975].
+  double damping = 0.0;
+  /// μ [–], ≥ 0: Coulomb's coefficient. A pair sticks by a spring as stiff as its normal one, and slides when
+  /// that would carry more than μ times the normal force.
+  double friction = 0.0;
 };
 
 }  // namespace argil::contact

@@ -130,7 +130,9 @@ void ContactDetector::Impl::press_vertices(const VertexFaceMotion& m, Contacts& 
   side.inside_next.clear();
 
   const auto settle = [&](int v, int face, bool was_inside) {
-    const PairPath path = m.path(v, face);
+    PairPath path = m.path(v, face);
+    Vec3& stretch = side.stretch[static_cast<std::size_t>(v)];
+    if (!was_inside) stretch.setZero();
     const bool is_discrete = params.penalty == PenaltyKind::discrete;
     Penalty penalty;
     if (!is_discrete) penalty = compute_vertex_face_penalty(path, was_inside);
@@ -146,16 +148,19 @@ void ContactDetector::Impl::press_vertices(const VertexFaceMotion& m, Contacts& 
     if (is_discrete && inside) {
       const SurfacePoint place = find_nearest(m.faces, m.tree, p, nearest.face);
       face = place.face;
+      path = m.path(v, face);
       penalty = compute_vertex_face_depth(m, p, place);
     }
     if (inside && !is_discrete)
       if (const auto direction = find_blended_direction(m, p, nearest, params.face_blend))
         penalty.integral = penalty.integral.norm() * *direction;
     const double depth = penalty.integral.norm();
+    if (!inside && !(depth > 0.0)) stretch.setZero();
     if (!(depth > 0.0)) return;
     side.depth[static_cast<std::size_t>(v)] = depth;
     side.pressed.push_back(v);
     out.contacts.push_back(make_vertex_contact(m, v, face, penalty, params.vertex_face_stiffness));
+    if (resists()) resist_vertex(m, v, path, penalty, was_inside, inside, out.contacts.back());
   };
 
   auto entry = side.entries.cbegin();
@@ -212,6 +217,7 @@ bool ContactDetector::Impl::is_edge_pair_inside(const EdgePair& pair, const Moti
 /// whether a pair is in penetration is read off the positions, so that neighbouring edges take over from each
 /// other.
 void ContactDetector::Impl::press_edges(const Motion& m, Contacts& out) {
+  edge_springs_next.clear();
   for (const EdgePair& pair : edge_pairs) {
     const Eigen::Vector2i b = body.edges.col(pair.body_edge);
     const PairPath path = make_edge_path(m, tool.edges.col(pair.tool_edge), b);
@@ -252,8 +258,10 @@ void ContactDetector::Impl::press_edges(const Motion& m, Contacts& out) {
     c.force = share * params.edge_edge_stiffness * penalty.integral;
     c.stiffness = share * params.edge_edge_stiffness * penalty.duration;
     c.point = c.weight[0] * path.t1[2] + c.weight[1] * path.t1[3];
+    if (resists()) resist_edges(pair, path, penalty, share, c);
     out.contacts.push_back(c);
   }
+  std::swap(edge_springs, edge_springs_next);
 }
 
 }  // namespace argil::contact

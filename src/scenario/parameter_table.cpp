@@ -292,6 +292,10 @@ void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
       "/contact/penalty", c.penalty,
       {{contact::PenaltyKind::continuous, "continuous"}, {contact::PenaltyKind::discrete, "discrete"}},
       "Mean depth over the motion (eqs. 7 and 8), or the depth at its end.");
+  b.number("/contact/damping_s_per_m", c.damping, not_negative(), "s/m",
+           "Share by which the normal force grows for each m/s of approach (Hunt and Crossley 1975).");
+  b.number("/contact/friction", c.friction, between(0, 10), "",
+           "Coulomb's coefficient of the tool on the body; 0: none (the paper).");
   b.number(
       "/contact/face_blend", c.face_blend, between(0, 10), "",
       "Faces farther from a vertex than its nearest by less than this share of the distance also turn its "

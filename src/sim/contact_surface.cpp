@@ -68,9 +68,9 @@ void ContactSurface::find_positions(const Points& x, Points& out) const {
   }
 }
 
-void ContactSurface::add_force(const contact::Contact& contact, double scale, Points& force) const {
+void ContactSurface::add_force(const contact::Contact& contact, const Vec3& f, Points& force) const {
   for (std::size_t c = 0; c < 3 && contact.vertex[c] >= 0; ++c) {
-    const Vec3 share = scale * contact.weight[c] * contact.force;
+    const Vec3 share = contact.weight[c] * f;
     const auto i = static_cast<std::size_t>(contact.vertex[c]);
     for (auto k = static_cast<std::size_t>(m_begin[i]); k < static_cast<std::size_t>(m_begin[i + 1]); ++k)
       force.col(m_node[k]) += m_weight[k] * share;

@@ -21,8 +21,8 @@ class ContactSurface {
   /// Positions of the vertices [m] for nodes at x.
   void find_positions(const Points& x, Points& out) const;
 
-  /// Adds scale · Wᵀ f of a contact to the nodes' forces [N].
-  void add_force(const contact::Contact& contact, double scale, Points& force) const;
+  /// Adds Wᵀ f to the nodes' forces, f the force on a contact [N].
+  void add_force(const contact::Contact& contact, const Vec3& f, Points& force) const;
 
   /// Appends a contact's stiffness [N/m] along a direction, between nodes. What hangs on nodes that share no
   /// tet is taken as one stiffness for each vertex of the contact, in proportion to its weight: no softer, as

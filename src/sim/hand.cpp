@@ -24,9 +24,8 @@ void Simulation::spread_contact_force(int ticks) {
   for (const contact::Contact& c : m_contacts.contacts) {
     if (!acts) break;
     m_state.is_touched = true;
-    m_surface.add_force(c, sign * share, m_state.contact_force);
-    // A pulling contact has negative stiffness; left out, so that the system stays positive definite.
-    if (sign > 0.0) add_contact_stiffness(c, c.normal, share * c.stiffness);
+    m_surface.add_force(c, share * (sign * c.force + c.resistance), m_state.contact_force);
+    add_contact_stiffness(c, sign > 0.0, share);
     weighted_centre += c.force.norm() * c.point;
     weight += c.force.norm();
   }
@@ -34,13 +33,33 @@ void Simulation::spread_contact_force(int ticks) {
   if (m_state.is_pressed) m_state.contact_centre = weighted_centre / weight;
 }
 
-void Simulation::add_contact_stiffness(const contact::Contact& contact, const Vec3& direction,
-                                       double stiffness) {
-  m_surface.add_stiffness(contact, direction, stiffness, m_solid.elements(), m_contact_stiffness);
+/// How a contact's force changes as the body moves on: falls by its stiffness, by damping with the speed, and
+/// along the surface while it sticks. A pulling contact has negative stiffness; left out, so that the system
+/// stays positive definite.
+void Simulation::add_contact_stiffness(const contact::Contact& c, bool pushes, double share) {
+  // The damping force counted with the body's last speed; the solve finds the next, from a force without it.
+  const double per_speed = c.damping / m_clock.seconds(m_params.rates.physics_period_ticks);
+  const double at_rest = c.damping * c.body_speed;
+  add_contact_stiffness(c, c.normal, share * ((pushes ? c.stiffness : 0.0) + per_speed), share * at_rest);
+  if (c.sticking == 0.0) return;
+  const Vec3 along = c.normal.unitOrthogonal();
+  for (const Vec3& direction : {along, Vec3(c.normal.cross(along))})
+    add_contact_stiffness(c, direction, share * c.sticking, 0.0);
+}
+
+void Simulation::add_contact_stiffness(const contact::Contact& c, const Vec3& direction, double stiffness,
+                                       double force_at_rest) {
+  if (!(stiffness > 0.0)) return;
+  m_surface.add_stiffness(c, direction, stiffness, m_solid.elements(), m_contact_stiffness);
+  const bool is_implicit =
+      m_params.solid.implicit_contact && m_params.solid.integrator != solid::Integrator::symplectic_euler;
+  if (!is_implicit) force_at_rest = 0.0;
+  if (force_at_rest != 0.0) m_surface.add_force(c, force_at_rest * direction, m_state.contact_force);
   // One entry stands for the contact as a whole, more of them for one of its vertices each.
-  const std::size_t added = m_contact_stiffness.size() - m_yield_points.size();
+  const std::size_t added = m_contact_stiffness.size() - m_yields.size();
   for (std::size_t i = 0; i < added; ++i)
-    m_yield_points.push_back(added == 1 ? contact.point : Vec3(m_state.contact_x.col(contact.vertex[i])));
+    m_yields.push_back(added == 1 ? Yield{c.point, force_at_rest}
+                                  : Yield{m_state.contact_x.col(c.vertex[i]), c.weight[i] * force_at_rest});
 }
 
 /// What a step has found the body to yield under the tool lets the forces of its contacts fall: those on the
@@ -52,12 +71,13 @@ void Simulation::apply_contact_yield() {
   const double per_share = rates.between_frames == BetweenFrames::hold ? 1.0 : rates.physics_period_ticks;
   for (std::size_t i = m_last_detection; i < m_contact_stiffness.size(); ++i) {
     const solid::PointStiffness& stiffness = m_contact_stiffness[i];
-    const Vec3 change = per_share * m_solid.compute_contact_change(stiffness) * stiffness.normal;
+    const double fall = m_yields[i].force_at_rest + m_solid.compute_contact_change(stiffness);
+    const Vec3 change = per_share * fall * stiffness.normal;
     m_state.hand_force -= change;
-    m_state.hand_torque -= (m_yield_points[i] - m_state.tool.position).cross(change);
+    m_state.hand_torque -= (m_yields[i].point - m_state.tool.position).cross(change);
   }
   m_contact_stiffness.clear();
-  m_yield_points.clear();
+  m_yields.clear();
   m_last_detection = 0;
 }
 

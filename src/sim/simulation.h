@@ -61,7 +61,9 @@ class Simulation {
   // Between contacts, body and hand: hand.cpp.
   void book_port_energy(const contact::Pose& next);
   void spread_contact_force(int ticks);
-  void add_contact_stiffness(const contact::Contact& contact, const Vec3& direction, double stiffness);
+  void add_contact_stiffness(const contact::Contact& c, bool pushes, double share);
+  void add_contact_stiffness(const contact::Contact& c, const Vec3& direction, double stiffness,
+                             double force_at_rest);
   void apply_contact_yield();
 
   void exchange_water(int sign, double step_s);
@@ -84,8 +86,12 @@ class Simulation {
   device::OutputGate m_gate;
   device::GatedForce m_gated;
   std::vector<solid::PointStiffness>
-      m_contact_stiffness;           // since the last physics step, by their share of it
-  std::vector<Vec3> m_yield_points;  // where the force of each acts [m]
+      m_contact_stiffness;  // since the last physics step, by their share of it
+  struct Yield {
+    Vec3 point;                  // where the force acts [m]
+    double force_at_rest = 0.0;  // what the solve was told besides, for damping [N]
+  };
+  std::vector<Yield> m_yields;       // of each of these
   std::size_t m_last_detection = 0;  // where in it the last detection's contacts begin
   std::vector<int> m_touched_tet;    // tets under the tool, and how much of their surface
   std::vector<double> m_touched_area;

@@ -39,13 +39,13 @@ void Simulation::contact_step(int ticks) {
   if (has_moved) m_surface.find_positions(m_state.solid.x, m_surface_x);
   m_detector.find_contacts(m_state.contact_x, has_moved ? m_surface_x : m_state.contact_x,
                            m_state.contact_tool, m_state.tool, m_contacts,
-                           has_moved ? std::optional<double>() : 0.0);
+                           has_moved ? std::optional<double>() : 0.0, m_clock.seconds(ticks));
   if (has_moved) m_state.contact_x.swap(m_surface_x);
   m_state.has_moved = false;
   m_state.contact_tool = m_state.tool;
   const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;  // pull: force reversed
-  m_state.hand_force = sign * m_contacts.force_on_tool;
-  m_state.hand_torque = sign * m_contacts.torque_on_tool;
+  m_state.hand_force = sign * m_contacts.force_on_tool + m_contacts.resistance_on_tool;
+  m_state.hand_torque = sign * m_contacts.torque_on_tool + m_contacts.resistance_torque_on_tool;
   m_state.force_age = 0;
   spread_contact_force(ticks);
 }

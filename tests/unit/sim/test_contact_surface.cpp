@@ -79,7 +79,7 @@ TEST_P(EverySurface, CarriesForceAndTorqueToTheNodesToRounding) {
   ASSERT_GT(contacts.force_on_tool.norm(), 0.01);
 
   Points force = Points::Zero(3, x.cols());
-  for (const contact::Contact& c : contacts.contacts) surface.add_force(c, 1.0, force);
+  for (const contact::Contact& c : contacts.contacts) surface.add_force(c, c.force, force);
   Vec3 torque = Vec3::Zero();
   for (Eigen::Index v = 0; v < x.cols(); ++v) torque += (x.col(v) - to.position).cross(Vec3(force.col(v)));
   const double scale = contacts.force_on_tool.norm();
@@ -138,19 +138,28 @@ TEST(Skin, IsMetWhereItIsSeen) {
 }
 
 TEST(Skin, AFreeBodyTakesUpTheMomentumThatTheHandGives) {
-  // With the contact's stiffness in the solve: what its nodes yield, the hand feels too.
-  Body body = make_body(0.8);
-  body.supports.clear();
-  const Params params = make_params(SurfaceKind::skin);
-  Simulation simulation(std::move(body), contact::make_sphere_tool(kToolRadius, 2), params, at_height(0.019));
-  Vec3 impulse = Vec3::Zero();
-  for (int k = 1; k <= 60; ++k) {
-    ASSERT_TRUE(simulation.tick(at_height(0.019 - 5e-5 * k)).is_ok());
-    impulse -= params.rates.haptic_period * simulation.state().hand_force;
+  // With the contact's stiffness in the solve: what its nodes yield, the hand feels too. Also of what
+  // resists.
+  for (const auto& [damping, friction] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.5}, {1.0, 0.5}}) {
+    Body body = make_body(0.8);
+    body.supports.clear();
+    Params params = make_params(SurfaceKind::skin);
+    params.contact.damping = damping;
+    params.contact.friction = friction;
+    Simulation simulation(std::move(body), contact::make_sphere_tool(kToolRadius, 2), params,
+                          at_height(0.019));
+    Vec3 impulse = Vec3::Zero();
+    for (int k = 1; k <= 60; ++k) {
+      device::DeviceSample sample = at_height(0.019 - 5e-5 * k);
+      sample.position.x() += 3e-5 * k;
+      ASSERT_TRUE(simulation.tick(sample).is_ok());
+      impulse -= params.rates.haptic_period * simulation.state().hand_force;
+    }
+    const Vec3 momentum = simulation.state().solid.v * simulation.solid().mass();
+    EXPECT_LT(momentum.z(), -1e-5);
+    EXPECT_EQ(momentum.x() > 1e-6, friction > 0.0) << momentum.transpose();
+    EXPECT_LT((momentum - impulse).norm(), 1e-12 * impulse.norm() + 1e-17) << damping << ' ' << friction;
   }
-  const Vec3 momentum = simulation.state().solid.v * simulation.solid().mass();
-  EXPECT_LT(momentum.z(), -1e-5);
-  EXPECT_LT((momentum - impulse).norm(), 1e-12 * impulse.norm() + 1e-17);
 }
 
 TEST(Skin, TakesUpWater) {
