@@ -32,6 +32,7 @@ PoreWater::PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, 
   m_active.reserve(m_is_active.size());
   m_merged.reserve(m_is_active.size());
   m_touched.reserve(m_boundary_tet.size());
+  m_once.reserve(m_boundary_tet.size());
   if (params.flux == FluxForm::corrected) {
     m_gradient.setZero(3, num_tets);
     m_correction.setZero(4, num_tets);
