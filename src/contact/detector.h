@@ -48,6 +48,11 @@ struct Entry {
   int face = -1;
 };
 
+struct NearFace {
+  int face = -1;
+  double squared_distance = 0.0;  ///< [m²]
+};
+
 /// Vertices of one surface against faces of the other, with what is carried between intervals.
 struct VertexSide {
   std::vector<int> face_of_vertex;  ///< face each vertex lies behind; −1: outside
@@ -57,7 +62,7 @@ struct VertexSide {
   // Of the present interval.
   std::vector<Entry> entries;    ///< by vertex, time, face
   std::vector<int> inside_next;  ///< working array
-  std::vector<int> near;         ///< working array: faces about as near to a vertex as its nearest
+  std::vector<NearFace> near;    ///< working array: faces about as near to a vertex as its nearest
   std::vector<int> pressed;      ///< vertices with depth
   std::vector<double> depth;     ///< |∫ nᵀ(p−q) n dt| of each vertex [m]
 

@@ -166,13 +166,16 @@ SurfacePoint walk_to_nearest(const SurfaceAt& surface, const Vec3& p, int face) 
   return deepest == nearest.face ? nearest : compute_nearest_on_face(surface, deepest, p);
 }
 
+bool is_nearer(const SurfacePoint& a, const SurfacePoint& b) {
+  return a.squared_distance < b.squared_distance ||
+         (a.squared_distance == b.squared_distance && a.face < b.face);
+}
+
 SurfacePoint find_nearest(const SurfaceAt& surface, BoundingTree& tree, const Vec3& p, int face) {
   SurfacePoint nearest = compute_nearest_on_face(surface, face, p);
   tree.visit_near(p, nearest.squared_distance, surface.x_t0, surface.x_t1, [&](int candidate) {
     const SurfacePoint found = compute_nearest_on_face(surface, candidate, p);
-    if (found.squared_distance < nearest.squared_distance ||
-        (found.squared_distance == nearest.squared_distance && candidate < nearest.face))
-      nearest = found;
+    if (is_nearer(found, nearest)) nearest = found;
     return found.squared_distance;
   });
   return nearest;

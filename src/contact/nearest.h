@@ -43,8 +43,10 @@ SurfacePoint compute_nearest_on_face(const SurfaceAt& surface, int face, const V
 /// face when it is among these.
 SurfacePoint walk_to_nearest(const SurfaceAt& surface, const Vec3& p, int face);
 
-/// The nearest place of all the surface; `face` is a guess that saves work. Equal distances go to the lowest
-/// triangle.
+/// Of two places: the smaller distance, or, where both are equal, the lower triangle.
+bool is_nearer(const SurfacePoint& a, const SurfacePoint& b);
+
+/// The nearest place of all the surface; `face` is a guess that saves work. By is_nearer.
 SurfacePoint find_nearest(const SurfaceAt& surface, BoundingTree& tree, const Vec3& p, int face);
 
 /// Does p lie inside, seen from the nearest place of all the surface? By the normal of the face, the sum of

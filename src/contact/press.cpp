@@ -33,7 +33,24 @@ double find_exit(const VertexFaceMotion& m, int v, int face, double from) {
   return outside;
 }
 
-/// What turns the force of a vertex behind `nearest` into the mean over the faces about as near: Σ w h n over
+/// The place nearest to p of the whole surface, and in m.side.near the faces less than (1 + blend) times as
+/// far from p as `walked`, the nearest one in the neighbourhood.
+SurfacePoint find_near_faces(const VertexFaceMotion& m, const Vec3& p, const SurfacePoint& walked,
+                             double blend) {
+  std::vector<NearFace>& near = m.side.near;
+  near.clear();
+  SurfacePoint nearest = compute_nearest_on_face(m.faces, walked.face, p);
+  const double reach = (1.0 + blend) * (1.0 + blend) * walked.squared_distance;
+  m.tree.visit_near(p, reach, m.faces.x_t0, m.faces.x_t1, [&](int face) {
+    const SurfacePoint found = compute_nearest_on_face(m.faces, face, p);
+    if (is_nearer(found, nearest)) nearest = found;
+    if (found.squared_distance < reach) near.push_back({face, found.squared_distance});
+    return reach;
+  });
+  return nearest;
+}
+
+/// What turns the force of a vertex behind `nearest` into the mean over the near faces: Σ w h n over
 /// (Σ w) times the depth behind the nearest face, where h is the depth behind each face and w fades from 1 at
 /// the nearest distance d to 0 at (1 + blend)·d. Faces that look the other way, beyond 90° to 120°, are the
 /// far side of a thin part and do not count. A function of the positions alone: the face that the vertex is
@@ -45,27 +62,19 @@ std::optional<Vec3> find_blended_direction(const VertexFaceMotion& m, const Vec3
   const double depth = -compute_height(m.faces, nearest.face, p);
   if (!(blend > 0.0) || !(depth > 0.0)) return {};
   // In the order of their numbers, not of the tree's boxes, which depend on the past.
-  const double reach = 1.0 + blend;
-  const double least = reach * reach * nearest.squared_distance;
-  std::vector<int>& near = m.side.near;
-  near.clear();
-  m.tree.visit_near(p, least, m.faces.x_t0, m.faces.x_t1, [&](int face) {
-    if (compute_nearest_on_face(m.faces, face, p).squared_distance < least) near.push_back(face);
-    return least;
-  });
-  std::sort(near.begin(), near.end());
+  std::vector<NearFace>& near = m.side.near;
+  std::sort(near.begin(), near.end(), [](const NearFace& a, const NearFace& b) { return a.face < b.face; });
   double sum = 0.0;
   Vec3 direction = Vec3::Zero();
   bool is_flat = true;
   constexpr double kSamePlane = 1e-12;  // 1 − cos of the angle between two faces: rounding
-  for (const int face : near) {
+  for (const auto& [face, squared_distance] : near) {
     const Vec3 n = compute_face_normal(m.faces, face).normalized();
     const double alike = n.dot(normal);
-    const double distance = std::sqrt(compute_nearest_on_face(m.faces, face, p).squared_distance);
-    const double nearness = (reach - distance / std::sqrt(nearest.squared_distance)) / blend;
+    const double nearness = (1.0 + blend - std::sqrt(squared_distance / nearest.squared_distance)) / blend;
     const double w = std::clamp(nearness, 0.0, 1.0) * std::clamp(1.0 + 2.0 * alike, 0.0, 1.0);
     sum += w;
-    direction -= w * std::max(0.0, -compute_height(m.faces, face, p)) * n;
+    direction += w * std::min(0.0, n.dot(p - m.faces.corner(face, 0))) * n;
     is_flat = is_flat && (w == 0.0 || alike > 1.0 - kSamePlane);
   }
   if (is_flat || !(sum > 0.0)) return {};
@@ -138,7 +147,7 @@ void ContactDetector::Impl::press_vertices(const VertexFaceMotion& m, Contacts& 
     if (!is_discrete) penalty = compute_vertex_face_penalty(path, was_inside);
     const Vec3 p = m.v_t1.col(v);
     const SurfacePoint nearest = walk_to_nearest(m.faces, p, face);
-    const bool inside = is_inside(m.faces, m.tree, p, nearest.face);
+    const bool inside = is_behind(m.faces, find_near_faces(m, p, nearest, params.face_blend), p);
     side.face_of_vertex[static_cast<std::size_t>(v)] = inside ? nearest.face : -1;
     if (inside) side.inside_next.push_back(v);
     if (!inside && penalty.inside_at_end) {
