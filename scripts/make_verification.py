@@ -86,7 +86,7 @@ def draw_beams():
             panels, ("cantilever", "torsion", "twisted_beam", "cook", "cook_plane_strain"),
             ("deflection_m", "constant", "tip", "tip", "tip"),
             ("timoshenko_m", "saint_venant", "literature", "literature", "fine"),
-            ("cantilever", "torsion", "twisted beam", "Cook, ν = ⅓", "Cook, ν = 0.4999")):
+            ("cantilever", "torsion", "twisted beam", "Cook, ν = ⅓", "Cook, 0.4999")):
         for (element, force), rows in groups(
                 [{**r, "who": (r["element"], r.get("force"))} for r in read(name)], "who"):
             along_thickness = force == "along_thickness"
@@ -99,7 +99,7 @@ def draw_beams():
         axes.minorticks_off()
         axes.set(xlabel="cells across", title=title)
     panels[0].set_ylabel("over the reference")
-    panels[2].legend(*panels[4].get_legend_handles_labels(), loc=(0.25, 0.66), fontsize=7)
+    panels[2].legend(*panels[4].get_legend_handles_labels(), loc=(0.02, 0.66), fontsize=7)
     save(figure, "beams")
 
 
