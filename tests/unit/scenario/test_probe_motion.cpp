@@ -71,6 +71,34 @@ TEST(ProbeVertexFace, TurningFaceUsesItsUnitNormalAtEachMoment) {
   expect_weights(result["entry_weights"], {1, 0.25, 0.25, 0.5});
 }
 
+TEST(ProbeVertexFace, TurningFaceCanBeEnteredTwice) {
+  // Edges (1, 0, t) and (t, 1, 0) have N = (−t, t², 1); with p = (0.4, ¼(3/2 − t), 3/128 + 0.228125 t)
+  // N·p = −¼ (t − ¼)(t − ½)(t − ¾), so that the vertex is inside from ¼ to ½ and from ¾ on.
+  const Json result = probe_one("vertex_face", R"({"t0": [[0.4,0.375,0.0234375], [0,0,0], [1,0,0], [0,1,0]],
+                                                   "t1": [[0.4,0.125,0.2515625], [0,0,0], [1,0,1], [1,1,0]]})");
+  ASSERT_EQ(result["intervals"].size(), 2u);
+  EXPECT_NEAR(at(result["intervals"], 0, 0), 0.25, 1e-13);
+  EXPECT_NEAR(at(result["intervals"], 0, 1), 0.5, 1e-13);
+  EXPECT_NEAR(at(result["intervals"], 1, 0), 0.75, 1e-13);
+  EXPECT_EQ(at(result["intervals"], 1, 1), 1.0);
+  // ∫ N (N·p)/|N|² dt by Simpson's rule on the formula above.
+  Vec3 expected = Vec3::Zero();
+  constexpr int kPieces = 400;
+  for (const auto& [begin, end] : {std::pair{0.25, 0.5}, {0.75, 1.0}})
+    for (int i = 0; i <= kPieces; ++i) {
+      const double t = begin + (end - begin) * i / kPieces;
+      const double w = (i == 0 || i == kPieces ? 1.0
+                        : i % 2 == 0           ? 2.0
+                                               : 4.0) *
+                       (end - begin) / (3.0 * kPieces);
+      const double height = -0.25 * (t - 0.25) * (t - 0.5) * (t - 0.75);
+      expected += w * height / (1.0 + t * t + t * t * t * t) * Vec3(-t, t * t, 1.0);
+    }
+  expect_vector(result["integral"], expected, 1e-13);
+  // At the first entry: p = β (1, 0, t) + γ (t, 1, 0) with γ = ¼(3/2 − t), β = 0.4 − γ t.
+  expect_weights(result["entry_weights"], {1, 1 - 0.3125 - 0.321875, 0.321875, 0.3125});
+}
+
 TEST(ProbeEdgeEdge, CrossingEdgesGiveDepthAlongTheirCommonNormal) {
   // Edge a along x from x = −½ to 1.5, sinking from 0.2 to −0.2 through edge b along y: ∫ = −½·½·0.2.
   const Json result = probe_one("edge_edge", R"({"t0": [[-0.5,0,0.2], [1.5,0,0.2], [0,-1,0], [0,1,0]],
