@@ -102,6 +102,7 @@ Isotropic compute_self_consistent(const Isotropic& solid, const Isotropic& fluid
   constexpr double kApart = -18.0;      // ln of a shear modulus that counts as lost: 1.5e-8 of the solid's
   constexpr double kProbe = 1e-7;       // difference quotient; only the speed of Newton's method rests on it
   constexpr double kLongestStep = 3.0;
+  if (phi >= 1.0) return fluid;
   const auto residual = [&](const LogModuli& y) { return compute_residual(solid, fluid, phi, aspect, y); };
   LogModuli y = {0.0, 0.0};
   LogModuli r = residual(y);
@@ -135,6 +136,7 @@ Isotropic compute_self_consistent(const Isotropic& solid, const Isotropic& fluid
 Isotropic compute_differential(const Isotropic& solid, const Isotropic& fluid, double phi, double aspect) {
   constexpr int kMaxSteps = 100000;
   constexpr double kTolerance = 1e-12;  // per step, of a logarithm
+  constexpr double kApart = -300.0;     // ln of a shear modulus that counts as lost: doubles end at −745
   if (phi >= 1.0) return fluid;
   const auto slope = [&](const LogModuli& y) { return compute_slope(solid, fluid, aspect, y); };
   const double end = -std::log1p(-phi);
@@ -143,6 +145,10 @@ Isotropic compute_differential(const Isotropic& solid, const Isotropic& fluid, d
   double h = std::min(end, 1e-3);
   for (int i = 0; at < end; ++i) {
     ARGIL_ASSERT(i < kMaxSteps, phi, aspect, at, h);
+    if (y[1] < kApart) {  // a suspension: the rest of the fluid is added as Reuss does
+      const double share = std::exp(at - end);
+      return {1.0 / (share / to_moduli(solid, y).mean + (1.0 - share) / fluid.mean), 0.0};
+    }
     const bool is_last = at + h >= end;
     LogModuli next = y;
     const double error = size_of(step_dormand_prince(slope, is_last ? end - at : h, next));

@@ -16,7 +16,7 @@ Transverse compute_concentration(const Isotropic& matrix, const Isotropic& fluid
 Isotropic compute_self_consistent(const Isotropic& solid, const Isotropic& fluid, double phi, double aspect);
 
 /// Solution at φ of dC/dφ = (C^I − C) ⟨A(C)⟩ / (1 − φ), C(0) = C^M [Norris1985], to a relative error of about
-/// 1e-11.
+/// 1e-11. Flat pores let the shear modulus fall like e^{−φ/aspect}: below 1e-130 of the solid's it is 0.
 Isotropic compute_differential(const Isotropic& solid, const Isotropic& fluid, double phi, double aspect);
 
 }  // namespace argil::material

@@ -85,10 +85,10 @@ TEST(EffectiveMedium, IteratedSchemesStaySolvableNearTheEdges) {
   // Every case either converges or aborts (asserted inside); thin and long spheroids, nearly incompressible
   // clay, both sides of percolation.
   for (const Scheme scheme : {Scheme::self_consistent, Scheme::differential})
-    for (const double aspect : {0.01, 0.1, 1.0, 10.0, 100.0})
+    for (const double aspect : {1e-4, 0.01, 0.1, 1.0, 10.0, 100.0, 1e4})
       for (const double nu : {0.0, 0.2, 0.499})
         for (const double K_I : {0.0, 1e5, 2.2e9})
-          for (const double phi : {1e-6, 0.1, 0.33, 0.4, 0.499, 0.5, 0.501, 0.7}) {
+          for (const double phi : {1e-6, 0.1, 0.33, 0.4, 0.499, 0.5, 0.501, 0.7, 1.0}) {
             EffectiveMedium medium;
             medium.scheme = scheme;
             medium.aspect = aspect;
@@ -97,6 +97,36 @@ TEST(EffectiveMedium, IteratedSchemesStaySolvableNearTheEdges) {
             EXPECT_TRUE(r.bulk_modulus >= 0.0 && r.shear_modulus >= 0.0) << aspect << ' ' << nu << ' ' << phi;
             EXPECT_NE(r.status, MediumStatus::above_voigt);
           }
+}
+
+TEST(EffectiveMedium, IteratedSchemesEndAtTheFluidItself) {
+  for (const Scheme scheme : {Scheme::self_consistent, Scheme::differential})
+    for (const double aspect : {1e-4, 1.0, 1e4}) {
+      EffectiveMedium medium;
+      medium.scheme = scheme;
+      medium.aspect = aspect;
+      for (const double K_I : {0.0, 2e4}) {
+        medium.fluid_bulk_modulus = K_I;
+        const MediumResult r = compute_effective_medium({1e5, 0.3}, medium, 1.0);
+        EXPECT_NEAR(r.bulk_modulus, K_I, 1e-10);
+        EXPECT_EQ(r.shear_modulus, 0.0);
+        EXPECT_EQ(r.status, MediumStatus::not_positive_definite);
+      }
+    }
+}
+
+TEST(EffectiveMedium, DifferentialSchemeOfFlatWaterTendsToTheSuspension) {
+  // Pores of aspect 1e-4 cut the clay apart long before φ = 0.3; what is left adds compliances (Wood 1930).
+  EffectiveMedium medium;
+  medium.scheme = Scheme::differential;
+  medium.aspect = 1e-4;
+  medium.fluid_bulk_modulus = 2e4;
+  const MediumResult r = compute_effective_medium({1e5, 0.3}, medium, 0.3);
+  const double K = 1e5 / (3.0 * 0.4);
+  EXPECT_NEAR(r.bulk_modulus, 1.0 / (0.7 / K + 0.3 / 2e4), 1e-2 * K);
+  EXPECT_EQ(r.shear_modulus, 0.0);
+  medium.fluid_bulk_modulus = 0.0;
+  EXPECT_EQ(compute_effective_medium({1e5, 0.3}, medium, 0.3).bulk_modulus, 0.0);
 }
 
 }  // namespace
