@@ -9,6 +9,7 @@
 #include "embed/cage.h"
 #include "mesh/quality.h"
 #include "mesh/readers.h"
+#include "scenario/medium_check.h"
 #include "solid/rigid_motion.h"
 
 namespace argil::scenario {
@@ -148,6 +149,19 @@ void check_supports(const Scenario& s, const sim::Body& body) {
                      "hold at least three vertices of it that are not on a line");
 }
 
+/// The effective medium over the mesh's own fields.
+void check_medium(const Scenario& s, Scene& scene) {
+  scene.medium_status = s.medium_status;
+  if (!needs_fields(s)) return;
+  const Field& E = scene.body.youngs_modulus;
+  const double uniform = s.params.elastic.youngs_modulus;
+  const MediumCheck check =
+      check_effective_medium(s, {E.size() > 0 ? E.minCoeff() : uniform, E.size() > 0 ? E.maxCoeff() : uniform,
+                                 scene.body.initial_saturation.maxCoeff()});
+  scene.medium_status = check.status;
+  if (!check.warning.empty()) scene.notes.push_back(check.warning);
+}
+
 /// Explicit diffusion needs so many substeps that the run would never end?
 void check_diffusion(const Scenario& s, const sim::Body& body) {
   constexpr double kMostSubsteps = 10000.0;
@@ -217,6 +231,7 @@ Scene build_scene(const Scenario& s) {
     body.youngs_modulus =
         take_field(s, body.mesh, s.body.modulus_field, "/body/mesh/youngs_modulus_field", 1e-6, 1e15);
   if (!s.body.pore_axis_field.empty()) body.pore_axis = take_axes(s, body.mesh);
+  check_medium(s, scene);
   check_diffusion(s, body);
   fix_and_load(s, body);
   scene.tool = make_tool(s);

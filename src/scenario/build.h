@@ -14,6 +14,7 @@ struct Scene {
   sim::Body body;
   mesh::TriangleMesh tool;
   device::Trace trace;
+  std::string medium_status;       ///< where eq. 6 stands at every φ and dry modulus that the run can reach
   std::vector<std::string> notes;  ///< for the user: mesh quality, cage report, warnings
 };
 

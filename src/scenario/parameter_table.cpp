@@ -5,11 +5,10 @@
 #include <filesystem>
 
 #include "scenario/binding.h"
+#include "scenario/medium_check.h"
 
 namespace argil::scenario {
 namespace {
-
-using material::Scheme;
 
 void describe_region(Binder& b, solid::Region& r) {
   using Kind = solid::Region::Kind;
@@ -70,7 +69,7 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
          "Cell data with the initial saturation; empty: uniform.")
       .applies = only(BodyKind::mesh);
   b.text("/body/mesh/youngs_modulus_field", body.modulus_field,
-         "Cell data with Young's modulus [Pa]; empty: the material's.")
+         "Cell data with Young's modulus of the dry clay [Pa], in the place of the material's; empty: that.")
       .applies = only(BodyKind::mesh);
   b.text("/body/mesh/pore_axis_field", body.pore_axis_field,
          "Cell data NAME_x, NAME_y, NAME_z along the aligned pores of each tet, any length; empty: "
@@ -121,17 +120,8 @@ void bind_material(Binder& b, sim::Params& p) {
       .required = true;
   b.number("/material/density_kg_per_m3", p.solid.density, positive(), "kg/m³", "Density of the dry clay.");
   material::Moisture& m = p.moisture;
-  b.choice<Scheme>("/material/effective_medium/scheme", m.medium.scheme,
-                   {{Scheme::mori_tanaka, "mori_tanaka"},
-                    {Scheme::dilute, "dilute"},
-                    {Scheme::dilute_strain, "dilute_strain"},
-                    {Scheme::self_consistent, "self_consistent"},
-                    {Scheme::differential, "differential"},
-                    {Scheme::voigt, "voigt"},
-                    {Scheme::reuss, "reuss"},
-                    {Scheme::hs_lower, "hs_lower"},
-                    {Scheme::hs_upper, "hs_upper"}},
-                   "Effective stiffness of clay with water (eq. 6 and relatives); `dilute` is the paper's.");
+  b.choice("/material/effective_medium/scheme", m.medium.scheme, scheme_names(),
+           "Effective stiffness of clay with water (eq. 6 and relatives); `dilute` is the paper's.");
   b.number("/material/effective_medium/fluid_bulk_modulus_Pa", m.medium.fluid_bulk_modulus, not_negative(),
            "Pa", "K_I of the water; 0: drained, 2.2e9: undrained.");
   b.number("/material/effective_medium/fluid_shear_modulus_Pa", m.medium.fluid_shear_modulus, not_negative(),

@@ -13,6 +13,7 @@
 #include "material/eshelby.h"
 #include "material/plasticity.h"
 #include "scenario/json_document.h"
+#include "scenario/medium_check.h"
 #include "solid/element.h"
 
 namespace argil::scenario {
@@ -138,27 +139,23 @@ material::Elastic read_elastic(Case& c) {
 }
 
 Json probe_effective_medium(Case& c) {
-  using material::Scheme;
-  const std::vector<std::string> names = {"dilute",          "dilute_strain", "mori_tanaka",
-                                          "self_consistent", "differential",  "voigt",
-                                          "reuss",           "hs_lower",      "hs_upper"};
-  constexpr std::array<Scheme, 9> kSchemes = {
-      Scheme::dilute,          Scheme::dilute_strain, Scheme::mori_tanaka,
-      Scheme::self_consistent, Scheme::differential,  Scheme::voigt,
-      Scheme::reuss,           Scheme::hs_lower,      Scheme::hs_upper};
+  std::vector<std::string> names;
+  for (const auto& scheme : scheme_names()) names.push_back(scheme.second);
   const material::Elastic solid = read_elastic(c);
   material::EffectiveMedium medium;
   medium.fluid_bulk_modulus = c.number("fluid_bulk_modulus_Pa", 0.0);
   medium.fluid_shear_modulus = c.number("fluid_shear_modulus_Pa", 0.0);
-  medium.scheme = kSchemes[c.word("scheme", names, 2)];
+  medium.scheme = scheme_names()[c.word("scheme", names, 0)].first;
   medium.aspect = c.number("aspect", 1.0);
   medium.orientation = c.word("orientation", {"random", "aligned"}, 0) == 0 ? material::Orientation::random
                                                                             : material::Orientation::aligned;
   const double phi = c.number("phi");
   if (!(medium.fluid_bulk_modulus >= 0.0)) c.refuse_range("fluid_bulk_modulus_Pa", "[0, ∞) Pa");
   if (!(medium.fluid_shear_modulus >= 0.0)) c.refuse_range("fluid_shear_modulus_Pa", "[0, ∞) Pa");
-  if (!(medium.aspect > 0.0)) c.refuse_range("aspect", "(0, ∞)");
-  if (!(phi >= 0.0 && phi < 1.0)) c.refuse_range("phi", "[0, 1)");
+  if (!(medium.aspect >= 0.0)) c.refuse_range("aspect", "[0, ∞)");
+  if (medium.aspect == 0.0 && !(medium.fluid_shear_modulus > 0.0))
+    c.refuse_range("aspect", "(0, ∞): a layer without shear modulus has no limit,");
+  if (!(phi >= 0.0 && phi <= 1.0)) c.refuse_range("phi", "[0, 1]");
   if (!material::is_supported(medium)) c.refuse_range("scheme", "those that aligned spheroids allow");
   const material::MediumResult result = material::compute_effective_medium(solid, medium, phi);
   constexpr std::array<const char*, 3> kStatus = {"ok", "above_voigt", "not_positive_definite"};
@@ -173,7 +170,7 @@ Json probe_eshelby(Case& c) {
   const double nu = c.number("poissons_ratio");
   const double aspect = c.number("aspect", 1.0);
   if (!(nu > -1.0 && nu < 0.5)) c.refuse_range("poissons_ratio", "(-1, 0.5)");
-  if (!(aspect > 0.0)) c.refuse_range("aspect", "(0, ∞)");
+  if (!(aspect >= 0.0)) c.refuse_range("aspect", "[0, ∞)");
   return {{"eshelby_mandel", to_json(material::compute_eshelby_tensor(nu, aspect))}};
 }
 

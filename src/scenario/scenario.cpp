@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "material/effective_medium.h"
+#include "scenario/medium_check.h"
 #include "scenario/parameter_table.h"
 
 namespace argil::scenario {
@@ -26,8 +27,6 @@ constexpr const char* kPaperPreset = R"({
   "dynamics": {"model": "linear", "implicit_contact": false},
   "haptics": {"physics_period_ticks": 14, "water_period_ticks": 14, "frame_period_ticks": 98, "between_frames": "hold"}
 })";
-
-constexpr double kLockingPoissonsRatio = 0.45;  // a bar of 4-node tets bends a third of the truth there
 
 void apply_setting(Json& document, const Setting& setting, const std::string& file) {
   Json value = setting.value;  // what is not JSON is a word
@@ -88,60 +87,23 @@ void check_tables(const Scenario& s) {
   if (m.law != material::MoistureLaw::table) return;
   const std::vector<double>& S = m.table_saturation;
   const char* place = "/material/moisture/table_saturation";
-  if (S.size() < 2 || S.front() != 0.0 || S.back() != 1.0 ||
-      !std::is_sorted(S.begin(), S.end(), std::less_equal<>()))
-    throw InputError(s.file, place, "does not increase from 0 to 1", "give at least [0, 1]");
+  const char* remedy = "give saturations that increase from 0 to 1, at least [0, 1]";
+  if (S.empty()) throw InputError(s.file, place, "is empty, but /material/moisture/law is table", remedy);
+  if (S.front() != 0.0)
+    throw InputError(s.file, place, "begins with " + Json(S.front()).dump() + " and not with 0", remedy);
+  for (std::size_t i = 1; i < S.size(); ++i)
+    if (!(S[i] > S[i - 1]))
+      throw InputError(s.file, place + ("/" + std::to_string(i)),
+                       Json(S[i]).dump() + " is not above the " + Json(S[i - 1]).dump() + " before it",
+                       remedy);
+  if (S.back() != 1.0)
+    throw InputError(s.file, place, "ends with " + Json(S.back()).dump() + " and not with 1", remedy);
   if (m.table_youngs_modulus.size() != S.size() || m.table_yield.size() != S.size())
     throw InputError(s.file, place,
                      "has " + std::to_string(S.size()) + " values, table_youngs_modulus_Pa " +
                          std::to_string(m.table_youngs_modulus.size()) + ", table_yield " +
                          std::to_string(m.table_yield.size()),
                      "give the three lists the same length");
-}
-
-double compute_poissons_ratio(const material::MediumResult& medium) {
-  const double K = medium.bulk_modulus;
-  const double G = medium.shear_modulus;
-  return (3.0 * K - 2.0 * G) / (2.0 * (3.0 * K + G));
-}
-
-const char* describe_water(const material::EffectiveMedium& medium) {
-  return medium.fluid_bulk_modulus > 0.0 ? "undrained" : "drained";
-}
-
-/// Largest porosity of two digits at which the scheme still gives a stiffness.
-std::string describe_safe_porosity(double phi_limit) {
-  std::ostringstream text;
-  text << std::floor(phi_limit * 100.0 * (1.0 - 1e-9)) / 100.0;
-  return text.str();
-}
-
-/// Where the scheme stands over every φ the run can reach, in words; refuses where C is not positive
-/// definite.
-void check_medium_range(Scenario& s) {
-  using material::MediumStatus;
-  const material::EffectiveMedium& medium = s.params.moisture.medium;
-  const double phi_max = s.params.water.porosity;
-  const material::MediumRange range = material::compute_medium_range(s.params.elastic, medium, phi_max);
-  std::ostringstream text;
-  if (range.worst == MediumStatus::not_positive_definite) {
-    text << "gives a stiffness that is not positive definite in mode \"" << range.mode
-         << "\" from phi = " << range.phi_not_positive_definite << " on (" << describe_water(medium)
-         << "), and saturated clay reaches phi = porosity = " << phi_max;
-    throw InputError(s.file, "/material/effective_medium/scheme", text.str(),
-                     "choose mori_tanaka, which is positive at every phi of undrained and drained clay, or a "
-                     "/water/porosity up to " +
-                         describe_safe_porosity(range.phi_not_positive_definite));
-  }
-  text << "effective medium (" << describe_water(medium) << "): ";
-  if (range.worst == MediumStatus::above_voigt)
-    text << "above_voigt in mode \"" << range.mode << "\" from phi = " << range.phi_above_voigt
-         << " on, stiffer than any mixture can be; mori_tanaka stays within the bounds";
-  else
-    text << "ok";
-  text << "; checked for phi from 0 to " << phi_max;
-  if (range.worst == MediumStatus::above_voigt) s.warnings.push_back(s.file + ": " + text.str());
-  s.medium_status = text.str();
 }
 
 /// Pores' axis of unit length.
@@ -154,33 +116,30 @@ void normalise_axis(Scenario& s) {
   if (!(std::abs(axis.norm() - 1.0) <= kRounding)) axis.normalize();
 }
 
-/// Eq. 6 over every φ the run can reach: refused where C is not positive definite or where 4-node tets would
-/// lock.
-void check_effective_medium(Scenario& s) {
-  const material::Moisture& m = s.params.moisture;
-  double nu = s.params.elastic.poissons_ratio;
+/// Eq. 6 over all that the run can reach, as far as the scenario alone tells; with fields of a mesh that is
+/// asked once they are read.
+void check_medium(Scenario& s) {
   normalise_axis(s);
-  s.medium_status = "effective medium: not used";
-  if (m.law == material::MoistureLaw::effective_medium && m.softens_elasticity) {
-    if (!material::is_supported(m.medium))
-      throw InputError(s.file, "/material/effective_medium/scheme",
-                       "needs an isotropic medium, but the pores are aligned spheroids",
-                       "choose mori_tanaka, or orientation random");
-    check_medium_range(s);
-    nu = std::max(nu, compute_poissons_ratio(material::compute_effective_medium(s.params.elastic, m.medium,
-                                                                                s.params.water.porosity)));
-  }
-  if (nu > kLockingPoissonsRatio && s.params.solid.element == solid::ElementKind::p1 && !s.allow_locking) {
-    std::ostringstream text;
-    text << "Poisson's ratio reaches " << nu << ", and 4-node tets lock above " << kLockingPoissonsRatio
-         << ": the body would feel too stiff";
-    throw InputError(
-        s.file,
-        m.medium.fluid_bulk_modulus > 0.0 ? "/material/effective_medium/fluid_bulk_modulus_Pa"
-                                          : "/material/poissons_ratio",
-        text.str(),
-        "use drained water (0 Pa), /dynamics/element p1_nodal or p2, or set /dynamics/allow_locking to true");
-  }
+  if (needs_fields(s)) return;
+  const double E = s.params.elastic.youngs_modulus;
+  const MediumCheck check = check_effective_medium(s, {E, E, s.params.water.initial_saturation});
+  s.medium_status = check.status;
+  if (!check.warning.empty()) s.warnings.push_back(check.warning);
+}
+
+/// A field that says where pores lie, of pores that lie nowhere in particular?
+void check_pore_axes(Scenario& s) {
+  const material::Moisture& m = s.params.moisture;
+  if (s.body.pore_axis_field.empty()) return;
+  const std::string place = "/body/mesh/pore_axis_field";
+  const std::string text = "\"" + s.body.pore_axis_field + "\" has no effect: ";
+  if (m.medium.orientation == material::Orientation::random)
+    throw InputError(s.file, place, text + "the pores' orientation is random",
+                     "set /material/effective_medium/orientation to aligned, or leave it empty");
+  if (m.law != material::MoistureLaw::effective_medium || !m.softens_elasticity ||
+      material::is_isotropic(m.medium))
+    s.warnings.push_back(s.file + ": " + place + ": " + text +
+                         "water leaves this clay isotropic (moisture law, scheme and aspect)");
 }
 
 /// What the elements and laws cannot do together.
@@ -238,7 +197,8 @@ void check_combinations(Scenario& s) {
   check_solid(s);
   check_rates(s);
   check_tables(s);
-  check_effective_medium(s);
+  check_pore_axes(s);
+  check_medium(s);
   if (s.tool.kind == ToolKind::mesh && s.tool.file.empty())
     throw InputError(s.file, "/tool/shape/file", "is missing", "name the tool's surface");
   if (s.tool.kind == ToolKind::stylus && !(s.tool.tip_radius < s.tool.radius))

@@ -74,7 +74,8 @@ struct Scenario {
   TraceSpec trace;
   sim::Params params;
   bool allow_locking = false;         ///< run nearly incompressible tets although they lock
-  std::string medium_status;          ///< of validation: where eq. 6 stands at every φ the run can reach
+  std::string medium_status;          ///< where eq. 6 stands at all that the run can reach; empty when it
+                                      ///< takes the mesh's fields to know (then Scene has it)
   std::vector<std::string> warnings;  ///< of validation; a run prints them and writes them to its file
 };
 

@@ -75,7 +75,7 @@ output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulat
                        {"scenario_sha256", Sha256().add(scenario::print_portable(s)).hex_digest()},
                        {"trace_sha256", scene.trace.sha256},
                        {"build", describe_build()},
-                       {"effective_medium", s.medium_status},
+                       {"effective_medium", scene.medium_status},
                        {"notes", notes}};
   if (s.body.kind != scenario::BodyKind::shape)
     header.provenance.emplace_back("body_sha256", hash_file(s.body.file));

@@ -5,11 +5,29 @@
 #include <fstream>
 #include <string>
 
+#include "mesh/tet_mesh.h"
+
 namespace argil::test {
 
 /// Writes `text` to `file` and returns the file's name.
 inline std::string write_text(const std::string& file, const std::string& text) {
   std::ofstream(file) << text;
+  return file;
+}
+
+/// Writes `mesh` with its cell data to a legacy .vtk `file` and returns the file's name.
+inline std::string write_vtk(const std::string& file, const mesh::TetMesh& mesh) {
+  std::ofstream out(file);
+  out.precision(17);
+  out << "# vtk DataFile Version 3.0\nblock\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " << mesh.num_vertices()
+      << " double\n"
+      << mesh.vertices.transpose() << "\nCELLS " << mesh.num_tets() << ' ' << 5 * mesh.num_tets() << '\n';
+  for (int t = 0; t < mesh.num_tets(); ++t) out << "4 " << mesh.tets.col(t).transpose() << '\n';
+  out << "CELL_TYPES " << mesh.num_tets() << '\n';
+  for (int t = 0; t < mesh.num_tets(); ++t) out << "10\n";
+  out << "CELL_DATA " << mesh.num_tets() << '\n';
+  for (const auto& [name, values] : mesh.cell_fields)
+    out << "SCALARS " << name << " double 1\nLOOKUP_TABLE default\n" << values << '\n';
   return file;
 }
 

@@ -144,6 +144,25 @@ TEST(ProbeEshelby, SphereIsMurasFormula) {
     }
 }
 
+TEST(ProbeEffectiveMedium, GoesToTheEndsOfShapeAndShare) {
+  // φ = 1 is the fluid itself; layers (aspect 0) across axis 3 are Backus's laminate: G₁₃ harmonic, G₁₂ mean.
+  expect_moduli(probe_scheme("mori_tanaka", 1.0), {kFluidK, kFluidG});
+  expect_moduli(probe_scheme("differential", 1.0), {kFluidK, kFluidG}, 1e-9);
+  const Json C = probe_one("effective_medium", R"({"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3,
+    "fluid_bulk_modulus_Pa": 2e4, "fluid_shear_modulus_Pa": 5e3, "phi": 0.3, "aspect": 0,
+    "orientation": "aligned"})")["stiffness_mandel"];
+  EXPECT_NEAR(at(C, 4, 4), 2.0 / ((1 - kPhi) / kG + kPhi / kFluidG), 1e-12 * kG);
+  EXPECT_NEAR(at(C, 5, 5), 2.0 * ((1 - kPhi) * kG + kPhi * kFluidG), 1e-12 * kG);
+}
+
+TEST(ProbeEshelby, PennyOfNoThicknessIsALayer) {
+  const Json S = probe_one("eshelby", R"({"poissons_ratio": 0.25, "aspect": 0})")["eshelby_mandel"];
+  EXPECT_NEAR(at(S, 2, 2), 1.0, 1e-15);
+  EXPECT_NEAR(at(S, 4, 4), 1.0, 1e-15);
+  EXPECT_NEAR(at(S, 2, 0), 0.25 / 0.75, 1e-15);
+  EXPECT_NEAR(at(S, 0, 0), 0.0, 1e-15);
+}
+
 TEST(ProbeEshelby, LongFibreAlongAxis3IsTheCylinder) {
   // [Mura1987, 11.22] with axis 3: S1111 = (5 − 4ν)/(8(1 − ν)), S3333 = 0, S1313 = ¼ (Mandel ½).
   const double nu = 0.25;

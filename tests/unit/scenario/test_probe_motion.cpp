@@ -208,6 +208,14 @@ TEST(RunProbe, NamesRangesAndUnits) {
                  {"cases[0].rest", "positive volume"});
 }
 
+TEST(RunProbe, RefusesLayersOfAFluidWithoutShearModulus) {
+  expect_refused("effective_medium",
+                 R"({"youngs_modulus_Pa": 1, "poissons_ratio": 0.3, "phi": 0.1, "aspect": 0})",
+                 {"cases[0].aspect", "0 is outside (0, ∞)", "layer without shear modulus"});
+  expect_refused("effective_medium", R"({"youngs_modulus_Pa": 1, "poissons_ratio": 0.3, "phi": 1.001})",
+                 {"cases[0].phi", "[0, 1]"});
+}
+
 TEST(RunProbe, CountsTheNumbersOfAList) {
   expect_refused("polar", R"({"F": [[1,0],[0,1]]})", {"cases[0].F", "9 numbers"});
   expect_refused("polar", R"({"F": [[1,0,0],[0,1,0],[0,0,1,"one"]]})", {"cases[0].F", "9 numbers"});

@@ -126,6 +126,28 @@ TEST_F(BadInput, DilutePaperLawPastItsPoleIsRefusedWithPhiModeAndRemedy) {
                  {"/material/effective_medium/scheme", "bulk", "0.619", "mori_tanaka"});
 }
 
+TEST_F(BadInput, SchemeThatAlignedSpheroidsDoNotAllowIsNamed) {
+  expect_refused(ball(),
+                 {"/material/effective_medium/scheme=differential", "/material/effective_medium/aspect=0.2",
+                  "/material/effective_medium/orientation=aligned"},
+                 {"/material/effective_medium/scheme: differential needs an isotropic medium"});
+}
+
+TEST_F(BadInput, UsersTableIsRefusedWithTheValueAtFault) {
+  const auto refuse = [&](const std::string& S, const std::vector<std::string>& parts) {
+    expect_refused(ball(),
+                   {"/material/moisture/law=table", "/material/moisture/table_saturation=" + S,
+                    "/material/moisture/table_youngs_modulus_Pa=[1e5, 5e4, 1e4]",
+                    "/material/moisture/table_yield=[0.02, 0.02, 0.02]"},
+                   parts);
+  };
+  refuse("[]", {"/table_saturation: is empty", "law is table", "[0, 1]"});
+  refuse("[0.1, 0.5, 1]", {"/table_saturation: begins with 0.1"});
+  refuse("[0, 0.5, 0.9]", {"/table_saturation: ends with 0.9"});
+  refuse("[0, 0.5, 0.5, 1]", {"/table_saturation/2: 0.5 is not above the 0.5"});
+  refuse("[0, 1]", {"has 2 values, table_youngs_modulus_Pa 3"});
+}
+
 TEST_F(BadInput, LockingTetsAreRefusedUnlessAllowed) {
   expect_refused(ball(), {"/material/poissons_ratio=0.49"},
                  {"/material/poissons_ratio", "lock", "allow_locking"});
