@@ -383,6 +383,10 @@ TEST(Determinism, SameBitsAgainAndFromACheckpoint) {
 
 TEST(Cost, NoHeapAfterWarmUp) {
   Scene scene(make_flat_slab(), make_sphere_tool(kR, 2), {0.0, 0.001, kR + 1e-4});
+  ContactParams params{kK, kK};
+  params.friction = 0.5;  // keeps springs besides
+  scene.detector =
+      ContactDetector(scene.body.triangles, scene.body.num_vertices(), make_sphere_tool(kR, 2), params);
   const auto lap = [&] {
     for (int i = 0; i < 40; ++i)
       scene.move(Vec3(0.001 * std::sin(0.3 * i), 0.001, kR + 1e-4 - 1e-4 * std::min(i, 40 - i)));
