@@ -26,6 +26,9 @@ struct Contact {
   Vec3 force =
       Vec3::Zero();  ///< k·∫ nᵀ(p−q) n dt: mean force of a push tool on the body over the interval [N]
   double stiffness = 0.0;  ///< k [N/m] × share of the tick in penetration: curvature for the implicit solve
+  double end_force = 0.0;  ///< force along `normal` at t₁ [N]; 0 where the pair is apart again
+  double end_stiffness = 0.0;  ///< k [N/m] of the pair at t₁; 0 likewise
+  bool passes = false;         ///< apart at both ends: in and out again within the interval
   Vec3 resistance =
       Vec3::Zero();         ///< damping and friction on the body [N]; a pull tool does not reverse them
   double damping = 0.0;     ///< c of the damping force c n·v [N s/m]

@@ -160,16 +160,23 @@ void ContactDetector::Impl::press_vertices(const VertexFaceMotion& m, Contacts& 
       path = m.path(v, face);
       penalty = compute_vertex_face_depth(m, p, place);
     }
+    double end_depth = inside ? std::max(0.0, -compute_height(m.faces, face, p)) : 0.0;
     if (inside && !is_discrete)
-      if (const auto direction = find_blended_direction(m, p, nearest, params.face_blend))
+      if (const auto direction = find_blended_direction(m, p, nearest, params.face_blend)) {
         penalty.integral = penalty.integral.norm() * *direction;
+        end_depth = -compute_height(m.faces, nearest.face, p) * direction->norm();
+      }
     const double depth = penalty.integral.norm();
     if (!inside && !(depth > 0.0)) stretch.setZero();
     if (!(depth > 0.0)) return;
     side.depth[static_cast<std::size_t>(v)] = depth;
     side.pressed.push_back(v);
-    out.contacts.push_back(make_vertex_contact(m, v, face, penalty, params.vertex_face_stiffness));
-    if (resists()) resist_vertex(m, v, path, penalty, was_inside, inside, out.contacts.back());
+    Contact c = make_vertex_contact(m, v, face, penalty, params.vertex_face_stiffness);
+    c.end_force = params.vertex_face_stiffness * end_depth;
+    c.end_stiffness = inside ? params.vertex_face_stiffness : 0.0;
+    c.passes = !was_inside && !inside;
+    if (resists()) resist_vertex(m, v, path, penalty, was_inside, inside, c);
+    out.contacts.push_back(c);
   };
 
   auto entry = side.entries.cbegin();
@@ -266,6 +273,9 @@ void ContactDetector::Impl::press_edges(const Motion& m, Contacts& out) {
     c.normal = penalty.integral / depth;
     c.force = share * params.edge_edge_stiffness * penalty.integral;
     c.stiffness = share * params.edge_edge_stiffness * penalty.duration;
+    c.end_stiffness = pair.inside_t1 ? share * params.edge_edge_stiffness : 0.0;
+    c.end_force = pair.inside_t1 ? c.end_stiffness * compute_edge_edge_depth(path).integral.norm() : 0.0;
+    c.passes = !pair.inside_t0 && !pair.inside_t1;
     c.point = c.weight[0] * path.t1[2] + c.weight[1] * path.t1[3];
     if (resists()) resist_edges(pair, path, penalty, share, c);
     out.contacts.push_back(c);

@@ -192,6 +192,7 @@ void ResultFile::append(const sim::HapticRecord& record) {
   table.put(record.num_contacts);
   table.put(record.gate_events);
   table.put(record.port_energy);
+  table.put(record.passivity_energy);
   if (table.end_row()) m_impl->guarded([&] { table.write(), m_impl->file.flush(); });
 }
 

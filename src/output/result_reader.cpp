@@ -122,6 +122,7 @@ std::vector<sim::HapticRecord> ResultReader::read_haptic() const {
   const ColumnReader<std::int32_t> num_contacts(group, "num_contacts", rows, 1);
   const ColumnReader<std::uint8_t> gate_events(group, "gate_events", rows, 1);
   const ColumnReader<double> port_energy(group, "port_energy", rows, 1);
+  const ColumnReader<double> passivity_energy(group, "passivity_energy", rows, 1);
   std::vector<sim::HapticRecord> records(rows);
   for (std::size_t i = 0; i < rows; ++i) {
     sim::HapticRecord& record = records[i];
@@ -139,6 +140,7 @@ std::vector<sim::HapticRecord> ResultReader::read_haptic() const {
     record.num_contacts = num_contacts(i);
     record.gate_events = gate_events(i);
     record.port_energy = port_energy(i);
+    record.passivity_energy = passivity_energy(i);
   }
   return records;
 }

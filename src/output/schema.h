@@ -41,6 +41,10 @@ inline constexpr std::array kHaptic = {
            real64,
            1,
            {"J", "work of device force and torque on the hand since the start; > 0: made by the simulation"}},
+    Column{"passivity_energy",
+           real64,
+           1,
+           {"J", "energy that the passivity controller has kept from the hand since the start"}},
 };
 
 inline constexpr std::array kPhysics = {

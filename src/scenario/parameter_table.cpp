@@ -360,10 +360,17 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
             "Water once in so many ticks; a multiple of the physics.");
   b.integer("/haptics/frame_period_ticks", r.frame_period_ticks, between(1, 1e9),
             "A picture of the body once in so many ticks.");
-  b.choice<sim::BetweenFrames>(
-      "/haptics/between_frames", r.between_frames,
-      {{sim::BetweenFrames::hold, "hold"}, {sim::BetweenFrames::re_evaluate, "re_evaluate"}},
-      "Keep the force between physics steps (the paper), or find contact every tick.");
+  b.choice<sim::BetweenFrames>("/haptics/between_frames", r.between_frames,
+                               {{sim::BetweenFrames::hold, "hold"},
+                                {sim::BetweenFrames::re_evaluate, "re_evaluate"},
+                                {sim::BetweenFrames::compliant, "compliant"}},
+                               "Keep the force between physics steps (the paper), find contact every tick "
+                               "against the surface as it was, "
+                               "or against one that yields by the compliance of the touched nodes.");
+  b.choice<device::Passivity>(
+      "/haptics/passivity", s.params.passivity,
+      {{device::Passivity::none, "none"}, {device::Passivity::time_domain, "time_domain"}},
+      "Damp the force at the hand where it would give back more energy than the hand gave [Hannaford2002].");
   device::DeviceLimits& l = s.params.device;
   b.number("/haptics/device/max_force_N", l.max_force, positive(), "N", "Largest force the device is sent.");
   b.number("/haptics/device/max_torque_Nm", l.max_torque, not_negative(), "N m",

@@ -76,6 +76,20 @@ void check_rates(const Scenario& s) {
   require_multiple("/haptics/frame_period_ticks", r.frame_period_ticks);
 }
 
+/// A surface that yields between frames needs the matrix of an implicit step, and a step that knows of it.
+void check_between_frames(const Scenario& s) {
+  const solid::SolidParams& p = s.params.solid;
+  if (s.mode != Mode::dynamic || s.params.rates.between_frames != sim::BetweenFrames::compliant) return;
+  const char* place = "/haptics/between_frames";
+  if (p.integrator == solid::Integrator::symplectic_euler)
+    throw InputError(s.file, place,
+                     "compliant takes the matrix of an implicit step, which symplectic_euler has not",
+                     "use another /dynamics/integrator, or re_evaluate");
+  if (!p.implicit_contact)
+    throw InputError(s.file, place, "compliant needs contact stiffness in the implicit step",
+                     "set /dynamics/implicit_contact to true, or use re_evaluate");
+}
+
 void check_tables(const Scenario& s) {
   const material::Moisture& m = s.params.moisture;
   if (m.law == material::MoistureLaw::liquidity_index &&
@@ -196,6 +210,7 @@ void check_combinations(Scenario& s) {
   check_plasticity(s);
   check_solid(s);
   check_rates(s);
+  check_between_frames(s);
   check_tables(s);
   check_pore_axes(s);
   check_medium(s);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "contact/contact.h"
@@ -17,6 +18,10 @@ class ContactSurface {
 
   const Triangles& triangles() const { return m_triangles; }
   int num_vertices() const { return static_cast<int>(m_begin.size()) - 1; }
+
+  /// The nodes that carry a vertex, and N of each.
+  std::span<const int> nodes(int vertex) const { return slice(m_node, vertex); }
+  std::span<const double> weights(int vertex) const { return slice(m_weight, vertex); }
 
   /// Positions of the vertices [m] for nodes at x.
   void find_positions(const Points& x, Points& out) const;
@@ -36,6 +41,12 @@ class ContactSurface {
                          std::vector<double>& area) const;
 
  private:
+  template <class Value>
+  std::span<const Value> slice(const std::vector<Value>& list, int vertex) const {
+    const auto begin = static_cast<std::size_t>(m_begin[static_cast<std::size_t>(vertex)]);
+    const auto end = static_cast<std::size_t>(m_begin[static_cast<std::size_t>(vertex) + 1]);
+    return std::span(list).subspan(begin, end - begin);
+  }
   bool add_nodes(int vertex, double weight, solid::PointStiffness& out) const;
 
   Triangles m_triangles;

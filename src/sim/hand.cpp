@@ -1,36 +1,62 @@
 // Between the contacts, the body and the hand: who gets which force.
 
+#include <optional>
+
 #include "sim/simulation.h"
 
 namespace argil::sim {
 
-/// ∫ F·v + T·ω dt over the tick that brings the hand to `next`. The device holds its last force meanwhile, so
-/// that this is force times path, exactly; the turn is taken about one axis.
-void Simulation::book_port_energy(const contact::Pose& next) {
-  const Eigen::AngleAxisd turn(next.orientation * m_state.tool.orientation.conjugate());  // the shorter way
-  m_state.port_energy += m_gated.force.dot(next.position - m_state.tool.position) +
-                         m_gated.torque.dot(turn.angle() * turn.axis());
+using device::ToolMode;
+
+/// The tool goes to where the hand is at the end of the tick. The device holds its last force on the way, so
+/// that the work done on the hand is force times path, exactly; a turn is taken about one axis.
+void Simulation::move_hand(const device::DeviceSample& sample) {
+  const Eigen::AngleAxisd turn(sample.orientation * m_state.tool.orientation.conjugate());  // the shorter way
+  m_state.motion = {sample.position - m_state.tool.position, turn.angle() * turn.axis()};
+  m_state.port_energy += device::compute_work({m_gated.force, m_gated.torque}, m_state.motion);
+  m_state.passivity_energy += device::compute_work(m_state.withheld, m_state.motion);
+  m_state.tool = {sample.position, sample.orientation};
+  m_state.mode = sample.mode;
 }
 
-/// Adds this detection's contact forces, and their stiffness for the solve, to the mean over the physics
-/// step. Wet and dry tools feel the body but do not deform it.
+/// Detection over `ticks` ticks while the body goes to where its nodes are at x; both paths start where the
+/// last one ended, so none has a gap.
+void Simulation::find_contacts(const Points& x, int ticks) {
+  const bool has_moved = m_state.has_moved;
+  if (has_moved) m_surface.find_positions(x, m_surface_x);
+  m_detector.find_contacts(m_state.contact_x, has_moved ? m_surface_x : m_state.contact_x,
+                           m_state.contact_tool, m_state.tool, m_contacts,
+                           has_moved ? std::optional<double>() : 0.0, m_clock.seconds(ticks));
+  if (has_moved) m_state.contact_x.swap(m_surface_x);
+  m_state.has_moved = false;
+  m_state.contact_tool = m_state.tool;
+  m_state.force_age = 0;
+  m_state.is_pressed = false;
+  m_state.contact_centre.setZero();
+  m_pressed_weight = 0.0;
+}
+
+/// Adds a share of a contact's force on the body to the mean over the physics step.
+void Simulation::act_on_body(const contact::Contact& c, const Vec3& force, double share) {
+  m_state.is_touched = true;
+  m_surface.add_force(c, share * force, m_state.contact_force);
+  // The centre of pressure so far.
+  const double weight = force.norm();
+  m_pressed_weight += weight;
+  m_state.is_pressed = m_pressed_weight > 0.0;
+  if (weight > 0.0) m_state.contact_centre += weight / m_pressed_weight * (c.point - m_state.contact_centre);
+}
+
+/// Eqs. 7 and 8 on the body, reversed in pull. Wet and dry tools feel the body but do not deform it.
 void Simulation::spread_contact_force(int ticks) {
-  const bool acts = m_state.mode == device::ToolMode::push || m_state.mode == device::ToolMode::pull;
-  const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;
-  const double share = static_cast<double>(ticks) / m_params.rates.physics_period_ticks;
   m_last_detection = m_contact_stiffness.size();
-  Vec3 weighted_centre = Vec3::Zero();
-  double weight = 0.0;
+  if (m_state.mode == ToolMode::wet || m_state.mode == ToolMode::dry) return;
+  const bool pushes = m_state.mode == ToolMode::push;
+  const double share = static_cast<double>(ticks) / m_params.rates.physics_period_ticks;
   for (const contact::Contact& c : m_contacts.contacts) {
-    if (!acts) break;
-    m_state.is_touched = true;
-    m_surface.add_force(c, share * (sign * c.force + c.resistance), m_state.contact_force);
-    add_contact_stiffness(c, sign > 0.0, share);
-    weighted_centre += c.force.norm() * c.point;
-    weight += c.force.norm();
+    act_on_body(c, (pushes ? c.force : Vec3(-c.force)) + c.resistance, share);
+    add_contact_stiffness(c, pushes, share);
   }
-  m_state.is_pressed = weight > 0.0;
-  if (m_state.is_pressed) m_state.contact_centre = weighted_centre / weight;
 }
 
 /// How a contact's force changes as the body moves on: falls by its stiffness, by damping with the speed, and
@@ -79,6 +105,49 @@ void Simulation::apply_contact_yield() {
   m_contact_stiffness.clear();
   m_yields.clear();
   m_last_detection = 0;
+}
+
+/// Does the surface yield between physics steps? Tools that do not deform the body meet it as it is, and so
+/// does a pulling one, whose negative stiffness has no balance with the body where it is the stiffer.
+bool Simulation::is_yielding() const {
+  return m_params.rates.between_frames == BetweenFrames::compliant && m_state.mode == ToolMode::push;
+}
+
+BodyAtFrame Simulation::body_at_frame() {
+  return {m_solid, m_surface, m_state.solid, m_clock.seconds(m_params.rates.physics_period_ticks),
+          m_clock.tick};
+}
+
+/// The springs of the last detection go with the tool.
+void Simulation::follow_with_springs() {
+  const contact::Pose& from = m_state.contact_tool;
+  for (ContactSpring& spring : m_springs) {
+    const Vec3 in_tool = from.orientation.conjugate() * (spring.point - from.position);
+    const Vec3 point = m_state.tool.position + m_state.tool.orientation * in_tool;
+    spring.force += spring.stiffness * spring.normal.dot(point - spring.point);
+  }
+}
+
+/// Springs of the pairs that are in penetration at the end of the tick.
+void Simulation::make_springs() {
+  m_springs.clear();
+  m_spring_contact.clear();
+  for (std::size_t i = 0; i < m_contacts.contacts.size(); ++i) {
+    const contact::Contact& c = m_contacts.contacts[i];
+    if (!(c.end_stiffness > 0.0)) continue;
+    m_springs.push_back({c.vertex, c.weight, c.normal, c.end_stiffness, c.end_force, c.point});
+    m_spring_contact.push_back(i);
+  }
+}
+
+/// The last force, old or new, less what would generate energy, through the device's limits.
+void Simulation::render_force() {
+  const device::Wrench felt{m_state.hand_force, m_state.hand_torque};
+  device::Wrench sent = felt;
+  if (m_params.passivity == device::Passivity::time_domain)
+    sent = device::damp_generated_energy(felt, m_state.motion, -m_state.port_energy);
+  m_state.withheld = {felt.force - sent.force, felt.torque - sent.torque};
+  m_gated = m_gate.apply(sent.force, sent.torque);
 }
 
 }  // namespace argil::sim

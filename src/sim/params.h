@@ -4,6 +4,7 @@
 
 #include "contact/parameters.h"
 #include "device/gate.h"
+#include "device/passivity.h"
 #include "material/parameters.h"
 #include "solid/parameters.h"
 #include "water/parameters.h"
@@ -14,6 +15,7 @@ namespace argil::sim {
 enum class BetweenFrames {
   hold,  ///< the paper: one detection a physics step over the tool's whole motion, then the force is kept
   re_evaluate,  ///< contact every tick against the last surface
+  compliant,    ///< the same, and the surface yields as the body's own matrix says (compliance.h)
 };
 
 /// What the tool meets.
@@ -43,6 +45,7 @@ struct Params {
   contact::ContactParams contact;
   SurfaceKind contact_surface = SurfaceKind::cage;
   device::DeviceLimits device;
+  device::Passivity passivity = device::Passivity::none;
   /// Speed of the fastest node [m/s] at which a body that nothing touches counts as at rest for two steps: it
   /// is then stopped and not solved for until something acts. 0: only a body that has not moved yet.
   double rest_speed = 0.0;

@@ -20,7 +20,8 @@ struct HapticRecord {
   int force_age = 0;  ///< [ticks] since the force was computed
   int num_contacts = 0;
   std::uint8_t gate_events = 0;
-  double port_energy = 0.0;  ///< [J] given to the hand since the start; above 0: made by the simulation
+  double port_energy = 0.0;       ///< [J] given to the hand since the start; above 0: made by the simulation
+  double passivity_energy = 0.0;  ///< [J] kept from the hand since the start by the passivity controller
 };
 
 /// One physics step, as written to /physics.

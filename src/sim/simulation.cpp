@@ -21,6 +21,7 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation),
       m_surface(params.contact_surface, m_body, m_solid.elements()),
       m_detector(m_surface.triangles(), m_surface.num_vertices(), tool, params.contact),
+      m_compliance(m_surface, m_solid.elements().num_nodes()),
       m_gate(params.device, params.rates.haptic_period) {
   m_clock.period = params.rates.haptic_period;
   const Eigen::Index n = m_solid.elements().num_nodes();
@@ -164,6 +165,7 @@ HapticRecord Simulation::haptic_record() const {
   record.num_contacts = static_cast<int>(m_contacts.contacts.size());
   record.gate_events = m_gated.events;
   record.port_energy = m_state.port_energy;
+  record.passivity_energy = m_state.passivity_energy;
   return record;
 }
 

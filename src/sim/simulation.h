@@ -5,6 +5,7 @@
 
 #include "material/moisture.h"
 #include "sim/clock.h"
+#include "sim/compliance.h"
 #include "sim/contact_surface.h"
 #include "sim/params.h"
 #include "sim/record.h"
@@ -53,18 +54,26 @@ class Simulation {
  private:
   // Stages of a tick, defined in step.cpp in the order in which they run.
   void contact_step(int ticks);
+  StepStatus yielding_contact_step();
   StepStatus water_step();
   StepStatus physics_step();
   void apply_clay_kernel(double step_s);
   void apply_plastic_flow(double step_s);
 
   // Between contacts, body and hand: hand.cpp.
-  void book_port_energy(const contact::Pose& next);
+  void move_hand(const device::DeviceSample& sample);
+  void find_contacts(const Points& x, int ticks);
+  void act_on_body(const contact::Contact& c, const Vec3& force, double share);
   void spread_contact_force(int ticks);
   void add_contact_stiffness(const contact::Contact& c, bool pushes, double share);
   void add_contact_stiffness(const contact::Contact& c, const Vec3& direction, double stiffness,
                              double force_at_rest);
   void apply_contact_yield();
+  bool is_yielding() const;
+  BodyAtFrame body_at_frame();
+  void follow_with_springs();
+  void make_springs();
+  void render_force();
 
   void exchange_water(int sign, double step_s);
   TensorField mean_plastic_strain() const;
@@ -83,6 +92,11 @@ class Simulation {
   ContactSurface m_surface;
   contact::ContactDetector m_detector;
   contact::Contacts m_contacts;
+  LocalCompliance m_compliance;
+  std::vector<ContactSpring> m_springs;       // of the last detection, with their forces
+  std::vector<std::size_t> m_spring_contact;  // and their places in m_contacts
+  Points m_yielded_x;                         // 3×n, nodes as they have yielded between physics steps
+  double m_pressed_weight = 0.0;              // Σ|force| of the last detection
   device::OutputGate m_gate;
   device::GatedForce m_gated;
   std::vector<solid::PointStiffness>

@@ -2,6 +2,7 @@
 
 #include "contact/contact.h"
 #include "device/gate.h"
+#include "device/passivity.h"
 #include "device/sample.h"
 #include "embed/embedding.h"
 #include "mesh/topology.h"
@@ -29,6 +30,8 @@ struct State {
   // device
   contact::Pose tool;  ///< at the end of the last tick
   device::ToolMode mode = device::ToolMode::push;
+  device::TickMotion motion;  ///< of the hand in the last tick
+  device::Wrench withheld;    ///< what the passivity controller took off the last force
   // contact
   contact::Pose contact_tool;          ///< tool at the end of the last detection
   Points contact_x;                    ///< touched surface at the end of the last detection [m]
@@ -47,7 +50,9 @@ struct State {
   // ledgers
   double plastic_dissipation = 0.0;  ///< [J] since the start
   double contact_work = 0.0;         ///< [J] done on the body since the start
-  double port_energy = 0.0;          ///< [J] that the device's force has done on the hand since the start
+  double port_energy = 0.0;          ///< [J] work of the device's force on the hand since the start
+  double passivity_energy =
+      0.0;  ///< [J] that the passivity controller has kept from the hand since the start
 };
 
 }  // namespace argil::sim

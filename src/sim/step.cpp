@@ -1,7 +1,5 @@
 // One haptic tick: the paper's loop. Equation numbers are the paper's, listed in src/README.md.
 
-#include <optional>
-
 #include "sim/simulation.h"
 
 namespace argil::sim {
@@ -11,43 +9,80 @@ StepStatus Simulation::tick(const device::DeviceSample& sample) {
   const bool physics_due = m_clock.due(rates.physics_period_ticks);
 
   // Device: the tool goes to where the hand is at the end of the tick.
-  book_port_energy({sample.position, sample.orientation});
-  m_state.tool = {sample.position, sample.orientation};
-  m_state.mode = sample.mode;
+  move_hand(sample);
 
   // Contact: eqs. 7 and 8 over the path since the last detection, reaction to the hand.
   ++m_state.force_age;
-  if (rates.between_frames == BetweenFrames::re_evaluate)
+  if (is_yielding()) {
+    ARGIL_TRY(yielding_contact_step());
+  } else if (rates.between_frames != BetweenFrames::hold) {
     contact_step(1);
-  else if (physics_due)
+  } else if (physics_due) {
     contact_step(rates.physics_period_ticks);
+  }
 
   // Physics: what the water and the contact force do to the body.
   if (m_clock.due(rates.water_period_ticks)) ARGIL_TRY(water_step());
   if (physics_due) ARGIL_TRY(physics_step());
 
-  // Hand: the last force, old or new, through the device's limits.
-  m_gated = m_gate.apply(m_state.hand_force, m_state.hand_torque);
+  // Hand: the last force, old or new, as the device renders it.
+  render_force();
   m_clock.advance();
   return StepStatus::ok();
 }
 
-/// Detection over the last `ticks` ticks; both paths start where the last detection ended, so none has a gap.
+/// Detection over the last `ticks` ticks against the surface of the last physics step.
 void Simulation::contact_step(int ticks) {
   const StageScope scope(m_observer, Stage::contact);
-  const bool has_moved = m_state.has_moved;
-  if (has_moved) m_surface.find_positions(m_state.solid.x, m_surface_x);
-  m_detector.find_contacts(m_state.contact_x, has_moved ? m_surface_x : m_state.contact_x,
-                           m_state.contact_tool, m_state.tool, m_contacts,
-                           has_moved ? std::optional<double>() : 0.0, m_clock.seconds(ticks));
-  if (has_moved) m_state.contact_x.swap(m_surface_x);
-  m_state.has_moved = false;
-  m_state.contact_tool = m_state.tool;
+  if (m_compliance.num_known() > 0) {
+    m_springs.clear();
+    m_compliance.release();
+    m_state.has_moved = true;
+  }
+  find_contacts(m_state.solid.x, ticks);
   const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;  // pull: force reversed
   m_state.hand_force = sign * m_contacts.force_on_tool + m_contacts.resistance_on_tool;
   m_state.hand_torque = sign * m_contacts.torque_on_tool + m_contacts.resistance_torque_on_tool;
-  m_state.force_age = 0;
   spread_contact_force(ticks);
+}
+
+/// Detection over the last tick against a surface that yields: it first follows the tool as far as the
+/// springs of the last contacts let it, then comes to balance with those that are found. The hand feels the
+/// force of the place where it is; pairs that came and went within the tick add their mean.
+StepStatus Simulation::yielding_contact_step() {
+  const StageScope scope(m_observer, Stage::contact);
+  const BodyAtFrame body = body_at_frame();
+  follow_with_springs();
+  if (m_compliance.num_known() > 0) m_state.has_moved = true;
+  ARGIL_TRY(m_compliance.press(body, m_springs));
+  m_compliance.displace(m_state.solid.x, m_yielded_x);
+  find_contacts(m_yielded_x, 1);
+  make_springs();
+  ARGIL_TRY(m_compliance.press(body, m_springs));
+
+  m_state.hand_force.setZero();
+  m_state.hand_torque.setZero();
+  const double share = 1.0 / m_params.rates.physics_period_ticks;
+  // `spring`: the contact as it acts where the step begins, before the surface yields.
+  const auto act = [&](contact::Contact c, const Vec3& on_hand, const ContactSpring& spring) {
+    m_state.hand_force -= on_hand + c.resistance;
+    m_state.hand_torque -= (c.point - m_state.tool.position).cross(on_hand + c.resistance);
+    act_on_body(c, spring.force * spring.normal + c.resistance, share);
+    c.stiffness = spring.stiffness;
+    add_contact_stiffness(c, true, share);
+    m_compliance.hold(spring, share);
+  };
+  for (std::size_t i = 0; i < m_springs.size(); ++i) {
+    ContactSpring spring = m_springs[i];
+    if (!(spring.force > 0.0)) continue;
+    const Vec3 on_hand = spring.force * spring.normal;
+    spring.force += spring.stiffness * m_compliance.compute_yield(m_surface, spring);
+    act(m_contacts.contacts[m_spring_contact[i]], on_hand, spring);
+  }
+  for (const contact::Contact& c : m_contacts.contacts)
+    if (c.passes) act(c, c.force, {c.vertex, c.weight, c.normal, 0.0, c.force.norm(), c.point});
+  m_last_detection = m_contact_stiffness.size();  // the hand has felt the yield already
+  return StepStatus::ok();
 }
 
 /// Uptake from or to the tool, diffusion, then moduli and yield of the tets whose saturation moved (eq. 6).
@@ -86,8 +121,6 @@ StepStatus Simulation::physics_step() {
     m_solid.move(solid);
     m_state.has_moved = true;
     m_state.contact_work += m_state.contact_force.cwiseProduct(solid.x - m_x_before).sum();
-    m_state.contact_force.setZero();
-    m_state.is_touched = false;
   }
   {
     const StageScope scope(m_observer, Stage::kinematics);
@@ -95,6 +128,10 @@ StepStatus Simulation::physics_step() {
   }
   const StageScope scope(m_observer, Stage::plasticity);
   apply_plastic_flow(h);  // trial ε_p of every tet, committed at once
+  if (m_params.rates.between_frames == BetweenFrames::compliant)
+    ARGIL_TRY(m_compliance.begin_frame(body_at_frame(), m_x_before));
+  m_state.contact_force.setZero();
+  m_state.is_touched = false;
   return StepStatus::ok();
 }
 

@@ -104,6 +104,12 @@ class Solid {
   /// are applied in shares where they do not converge at once; state.x then holds the last share that did.
   StepStatus find_equilibrium(SolidState& state, const StepLoads& loads);
 
+  /// Makes the matrix of a step of `step_s` seconds from the present kinematics, without contacts. It serves
+  /// find_response until the next step begins.
+  void prepare_response(const SolidState& state, double step_s);
+  /// How far forces (3×n) move every node by the end of such a step: τ² A⁻¹ f [m].
+  StepStatus find_response(const Points& force, Tick tick, Points& displacement);
+
   const Elements& elements() const { return m_elements; }
   const Constraints& constraints() const { return m_constraints; }
   const TensorField& strain() const { return m_strain; }  ///< ε (Mandel) of each point, last kinematics
@@ -178,6 +184,7 @@ class Solid {
 
   // step.cpp
   void keep_damping_frame();
+  double compute_tau(const SolidState& state, double step_s) const;
   void predict(const SolidState& state, const StepLoads& loads, double step_s);
   bool place_supports(double time, double share);
   void compute_residual(const StepLoads& loads);
@@ -228,7 +235,8 @@ class Solid {
   std::vector<char> m_is_tet_changed;  // its stiffness or frame, since then
   std::vector<char> m_is_row_stale;    // holds something that the next matrix may not
   std::unique_ptr<linear::Solver> m_solver;
-  std::unique_ptr<NodalVolume> m_nodal;  // p1_nodal
+  std::unique_ptr<linear::Solver> m_response_solver;  // keeps a factor of its own; made at first use
+  std::unique_ptr<NodalVolume> m_nodal;               // p1_nodal
 
   // Of the present step.
   bool m_is_static = false;

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "base/check.h"
 #include "solid/solid.h"
 
 namespace argil::solid {
@@ -97,6 +98,37 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
   m_counters.linear_iterations += report.iterations;
   m_counters.residual = report.relative_residual;
   return report;
+}
+
+void Solid::prepare_response(const SolidState& state, double step_s) {
+  ARGIL_ASSERT(!is_explicit());
+  m_is_static = false;
+  m_plastic_strain = &state.plastic_strain;
+  m_tau = compute_tau(state, step_s);
+  m_is_projected = true;
+  keep_damping_frame();
+  update_volume_change(state.plastic_strain);
+  assemble_matrix({});
+}
+
+StepStatus Solid::find_response(const Points& force, Tick tick, Points& displacement) {
+  displacement = force;
+  clear_held(displacement);
+  if (!m_response_solver) m_response_solver = linear::make_solver(m_params.solver);
+  for (int r = 0; r < num_free(); ++r)
+    m_rhs.col(r) = m_tau * m_tau * displacement.col(m_node_of_row[static_cast<std::size_t>(r)]);
+  displacement.setZero();
+  if (m_rhs.isZero(0.0)) return StepStatus::ok();
+  m_delta.setZero();
+  Product product(*this, {});
+  const linear::SolveReport report = m_response_solver->solve(m_matrix, product, m_rhs, m_delta);
+  if (!report.converged)
+    return StepStatus::failed({tick, "solid", -1, "relative residual of the compliance's solve",
+                               report.relative_residual, m_params.solver.tolerance});
+  for (int r = 0; r < num_free(); ++r)
+    displacement.col(m_node_of_row[static_cast<std::size_t>(r)]) = m_delta.col(r);
+  clear_held(displacement);
+  return StepStatus::ok();
 }
 
 }  // namespace argil::solid

@@ -53,9 +53,23 @@ void Solid::keep_damping_frame() {
     m_kept_rotation.resize(3, 0);
 }
 
+/// τ of each integrator. The first step of bdf2 has no past and is backward Euler's.
+double Solid::compute_tau(const SolidState& state, double step_s) const {
+  switch (m_params.integrator) {
+    case Integrator::bdf2:
+      return state.x_before.size() == 0 ? step_s : 2.0 / 3.0 * step_s;
+    case Integrator::newmark:
+      return 0.5 * step_s;
+    case Integrator::backward_euler:
+    case Integrator::symplectic_euler:
+      break;
+  }
+  return step_s;
+}
+
 /// x̂, v̂, τ of each integrator.
 void Solid::predict(const SolidState& state, const StepLoads& loads, double step_s) {
-  m_tau = step_s;
+  m_tau = compute_tau(state, step_s);
   m_x_hat = state.x;
   m_v_hat = state.v;
   switch (m_params.integrator) {
@@ -63,8 +77,7 @@ void Solid::predict(const SolidState& state, const StepLoads& loads, double step
     case Integrator::symplectic_euler:
       return;
     case Integrator::bdf2:
-      if (state.x_before.size() == 0) return;  // the first step has no past: backward Euler
-      m_tau = 2.0 / 3.0 * step_s;
+      if (state.x_before.size() == 0) return;
       m_x_hat = (4.0 * state.x - state.x_before) / 3.0;
       m_v_hat = (4.0 * state.v - state.v_before) / 3.0;
       return;
@@ -72,7 +85,6 @@ void Solid::predict(const SolidState& state, const StepLoads& loads, double step
       break;
   }
   // Average acceleration: v' = v + ½h(a + a'), x' = x + ½h(v + v').
-  m_tau = 0.5 * step_s;
   m_v = state.v;
   m_v_hat = state.v;
   compute_residual(loads);  // τ (f_ext − f_int − D v) at the start

@@ -15,7 +15,7 @@ HAPTIC = {
     "tool_orientation": ((4,), "<f8", "1"), "force": ((3,), "<f8", "N"), "torque": ((3,), "<f8", "N m"),
     "device_force": ((3,), "<f8", "N"), "mode": ((), "|u1", "1"), "force_age": ((), "<i4", "1"),
     "num_contacts": ((), "<i4", "1"), "gate_events": ((), "|u1", "1"),
-    "port_energy": ((), "<f8", "J"),
+    "port_energy": ((), "<f8", "J"), "passivity_energy": ((), "<f8", "J"),
 }
 PHYSICS = {
     "tick": ("<i8", "1"), "time": ("<f8", "s"), "kinetic_energy": ("<f8", "J"), "elastic_energy": ("<f8", "J"),
@@ -80,6 +80,7 @@ def check_series(file, ticks):
     same(haptic["num_contacts"], np.arange(ticks) % 7, "num_contacts")
     same(haptic["gate_events"], np.arange(ticks) % 16, "gate_events")
     same(haptic["port_energy"], 7.0 - t, "port_energy")
+    same(haptic["passivity_energy"], 8.0 + t, "passivity_energy")
 
     physics = file["physics"]
     check(set(physics) == set(PHYSICS), f"/physics holds {set(physics)}")

@@ -47,6 +47,7 @@ inline sim::HapticRecord make_haptic(Tick tick) {
   record.num_contacts = static_cast<int>(tick % 7);
   record.gate_events = static_cast<std::uint8_t>(tick % 16);
   record.port_energy = 7.0 - t;
+  record.passivity_energy = 8.0 + t;
   return record;
 }
 

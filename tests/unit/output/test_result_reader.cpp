@@ -59,6 +59,7 @@ TEST(ResultReader, GivesBackEveryHapticRecordToTheBit) {
     ASSERT_EQ(records[i].num_contacts, wanted.num_contacts);
     ASSERT_EQ(records[i].gate_events, wanted.gate_events);
     ASSERT_EQ(records[i].port_energy, wanted.port_energy);
+    ASSERT_EQ(records[i].passivity_energy, wanted.passivity_energy);
   }
 }
 

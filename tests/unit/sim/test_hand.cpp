@@ -57,6 +57,55 @@ TEST(HandForce, IsTheOppositeOfWhatActedOnTheBody) {
   }
 }
 
+TEST(Compliant, IsTwoSpringsInSeriesBetweenPhysicsSteps) {
+  // Of the apex's stiffness K and the penalty k, whatever the hand does between two physics steps, also when
+  // it draws back faster than the penalty alone reaches. Against the surface as it was: k on top of the last
+  // force.
+  Params params = test::make_one_node_params();
+  params.rates.physics_period_ticks = 14;
+  const double K = test::compute_apex_stiffness(params.elastic);
+  const double series = test::compute_series(kPenalty, K);
+  for (const BetweenFrames between : {BetweenFrames::compliant, BetweenFrames::re_evaluate}) {
+    params.rates.between_frames = between;
+    Simulation simulation = test::make_one_node_simulation(params);
+    for (int k = 0; k < 56; ++k) go_to(simulation, 1e-3);
+    EXPECT_NEAR(simulation.state().hand_force.z(), series * 1e-3, 1e-5 * series * 1e-3);
+    for (const double change : {1e-5, 1e-4, 5e-4, -2e-4, -9e-4, 3e-4, -2e-3, 2e-4}) {
+      const double wanted = between == BetweenFrames::compliant
+                                ? series * std::max(0.0, 1e-3 + change)
+                                : std::max(0.0, series * 1e-3 + kPenalty * change);
+      EXPECT_NEAR(go_to(simulation, 1e-3 + change).force.z(), wanted, 1e-5 * series * 1e-3) << change;
+    }
+  }
+}
+
+TEST(Compliant, GivesTheBodyTheMeanOfWhatTheHandFeels) {
+  // Elastic and without mass: the apex is where the mean force of the last 14 ticks holds it.
+  Params params = test::make_one_node_params();
+  params.rates.physics_period_ticks = 14;
+  params.rates.between_frames = BetweenFrames::compliant;
+  const double K = test::compute_apex_stiffness(params.elastic);
+  Simulation simulation = test::make_one_node_simulation(params);
+  for (int frame = 0; frame < 6; ++frame) {
+    double mean = 0.0;
+    for (int k = 1; k <= 14; ++k)
+      mean += go_to(simulation, 2e-4 * frame + 1e-5 * k * (frame < 4 ? 1 : -3)).force.z() / 14.0;
+    const double depth = test::kHeight - simulation.state().solid.x(2, 3);
+    EXPECT_NEAR(K * depth, mean, 1e-4 * mean) << frame;
+  }
+}
+
+TEST(Compliant, DoesNotYieldToToolsThatDoNotDeformTheBody) {
+  Params params = test::make_one_node_params();
+  params.rates.physics_period_ticks = 14;
+  params.rates.between_frames = BetweenFrames::compliant;
+  Simulation simulation = test::make_one_node_simulation(params);
+  for (int k = 0; k < 40; ++k) go_to(simulation, 3e-4);
+  for (int k = 0; k < 40; ++k) go_to(simulation, 3e-4, ToolMode::wet);
+  EXPECT_NEAR(simulation.state().hand_force.z(), kPenalty * 3e-4, 1e-9);
+  EXPECT_LT(std::abs(simulation.state().solid.x(2, 3) - test::kHeight), 1e-9);
+}
+
 /// Energy that the hand is given in the last of three cycles of depth + amplitude·cos.
 double find_energy_of_cycle(const Params& params, double amplitude, int ticks, ToolMode mode) {
   Simulation simulation = test::make_one_node_simulation(params);

@@ -148,6 +148,15 @@ TEST_F(BadInput, UsersTableIsRefusedWithTheValueAtFault) {
   refuse("[0, 1]", {"has 2 values, table_youngs_modulus_Pa 3"});
 }
 
+TEST_F(BadInput, SurfaceThatYieldsBetweenFramesIsRefusedWithoutAnImplicitStep) {
+  expect_refused(ball(), {"/haptics/between_frames=compliant", "/dynamics/integrator=symplectic_euler"},
+                 {"/haptics/between_frames", "symplectic_euler", "re_evaluate"});
+  expect_refused(ball(), {"/haptics/between_frames=compliant", "/dynamics/implicit_contact=false"},
+                 {"/haptics/between_frames", "implicit_contact"});
+  expect_refused(ball(), {"/haptics/between_frames=compliance"}, {"/haptics/between_frames", "compliant"});
+  expect_refused(ball(), {"/haptics/passivity=1"}, {"/haptics/passivity", "time_domain"});
+}
+
 TEST_F(BadInput, LockingTetsAreRefusedUnlessAllowed) {
   expect_refused(ball(), {"/material/poissons_ratio=0.49"},
                  {"/material/poissons_ratio", "lock", "allow_locking"});

@@ -1,0 +1,237 @@
+#include "sim/compliance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+
+namespace argil::sim {
+
+LocalCompliance::LocalCompliance(const ContactSurface& surface, int num_nodes)
+    : m_row_of_node(static_cast<std::size_t>(num_nodes), -1),
+      m_known_of_vertex(static_cast<std::size_t>(surface.num_vertices()), -1) {
+  for (Eigen::Index i = 0; i < surface.triangles().size(); ++i)
+    for (const int node : surface.nodes(surface.triangles().data()[i]))
+      m_row_of_node[static_cast<std::size_t>(node)] = 0;
+  for (int n = 0; n < num_nodes; ++n) {
+    if (m_row_of_node[static_cast<std::size_t>(n)] < 0) continue;
+    m_row_of_node[static_cast<std::size_t>(n)] = 3 * static_cast<int>(m_nodes.size());
+    m_nodes.push_back(n);
+  }
+  m_displacement.setZero(3 * static_cast<Eigen::Index>(m_nodes.size()));
+  m_own = m_displacement;
+  m_load.setZero(3, num_nodes);
+}
+
+StepStatus LocalCompliance::find_columns(const BodyAtFrame& body, std::size_t place) {
+  if (!m_is_prepared) body.solid.prepare_response(body.state, body.step_s);
+  m_is_prepared = true;
+  const std::span<const int> nodes = body.surface.nodes(m_known[place]);
+  const std::span<const double> weights = body.surface.weights(m_known[place]);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < nodes.size(); ++k) m_load(axis, nodes[k]) = weights[k];
+    ARGIL_TRY(body.solid.find_response(m_load, body.tick, m_response));
+    for (const int node : nodes) m_load(axis, node) = 0.0;
+    auto column = m_columns.col(3 * static_cast<Eigen::Index>(place) + axis);
+    for (std::size_t s = 0; s < m_nodes.size(); ++s)
+      column.segment<3>(3 * static_cast<Eigen::Index>(s)) = m_response.col(m_nodes[s]);
+  }
+  return StepStatus::ok();
+}
+
+StepStatus LocalCompliance::learn(const BodyAtFrame& body, int vertex) {
+  if (m_known_of_vertex[static_cast<std::size_t>(vertex)] >= 0) return StepStatus::ok();
+  const std::size_t place = m_known.size();
+  const auto needed = 3 * static_cast<Eigen::Index>(place + 1);
+  if (m_columns.cols() < needed) {
+    Eigen::MatrixXd grown = Eigen::MatrixXd::Zero(m_displacement.size(), 2 * needed);
+    grown.leftCols(m_columns.cols()) = m_columns;
+    m_columns.swap(grown);
+  }
+  m_known_of_vertex[static_cast<std::size_t>(vertex)] = static_cast<int>(place);
+  m_known.push_back(vertex);
+  m_force.push_back(Vec3::Zero());
+  m_held.push_back(Vec3::Zero());
+  return find_columns(body, place);
+}
+
+/// The last known vertex takes the place of the one that is forgotten.
+void LocalCompliance::forget(std::size_t place) {
+  const std::size_t last = m_known.size() - 1;
+  m_known_of_vertex[static_cast<std::size_t>(m_known[place])] = -1;
+  if (place != last) {
+    m_known_of_vertex[static_cast<std::size_t>(m_known[last])] = static_cast<int>(place);
+    m_columns.middleCols<3>(3 * static_cast<Eigen::Index>(place)) =
+        m_columns.middleCols<3>(3 * static_cast<Eigen::Index>(last));
+    m_known[place] = m_known[last];
+    m_force[place] = m_force[last];
+    m_held[place] = m_held[last];
+  }
+  m_known.pop_back();
+  m_force.pop_back();
+  m_held.pop_back();
+}
+
+StepStatus LocalCompliance::begin_frame(const BodyAtFrame& body, const Points& x_before) {
+  m_is_prepared = false;
+  // What acted is what was held less what the body yielded to it in the step.
+  for (std::size_t s = 0; s < m_nodes.size(); ++s)
+    m_own.segment<3>(3 * static_cast<Eigen::Index>(s)) =
+        body.state.x.col(m_nodes[s]) - x_before.col(m_nodes[s]);
+  std::fill(m_held.begin(), m_held.end(), Vec3::Zero());
+  for (const auto& [spring, share] : m_acting) {
+    const double yielded = spring.normal.dot(compute_mean(body.surface, spring, m_own));
+    const Vec3 acted = share * (spring.force - spring.stiffness * yielded) * spring.normal;
+    for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) {
+      ARGIL_TRY(learn(body, spring.vertex[i]));
+      m_held[place_of(spring.vertex[i])] += spring.weight[i] * acted;
+    }
+  }
+  m_acting.clear();
+  for (std::size_t i = m_known.size(); i-- > 0;)
+    if (m_held[i].isZero(0.0) && m_force[i].isZero(0.0)) forget(i);
+  if (!m_known.empty()) ARGIL_TRY(find_columns(body, m_next_renewed++ % m_known.size()));
+  update_displacement();
+  return StepStatus::ok();
+}
+
+void LocalCompliance::update_displacement() {
+  m_displacement.setZero();
+  for (std::size_t i = 0; i < m_known.size(); ++i) {
+    const Vec3 change = m_force[i] - m_held[i];
+    for (int axis = 0; axis < 3; ++axis)
+      if (change(axis) != 0.0)
+        m_displacement += change(axis) * m_columns.col(3 * static_cast<Eigen::Index>(i) + axis);
+  }
+}
+
+void LocalCompliance::release() {
+  std::fill(m_force.begin(), m_force.end(), Vec3::Zero());
+  update_displacement();
+}
+
+Vec3 LocalCompliance::compute_mean(const ContactSurface& surface, const ContactSpring& spring,
+                                   const Eigen::VectorXd& displacement) const {
+  Vec3 mean = Vec3::Zero();
+  for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) {
+    const std::span<const int> nodes = surface.nodes(spring.vertex[i]);
+    const std::span<const double> weights = surface.weights(spring.vertex[i]);
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      mean += spring.weight[i] * weights[k] *
+              displacement.segment<3>(m_row_of_node[static_cast<std::size_t>(nodes[k])]);
+  }
+  return mean;
+}
+
+double LocalCompliance::compute_yield(const ContactSurface& surface, const ContactSpring& spring) const {
+  return spring.normal.dot(compute_mean(surface, spring, m_displacement));
+}
+
+void LocalCompliance::displace(const Points& x, Points& displaced) const {
+  displaced = x;
+  for (std::size_t s = 0; s < m_nodes.size(); ++s)
+    displaced.col(m_nodes[s]) += m_displacement.segment<3>(3 * static_cast<Eigen::Index>(s));
+}
+
+/// Row by row, for springs c and d: how far d's unit force moves the body at c along c's normal, and 1/k_c on
+/// the diagonal. The right side is f_in/k and what the present forces F have moved already.
+void LocalCompliance::assemble_balance(const ContactSurface& surface,
+                                       const std::vector<ContactSpring>& springs) {
+  const std::size_t m = springs.size();
+  m_balance.assign(m * m, 0.0);
+  m_right.assign(m, 0.0);
+  for (std::size_t d = 0; d < m; ++d) {
+    m_own.setZero();
+    for (std::size_t i = 0; i < 3 && springs[d].vertex[i] >= 0; ++i) {
+      const auto columns =
+          m_columns.middleCols<3>(3 * static_cast<Eigen::Index>(place_of(springs[d].vertex[i])));
+      for (int axis = 0; axis < 3; ++axis)
+        m_own += springs[d].weight[i] * springs[d].normal(axis) * columns.col(axis);
+    }
+    for (std::size_t c = 0; c < m; ++c)
+      m_balance[c * m + d] = springs[c].normal.dot(compute_mean(surface, springs[c], m_own));
+  }
+  m_own.setZero();
+  for (std::size_t i = 0; i < m_known.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      if (m_force[i](axis) != 0.0)
+        m_own += m_force[i](axis) * m_columns.col(3 * static_cast<Eigen::Index>(i) + axis);
+  for (std::size_t c = 0; c < m; ++c) {
+    m_right[c] = springs[c].force / springs[c].stiffness +
+                 springs[c].normal.dot(compute_mean(surface, springs[c], m_own));
+    for (std::size_t d = 0; d < c; ++d)  // equal but for the solver's tolerance
+      m_balance[c * m + d] = m_balance[d * m + c] = 0.5 * (m_balance[c * m + d] + m_balance[d * m + c]);
+    m_balance[c * m + c] += 1.0 / springs[c].stiffness;
+  }
+}
+
+/// Balance of the pressed springs alone, by Cholesky's factor. False when it is not positive definite.
+bool LocalCompliance::solve_balance(std::size_t m) {
+  const std::size_t n = m_pressed.size();
+  m_factor.resize(m * m);
+  m_trial.assign(m, 0.0);
+  const auto at = [&](std::size_t i, std::size_t j) -> double& { return m_factor[i * m + j]; };
+  const auto spring_of = [&](std::size_t i) { return static_cast<std::size_t>(m_pressed[i]); };
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      double sum = m_balance[spring_of(i) * m + spring_of(j)];
+      for (std::size_t k = 0; k < j; ++k) sum -= at(i, k) * at(j, k);
+      if (i == j && !(sum > 0.0)) return false;
+      at(i, j) = i == j ? std::sqrt(sum) : sum / at(j, j);
+    }
+  for (std::size_t i = 0; i < n; ++i) {
+    double sum = m_right[spring_of(i)];
+    for (std::size_t k = 0; k < i; ++k) sum -= at(i, k) * m_trial[spring_of(k)];
+    m_trial[spring_of(i)] = sum / at(i, i);
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    double sum = m_trial[spring_of(i)];
+    for (std::size_t k = i + 1; k < n; ++k) sum -= at(k, i) * m_trial[spring_of(k)];
+    m_trial[spring_of(i)] = sum / at(i, i);
+  }
+  return true;
+}
+
+/// Springs that would draw are let go, those let go that would press again are taken back one by one, the
+/// one that presses most first.
+StepStatus LocalCompliance::press(const BodyAtFrame& body, std::vector<ContactSpring>& springs) {
+  for (const ContactSpring& spring : springs) {
+    ARGIL_DCHECK(spring.stiffness > 0.0);
+    for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) ARGIL_TRY(learn(body, spring.vertex[i]));
+  }
+  assemble_balance(body.surface, springs);
+  const std::size_t m = springs.size();
+  m_pressed.clear();
+  for (std::size_t c = 0; c < m; ++c)
+    if (m_right[c] > 0.0) m_pressed.push_back(static_cast<int>(c));
+  for (std::size_t round = 0; round <= 3 * m; ++round) {
+    if (!solve_balance(m))
+      return StepStatus::failed(
+          {body.tick, "contact", -1, "compliance is not positive definite, pivot", 0.0, 0.0});
+    const auto draws = [this](int c) { return m_trial[static_cast<std::size_t>(c)] < 0.0; };
+    if (std::erase_if(m_pressed, draws) > 0) continue;
+    double largest = 0.0;
+    int taken = -1;
+    for (std::size_t c = 0; c < m; ++c) {
+      if (std::binary_search(m_pressed.begin(), m_pressed.end(), static_cast<int>(c))) continue;
+      double gap = m_right[c];
+      for (std::size_t d = 0; d < m; ++d) gap -= m_balance[c * m + d] * m_trial[d];
+      if (gap <= largest) continue;
+      largest = gap;
+      taken = static_cast<int>(c);
+    }
+    constexpr double kTouching = 1e-12;  // [m] rounding of positions
+    if (largest <= kTouching) break;
+    m_pressed.insert(std::lower_bound(m_pressed.begin(), m_pressed.end(), taken), taken);
+  }
+  std::fill(m_force.begin(), m_force.end(), Vec3::Zero());
+  for (std::size_t c = 0; c < m; ++c) {
+    springs[c].force = std::max(0.0, m_trial[c]);
+    for (std::size_t i = 0; i < 3 && springs[c].vertex[i] >= 0; ++i)
+      m_force[place_of(springs[c].vertex[i])] += springs[c].weight[i] * springs[c].force * springs[c].normal;
+  }
+  update_displacement();
+  return StepStatus::ok();
+}
+
+}  // namespace argil::sim

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sim/contact_surface.h"
+
+namespace argil::sim {
+
+/// A contact as a penalty spring on the vertices of the touched surface.
+struct ContactSpring {
+  std::array<int, 3> vertex = {-1, -1, -1};  ///< −1 beyond the last
+  std::array<double, 3> weight = {};
+  Vec3 normal = Vec3::Zero();  ///< in which a push moves the body, unit
+  double stiffness = 0.0;      ///< k [N/m]
+  double force = 0.0;          ///< along the normal, never drawing [N]
+  Vec3 point = Vec3::Zero();   ///< where it acts [m]
+};
+
+/// The body as the last physics step left it.
+struct BodyAtFrame {
+  solid::Solid& solid;
+  const ContactSurface& surface;
+  const solid::SolidState& state;
+  double step_s = 0.0;
+  Tick tick = 0;
+};
+
+/// How the surface yields between two physics steps: u = C (F − G), with F the present forces on its
+/// vertices, G those that acted in the last step, and C the nodes' displacement by a unit force on a touched
+/// vertex at the end of a step, τ² A⁻¹ Wᵀ, from the body's own matrix without contacts. Columns of C are
+/// found when a vertex is first touched and kept while it is; one of them is renewed a step.
+class LocalCompliance {
+ public:
+  LocalCompliance(const ContactSurface& surface, int num_nodes);
+
+  /// A share of the step in which `spring` acts on the body: its force with the body where the step begins.
+  void hold(const ContactSpring& spring, double share) { m_acting.push_back({spring, share}); }
+
+  /// After a physics step from x_before (3×n) on, under what was held: forgets the vertices that nothing
+  /// presses.
+  StepStatus begin_frame(const BodyAtFrame& body, const Points& x_before);
+
+  /// Lets the surface yield under `springs`. In: the force of each if the surface stayed as it is. Out: the
+  /// forces f ≥ 0 in balance with the surface as it then is, f = f_in − k n·Δu, 0 where that were below. The
+  /// balance is unique and continuous in what it is given.
+  StepStatus press(const BodyAtFrame& body, std::vector<ContactSpring>& springs);
+
+  /// Nothing presses any more; the surface comes back.
+  void release();
+
+  /// x + u at the nodes that carry the surface; the others as in x. 3×n both.
+  void displace(const Points& x, Points& displaced) const;
+  /// n·u where a spring acts [m].
+  double compute_yield(const ContactSurface& surface, const ContactSpring& spring) const;
+  int num_known() const { return static_cast<int>(m_known.size()); }
+
+ private:
+  struct Acting {
+    ContactSpring spring;
+    double share;
+  };
+  StepStatus learn(const BodyAtFrame& body, int vertex);
+  StepStatus find_columns(const BodyAtFrame& body, std::size_t place);
+  void forget(std::size_t place);
+  void update_displacement();
+  Vec3 compute_mean(const ContactSurface& surface, const ContactSpring& spring,
+                    const Eigen::VectorXd& displacement) const;
+  void assemble_balance(const ContactSurface& surface, const std::vector<ContactSpring>& springs);
+  bool solve_balance(std::size_t num_springs);
+  std::size_t place_of(int vertex) const {
+    return static_cast<std::size_t>(m_known_of_vertex[static_cast<std::size_t>(vertex)]);
+  }
+
+  std::vector<int> m_nodes;            // that carry the surface, increasing
+  std::vector<int> m_row_of_node;      // first of three; −1: within the body
+  std::vector<int> m_known;            // vertices whose columns are known
+  std::vector<int> m_known_of_vertex;  // −1: not known
+  Eigen::MatrixXd m_columns;           // C: 3 rows a carrying node, 3 columns a known vertex
+  std::vector<Vec3> m_force, m_held;   // F and G of each known vertex
+  std::vector<Acting> m_acting;        // since the last physics step
+  Eigen::VectorXd m_displacement;      // u, 3 rows a carrying node
+  bool m_is_prepared = false;          // the body's matrix is that of find_columns
+  std::size_t m_next_renewed = 0;
+  Points m_load, m_response;  // 3×n
+  // Working arrays of press.
+  Eigen::VectorXd m_own;  // displacement by one spring
+  std::vector<double> m_balance, m_factor, m_right, m_trial;
+  std::vector<int> m_pressed;  // springs with a force
+};
+
+}  // namespace argil::sim
