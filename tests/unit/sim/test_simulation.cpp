@@ -227,6 +227,25 @@ TEST(Simulation, ForceOfACompliantSurfaceIsContinuousInTheHandsPlace) {
   EXPECT_LT(largest[2], 0.6 * largest[1]) << largest[0] << ' ' << largest[1] << ' ' << largest[2];
 }
 
+TEST(Simulation, CompliantSurfaceGivesEqualBitsAtAnyNumberOfThreads) {
+  std::string hash;
+  for (const int threads : {1, 2, 7}) {
+    Params params = make_params();
+    params.threads = threads;
+    params.rates.physics_period_ticks = 14;
+    params.rates.water_period_ticks = 14;
+    params.rates.between_frames = BetweenFrames::compliant;
+    params.passivity = device::Passivity::time_domain;
+    Simulation simulation = make_simulation(params);
+    for (int k = 1; k <= 120; ++k)
+      ASSERT_TRUE(
+          simulation.tick(over(0.0005 - 3e-5 * std::min(k, 140 - k), device::ToolMode::push)).is_ok());
+    EXPECT_GT(simulation.state().hand_force.z(), 1e-3);
+    if (threads == 1) hash = simulation.state_hash();
+    EXPECT_EQ(simulation.state_hash(), hash) << threads;
+  }
+}
+
 TEST(Simulation, NothingMovesWhileTheToolIsAway) {
   Simulation simulation = make_simulation(make_params());
   for (int k = 1; k <= 20; ++k) ASSERT_TRUE(simulation.tick(over(0.05, device::ToolMode::push)).is_ok());

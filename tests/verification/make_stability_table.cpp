@@ -1,0 +1,72 @@
+// Writes the table of results/contact/stability.csv to standard output; scripts/plot_stability.py builds and
+// runs it.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "stability.h"
+#include "support/one_node.h"
+
+namespace argil::verification {
+namespace {
+
+using contact::PenaltyKind;
+using device::Passivity;
+using sim::BetweenFrames;
+
+struct Case {
+  const char* name;
+  Wall wall;
+};
+
+constexpr double kMost = 1e5;  // [N/m]
+constexpr Case kCases[] = {
+    {"1 kHz", {false, 1, BetweenFrames::hold, PenaltyKind::discrete}},
+    {"1 kHz mean", {false, 1, BetweenFrames::hold, PenaltyKind::continuous}},
+    {"71 Hz hold", {false, 14, BetweenFrames::hold, PenaltyKind::discrete}},
+    {"71 Hz hold mean", {false, 14, BetweenFrames::hold, PenaltyKind::continuous}},
+    {"71 Hz re_evaluate", {false, 14, BetweenFrames::re_evaluate, PenaltyKind::discrete}},
+    {"1 kHz", {true, 1, BetweenFrames::hold, PenaltyKind::discrete}},
+    {"71 Hz hold", {true, 14, BetweenFrames::hold, PenaltyKind::discrete}},
+    {"71 Hz re_evaluate", {true, 14, BetweenFrames::re_evaluate, PenaltyKind::discrete}},
+    {"71 Hz compliant", {true, 14, BetweenFrames::compliant, PenaltyKind::discrete}},
+};
+constexpr double kDamping[] = {0.1, 0.2, 0.5, 1.0, 2.0, 5.0};
+
+/// Contact stiffness at which the polynomial loses its stability; what is felt of it is in series with the
+/// body.
+double compute_exact(const Case& c, const Operator& hand) {
+  const bool is_held = c.wall.between == BetweenFrames::hold;
+  const double K =
+      compute_stable_stiffness(hand, 1e-3 * (is_held ? c.wall.physics_period_ticks : 1), c.wall.penalty);
+  const double body = test::compute_apex_stiffness(test::make_one_node_params().elastic);
+  if (!c.wall.gives_way) return std::min(K, kMost);
+  return K < body ? std::min(K * body / (body - K), kMost) : kMost;
+}
+
+void write_table() {
+  std::cout
+      << "body,case,damping_N_s_per_m,exact_N_per_m,nudge_N_per_m,drop_N_per_m,drop_passivity_N_per_m\n";
+  for (const Case& c : kCases)
+    for (const double damping : kDamping) {
+      Operator hand;
+      hand.damping = damping;
+      Wall controlled = c.wall;
+      controlled.passivity = Passivity::time_domain;
+      const double exact = compute_exact(c, hand);
+      const double least = 0.5 * compute_stable_stiffness(hand, 0.014, PenaltyKind::continuous);
+      std::cout << (c.wall.gives_way ? "elastic" : "wall") << ',' << c.name << ',' << damping << ','
+                << (c.wall.gives_way && c.wall.between == BetweenFrames::re_evaluate ? std::nan("") : exact) << ','
+                << find_stable_stiffness(c.wall, hand, Start::nudge, least, kMost) << ','
+                << find_stable_stiffness(c.wall, hand, Start::drop, least, kMost) << ','
+                << find_stable_stiffness(controlled, hand, Start::drop, least, kMost) << std::endl;
+    }
+}
+
+}  // namespace
+}  // namespace argil::verification
+
+int main() {
+  argil::verification::write_table();
+  return 0;
+}
