@@ -30,8 +30,8 @@ water::WaterParams make_params() {
   return params;
 }
 
-/// A tool that wets one spot for a while, then dries it, again and again; as many tets in reach on every
-/// mesh.
+/// A tool that wets one spot for a while, then dries it, again and again. The spot is four faces, whatever
+/// their size: a few tens of tets on every mesh.
 void touch(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
   const Cube cube(n);
