@@ -15,7 +15,7 @@
 #include "output/info.h"
 #include "scenario/build.h"
 #include "scenario/probe.h"
-#include "study/output_name.h"
+#include "study/files.h"
 #include "study/run.h"
 
 namespace {
@@ -24,6 +24,7 @@ using namespace argil;
 using study::ExitCode;
 
 int make_cage_file(const std::string& surface, const std::string& output, int target_tets, double scale) {
+  study::require_input_file(surface);
   study::check_cage_name(surface, output);
   const embed::Cage cage = embed::make_cage(mesh::read_triangle_mesh(surface, scale), {target_tets}, surface);
   mesh::write_gmsh(cage.mesh, output);
@@ -36,6 +37,7 @@ int make_cage_file(const std::string& surface, const std::string& output, int ta
 }
 
 int compare_files(const std::string& a, const std::string& b) {
+  for (const std::string& file : {a, b}) study::require_input_file(file);
   const output::CompareReport report = output::compare_results(a, b, {});
   std::fputs(to_string(report).c_str(), stdout);
   return report.is_equal() ? ExitCode::kDone : ExitCode::kDifferent;
@@ -43,6 +45,7 @@ int compare_files(const std::string& a, const std::string& b) {
 
 int print_times_of_impact(const std::string& kind, const std::string& queries) {
   const auto pair = kind == "vertex-face" ? contact::PairKind::vertex_face : contact::PairKind::edge_edge;
+  study::require_input_file(queries);
   const contact::QueryFile file = contact::read_queries(queries);
   std::puts("query,hit,time_of_impact");
   for (std::size_t q = 0; q < file.paths.size(); ++q) {
@@ -51,6 +54,12 @@ int print_times_of_impact(const std::string& kind, const std::string& queries) {
     else
       std::printf("%zu,0,\n", q);
   }
+  return ExitCode::kDone;
+}
+
+int print_info(const std::string& file) {
+  study::require_input_file(file);
+  std::cout << output::describe_result(file);
   return ExitCode::kDone;
 }
 
@@ -104,7 +113,7 @@ int main(int argc, char** argv) {
   std::string first, second;
   CLI::App* info = app.add_subcommand("info", "describe a result file");
   info->add_option("FILE", first, "result file")->required();
-  info->callback([&] { std::cout << output::describe_result(first); });
+  info->callback([&] { code = print_info(first); });
 
   CLI::App* compare =
       app.add_subcommand("compare", "compare two result files bit by bit, all but their timing");

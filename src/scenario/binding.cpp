@@ -19,19 +19,20 @@ std::string shorten(const Json& json) {
 }
 
 double read_number(const std::string& file, const std::string& place, const Json& json, const Range& range,
-                   const std::string& unit) {
+                   const std::string& unit, bool is_whole = false) {
   if (!json.is_number()) refuse_type(file, place, json, unit.empty() ? "a number" : "a number in " + unit);
   const double value = json.get<double>();
   if (!range.contains(value))
-    throw InputError(file, place,
-                     shorten(json) + " is outside " + to_string(range) + (unit.empty() ? "" : " " + unit),
-                     "give a value in that range");
+    throw InputError(
+        file, place,
+        shorten(json) + " is outside " + to_string(range, is_whole) + (unit.empty() ? "" : " " + unit),
+        "give a value in that range");
   return value;
 }
 
 int read_integer(const std::string& file, const std::string& place, const Json& json, const Range& range) {
   if (!json.is_number_integer()) refuse_type(file, place, json, "a whole number");
-  const double value = read_number(file, place, json, range, "");
+  const double value = read_number(file, place, json, range, "", true);
   constexpr double kLargest = 2147483647.0;
   if (!(std::abs(value) <= kLargest))
     throw InputError(file, place, shorten(json) + " is too large", "give a whole number within ±2147483647");

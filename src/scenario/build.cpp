@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/print.h"
 #include "contact/tool_shape.h"
 #include "embed/cage.h"
 #include "mesh/quality.h"
@@ -120,9 +121,9 @@ void fix_and_load(const Scenario& s, sim::Body& body) {
     if (solid::find_nodes(body.mesh.vertices, std::span(&region, 1)).empty()) {
       const Vec3 low = body.mesh.vertices.rowwise().minCoeff();
       const Vec3 high = body.mesh.vertices.rowwise().maxCoeff();
-      std::ostringstream text;
-      text << "move it into the body's box, (" << low.transpose() << ") to (" << high.transpose() << ") m";
-      throw InputError(s.file, pointer, "holds no vertex of the body", text.str());
+      throw InputError(
+          s.file, pointer, "holds no vertex of the body",
+          "move it into the body's box, " + print_place(low) + " to " + print_place(high) + " m");
     }
   }
   body.supports = s.body.fixed;

@@ -39,19 +39,67 @@ std::size_t compute_edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+/// Follows the parser through a document and knows where it is.
+class PlaceWatcher {
+ public:
+  /// False when a key stands twice in its object.
+  bool follow(Json::parse_event_t event, const Json& parsed) {
+    switch (event) {
+      case Json::parse_event_t::object_start:
+      case Json::parse_event_t::array_start:
+        begin_element();
+        m_levels.emplace_back();
+        m_levels.back().is_array = event == Json::parse_event_t::array_start;
+        return true;
+      case Json::parse_event_t::object_end:
+      case Json::parse_event_t::array_end:
+        m_levels.pop_back();
+        return true;
+      case Json::parse_event_t::key:
+        m_levels.back().key = parsed.get<std::string>();
+        return m_levels.back().keys.insert(m_levels.back().key).second;
+      case Json::parse_event_t::value:
+        begin_element();
+        return true;
+    }
+    return true;
+  }
+  std::string pointer() const {
+    std::string text;
+    for (const Level& level : m_levels)
+      text += "/" + (level.is_array ? std::to_string(level.index) : escape_key(level.key));
+    return text;
+  }
+
+ private:
+  struct Level {
+    bool is_array = false;
+    int index = -1;
+    std::string key;
+    std::set<std::string> keys;
+  };
+  void begin_element() {
+    if (!m_levels.empty() && m_levels.back().is_array) ++m_levels.back().index;
+  }
+  std::vector<Level> m_levels;
+};
+
 }  // namespace
 
+std::string escape_key(const std::string& key) {
+  std::string text;
+  for (const char c : key) text += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return text;
+}
+
 Json parse_json(const std::string& text, const std::string& file) {
-  std::vector<std::set<std::string>> keys;
+  PlaceWatcher place;
   const Json::parser_callback_t watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
     if (depth > kMaxDepth)
       throw InputError(file, "", "is nested deeper than " + std::to_string(kMaxDepth) + " levels",
                        "flatten it");
-    if (event == Json::parse_event_t::object_start) keys.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys.pop_back();
-    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-      throw InputError(file, "", "key \"" + parsed.get<std::string>() + "\" stands twice in one object",
-                       "keep one of the two");
+    if (!place.follow(event, parsed))
+      throw InputError(file, place.pointer(), "stands twice in one object", "keep one of the two");
     return true;
   };
   try {

@@ -10,11 +10,14 @@ namespace argil::scenario {
 using Json = nlohmann::ordered_json;
 
 /// Parses text strictly: no comments, no duplicate keys, at most 64 levels. Throws InputError with line and
-/// column.
+/// column, or with the pointer of a key that stands twice.
 Json parse_json(const std::string& text, const std::string& file);
 
 /// Reads and parses a file of at most 64 MiB. Throws InputError or IoError.
 Json read_json(const std::string& file);
+
+/// A key as it stands in a JSON pointer: ~ as ~0, / as ~1.
+std::string escape_key(const std::string& key);
 
 /// The entry of `keys` that is nearest to `key` by edit distance; empty when none is near.
 std::string find_nearest(const std::string& key, const std::vector<std::string>& keys);

@@ -21,7 +21,8 @@ struct Range {
     return (open_low ? x > low : x >= low) && (open_high ? x < high : x <= high);
   }
 };
-std::string to_string(const Range& range);
+/// "[0, 1)"; `is_whole`: of whole numbers, without a decimal point.
+std::string to_string(const Range& range, bool is_whole = false);
 
 inline Range positive() {
   return {0.0, std::numeric_limits<double>::infinity(), true, true};

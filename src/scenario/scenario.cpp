@@ -28,14 +28,40 @@ constexpr const char* kPaperPreset = R"({
   "haptics": {"physics_period_ticks": 14, "water_period_ticks": 14, "frame_period_ticks": 98, "between_frames": "hold"}
 })";
 
+/// Where a pointer that cannot be followed through `document` ends, in words.
+std::string find_dead_end(const Json& document, const std::string& pointer) {
+  const Json* at = &document;
+  std::size_t begin = 0;
+  while (begin < pointer.size()) {
+    const std::size_t end = std::min(pointer.find('/', begin + 1), pointer.size());
+    const std::string key = pointer.substr(begin + 1, end - begin - 1);
+    const std::string above = pointer.substr(0, begin);
+    if (at->is_array()) {
+      const bool is_number = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
+      if (!is_number || (key.size() > 1 && key[0] == '0') || key.size() > 9)
+        return above + " is a list, and \"" + key + "\" is no number of an element, from 0 on";
+      const std::size_t i = std::stoul(key);
+      if (i >= at->size()) break;
+      at = &(*at)[i];
+    } else if (at->is_object()) {
+      if (!at->contains(key)) break;
+      at = &(*at)[key];
+    } else {
+      return above + " is " + at->dump() + ", which holds nothing";
+    }
+    begin = end;
+  }
+  return "it is no JSON pointer (~ is written ~0, / in a key ~1)";
+}
+
 void apply_setting(Json& document, const Setting& setting, const std::string& file) {
   Json value = setting.value;  // what is not JSON is a word
   if (Json::accept(setting.value)) value = parse_json(setting.value, "--set " + setting.pointer);
   try {
     document[Json::json_pointer(setting.pointer)] = value;
-  } catch (const Json::exception& error) {
-    throw InputError(file, setting.pointer, std::string("cannot be set (") + error.what() + ")",
-                     "give a pointer such as /material/youngs_modulus_Pa");
+  } catch (const Json::exception&) {
+    throw InputError(file, setting.pointer, "cannot be set: " + find_dead_end(document, setting.pointer),
+                     "give a pointer such as /material/youngs_modulus_Pa or /body/fixed/0/offset_m");
   }
 }
 
@@ -66,11 +92,13 @@ void choose_mode(Scenario& s, const Json& document) {
 void check_rates(const Scenario& s) {
   const sim::RateParams& r = s.params.rates;
   const auto require_multiple = [&](const char* pointer, int value) {
-    if (value % r.physics_period_ticks != 0)
-      throw InputError(s.file, pointer,
-                       std::to_string(value) + " is no multiple of physics_period_ticks (" +
-                           std::to_string(r.physics_period_ticks) + ")",
-                       "give a multiple of it");
+    const int period = r.physics_period_ticks;
+    const int next = (value / period + 1) * period;
+    if (value % period != 0)
+      throw InputError(
+          s.file, pointer,
+          std::to_string(value) + " is no multiple of physics_period_ticks (" + std::to_string(period) + ")",
+          "give a multiple of it, for instance " + std::to_string(next));
   };
   require_multiple("/haptics/water_period_ticks", r.water_period_ticks);
   require_multiple("/haptics/frame_period_ticks", r.frame_period_ticks);

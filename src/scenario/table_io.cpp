@@ -11,8 +11,9 @@
 namespace argil::scenario {
 namespace {
 
-std::string print_number(double x) {
+std::string print_number(double x, bool is_whole) {
   if (std::isinf(x)) return x > 0 ? "∞" : "−∞";
+  if (is_whole) return std::to_string(static_cast<long long>(x));
   return Json(x).dump();
 }
 
@@ -38,7 +39,7 @@ void check_keys(const std::vector<Parameter>& rows, const Json& object, const st
     throw InputError(file, prefix + pointer, object.dump() + " is not an object", "give an object {…}");
   const std::vector<std::string> allowed = find_keys_below(rows, pointer);
   for (const auto& [key, value] : object.items()) {
-    const std::string below = pointer + "/" + key;
+    const std::string below = pointer + "/" + escape_key(key);
     if (std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
       std::string list;
       for (const std::string& word : allowed) list += (list.empty() ? "" : ", ") + word;
@@ -139,9 +140,9 @@ void require_below(Json& schema, const std::string& pointer) {
 
 }  // namespace
 
-std::string to_string(const Range& range) {
-  return (range.open_low ? "(" : "[") + print_number(range.low) + ", " + print_number(range.high) +
-         (range.open_high ? ")" : "]");
+std::string to_string(const Range& range, bool is_whole) {
+  return (range.open_low ? "(" : "[") + print_number(range.low, is_whole) + ", " +
+         print_number(range.high, is_whole) + (range.open_high ? ")" : "]");
 }
 
 void read_parameters(const std::vector<Parameter>& rows, const Json& object, const std::string& file,
@@ -198,7 +199,8 @@ std::string print_reference() {
     for (const Parameter& row : rows) {
       std::string allowed;
       for (const std::string& word : row.choices) allowed += (allowed.empty() ? "" : ", ") + word;
-      if (row.type == ValueType::number || row.type == ValueType::integer) allowed = to_string(row.range);
+      if (row.type == ValueType::number || row.type == ValueType::integer)
+        allowed = to_string(row.range, row.type == ValueType::integer);
       page << "| `" << prefix << row.pointer << "` | " << row.unit << " | " << allowed << " | "
            << (row.required ? (is_of_motion(row.pointer) ? "required unless static" : "required")
                             : "`" + row.write().dump() + "`")

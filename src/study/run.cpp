@@ -8,16 +8,20 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
+#include <limits>
 #include <sstream>
 #include <utility>
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/print.h"
+#include "embed/triangle_tree.h"
 #include "output/result_file.h"
 #include "scenario/build.h"
 #include "sim/simulation.h"
 #include "study/build_info.h"
-#include "study/output_name.h"
+#include "study/files.h"
 #include "study/progress.h"
 
 namespace argil::study {
@@ -134,6 +138,31 @@ std::optional<Failure> run_ticks(const scenario::Scenario& s, const device::Trac
   return {};
 }
 
+/// Deepest place of a surface's vertices in a closed surface [m]; 0 when all are outside.
+double find_depth(const Points& vertices, const mesh::TriangleMesh& surface) {
+  const embed::TriangleTree tree(surface);
+  double depth = 0.0;
+  for (Eigen::Index v = 0; v < vertices.cols(); ++v)
+    if (tree.compute_winding_number(vertices.col(v)) > 0.5)
+      depth = std::max(depth, tree.compute_distance(vertices.col(v), std::numeric_limits<double>::max()));
+  return depth;
+}
+
+/// The motion begins in the body: says where and how deep, in the file that the motion came from.
+[[noreturn]] void refuse_start(const scenario::Scenario& s, const RunOptions& options,
+                               const sim::Simulation& simulation, mesh::TriangleMesh tool) {
+  const contact::Pose& pose = simulation.state().tool;
+  tool.vertices = (pose.orientation.toRotationMatrix() * tool.vertices).colwise() + pose.position;
+  const mesh::TriangleMesh body{simulation.body().mesh.vertices, simulation.body().topology.boundary};
+  const double depth = std::max(find_depth(tool.vertices, body), find_depth(body.vertices, tool));
+  std::ostringstream text;
+  text << "the tool starts in or across the body, " << std::setprecision(3) << 1e3 * depth
+       << " mm deep, with the hand at " << print_place(pose.position) << " m";
+  const bool is_given = !options.trace.empty();
+  throw InputError(is_given ? options.trace : s.file, is_given ? "" : "/trace", text.str(),
+                   "start the motion outside it");
+}
+
 void print_notes(const scenario::Scene& scene, const RunOptions& options) {
   if (options.quiet) return;
   for (const std::string& note : scene.notes) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
@@ -189,8 +218,12 @@ scenario::Scenario load(const RunOptions& options) {
   for (const std::string& text : options.settings) settings.push_back(scenario::parse_setting(text));
   if (!options.trace.empty())
     settings.push_back({"/trace/file", "\"" + std::filesystem::absolute(options.trace).string() + "\""});
+  require_input_file(options.scenario);
+  if (!options.trace.empty()) require_input_file(options.trace);
   scenario::Scenario s = scenario::load_scenario(options.scenario, settings);
   s.params.threads = options.threads;
+  for (const scenario::InputFile& input : scenario::list_input_files(s))
+    require_input_file(input.file, input.pointer);
   return s;
 }
 
@@ -202,9 +235,7 @@ int run(const RunOptions& options) {
   const mesh::TriangleMesh tool = scene.tool;
   const Tick num_ticks = count_ticks(s, scene.trace);
   sim::Simulation simulation(std::move(scene.body), tool, s.params, sample_at(s, scene.trace, 0));
-  if (simulation.tool_overlaps_body())
-    throw InputError(s.file, "/trace", "the tool starts in or across the body",
-                     "start the motion outside it");
+  if (simulation.tool_overlaps_body()) refuse_start(s, options, simulation, tool);
   print_notes(scene, options);
   if (options.dry_run) return print_ready(s, simulation, num_ticks);
   const std::string result = name_result(s, options);

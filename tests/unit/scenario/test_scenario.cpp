@@ -89,18 +89,23 @@ TEST_F(ScenarioFile, BadSetPointersNameTheNearestKey) {
   expect_refused("/water/porosty=0.3", {"scene.json: /water/porosty", "did you mean \"porosity\"?"});
   expect_refused("/watr/porosity=0.3", {"/watr", "did you mean \"water\"?"});
   expect_refused("/body/fixed/0/ofset_m=1", {"/body/fixed/0/ofset_m", "did you mean \"offset_m\"?"});
-  expect_refused("/about/first=1", {"/about/first", "cannot be set", "give a pointer such as"});
+  expect_refused("/about/first=1",
+                 {"/about/first", "cannot be set: /about is \"a ball", "which holds nothing; give"});
+  expect_refused("/body/fixed/one/offset_m=1",
+                 {"cannot be set: /body/fixed is a list", "\"one\" is no number"});
+  expect_refused("/wa~ter=1", {"/wa~ter: cannot be set", "~ is written ~0"});
+  expect_refused("/water/a~1b=1", {"/water/a~1b: is not a known key"});
   expect_refused("porosity=0.3", {"--set: porosity=0.3", "/json/pointer=value"});
   expect_refused("/water/porosity", {"--set: /water/porosity", "/json/pointer=value"});
 }
 
 TEST_F(ScenarioFile, DuplicateKeysAreRefusedAtAnyDepthAndInSettings) {
   expect_refused(R"(/water={"porosity": 0.3, "porosity": 0.4})",
-                 {"--set /water", "\"porosity\" stands twice"});
+                 {"--set /water: /porosity: stands twice in one object"});
   std::string text = test::make_ball_scenario("press.csv");
   text.insert(text.find("\"k1_per_m\""), "\"k1_per_m\": 3, ");
   file = folder.write("scene.json", text);
-  ARGIL_EXPECT_THROW_WITH(load(), InputError, "scene.json: key \"k1_per_m\" stands twice");
+  ARGIL_EXPECT_THROW_WITH(load(), InputError, "scene.json: /material/clay_kernel/k1_per_m: stands twice");
 }
 
 TEST_F(ScenarioFile, ValuesOutsideTheirRangeNamePointerValueRangeAndUnit) {
@@ -108,11 +113,22 @@ TEST_F(ScenarioFile, ValuesOutsideTheirRangeNamePointerValueRangeAndUnit) {
                  {"/material/youngs_modulus_Pa", "0 is outside (0.0, ∞) Pa", "give a value in that range"});
   expect_refused("/water/porosity=1", {"/water/porosity", "1 is outside (0.0, 1.0)"});
   expect_refused("/haptics/period_s=1", {"/haptics/period_s", "1 is outside (0.0, 1.0) s"});
-  expect_refused("/tool/shape/subdivisions=7", {"/tool/shape/subdivisions", "7 is outside [0.0, 6.0]"});
+  expect_refused("/tool/shape/subdivisions=7", {"/tool/shape/subdivisions", "7 is outside [0, 6]; give"});
   expect_refused("/body/loads/gravity_m_per_s2=[0,0]",
                  {"/body/loads/gravity_m_per_s2", "[0,0] is not a list of 3 numbers in m/s²"});
   expect_refused("/tool/mode=squeeze", {"/tool/mode", "\"squeeze\" is not one of", "wet"});
   expect_refused("/haptics/water_period_ticks=1e30", {"/haptics/water_period_ticks", "whole number"});
+}
+
+TEST_F(ScenarioFile, DuplicateKeyInAListIsNamedWithItsElement) {
+  ARGIL_EXPECT_THROW_WITH(parse_json(R"({"a": [1, {"b": 2}, {"c/d": [], "c/d": 3}]})", "f"), InputError,
+                          "f: /a/2/c~1d: stands twice");
+}
+
+TEST_F(ScenarioFile, PeriodThatIsNoMultipleIsToldTheNext) {
+  expect_refused("/haptics/physics_period_ticks=14",
+                 {"/haptics/water_period_ticks: 10 is no multiple of physics_period_ticks (14)",
+                  "give a multiple of it, for instance 14"});
 }
 
 TEST_F(ScenarioFile, MissingRequiredKeysAreNamedWithTheirMeaning) {

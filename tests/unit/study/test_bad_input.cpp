@@ -63,7 +63,7 @@ TEST_F(BadInput, WrongTypeIsNamed) {
 TEST_F(BadInput, DuplicateKeyIsRefused) {
   std::string text = ball();
   text.insert(text.rfind('}'), ", \"about\": \"again\"");
-  expect_refused(text, {}, {"\"about\" stands twice"});
+  expect_refused(text, {}, {"scene.json: /about: stands twice"});
 }
 
 TEST_F(BadInput, BrokenJsonNamesLineAndColumn) {
@@ -109,12 +109,42 @@ TEST_F(BadInput, NumberOfTetsThatAShapeCannotHaveIsRefusedWithItsPointer) {
 
 TEST_F(BadInput, ToolThatStartsInsideTheBodyIsRefused) {
   const std::string deep = test::write_press_trace(folder / "deep.csv", 0.020, 0.019, 0.1, "push");
-  expect_refused(test::make_ball_scenario(deep), {}, {"/trace", "starts in or across the body"});
+  expect_refused(
+      test::make_ball_scenario(deep), {},
+      {"scene.json: /trace", "starts in or across the body", "with the hand at (0.001, 0.0007, 0.02) m"});
+}
+
+TEST_F(BadInput, MotionThatStartsInsideSaysHowDeepAndInWhichFile) {
+  // Ball of radius 20 mm, tool of 6 mm with its centre 1.22 mm off the ball's: the tool's point that is
+  // nearest to the centre lies 20 − (6 − 1.22) = 15.2 mm deep, less what the facets of both cut off. The
+  // trace was given beside the scenario.
+  study::RunOptions options;
+  options.quiet = true;
+  options.scenario = test::write_text(folder / "scene.json", ball());
+  options.trace = test::write_press_trace(folder / "deep.csv", 0.020, 0.019, 0.1, "push");
+  try {
+    study::run(options);
+    FAIL() << "was not refused";
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    const std::string words = "deep.csv: the tool starts in or across the body, ";
+    const std::size_t at = text.find(words);
+    ASSERT_NE(at, std::string::npos) << text;
+    const double depth = std::stod(text.substr(at + words.size()));
+    EXPECT_LT(depth, 15.3);
+    EXPECT_GT(depth, 14.3);
+  }
+}
+
+TEST_F(BadInput, FolderInPlaceOfAFileIsRefused) {
+  std::filesystem::create_directory(folder / "motion.csv");
+  expect_refused(test::make_ball_scenario("motion.csv"), {},
+                 {"motion.csv: /trace/file: is a folder; name a file"});
 }
 
 TEST_F(BadInput, FixedRegionWithoutVerticesIsRefused) {
   expect_refused(ball(), {R"(/body/fixed=[{"kind":"sphere","centre_m":[1,1,1],"radius_m":0.1}])"},
-                 {"/body/fixed/0", "holds no vertex"});
+                 {"/body/fixed/0", "holds no vertex", "body's box, (-0.0", ", 0) to (0.0", ", 0.04) m"});
 }
 
 TEST_F(BadInput, DilutePaperLawPastItsPoleIsRefusedWithPhiModeAndRemedy) {

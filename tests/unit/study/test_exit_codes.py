@@ -135,11 +135,21 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(code, 4, error)
         self.assertIn("no/such/folder/out.h5", error)
 
-    def test_4_a_result_that_cannot_be_read(self):
-        for arguments in (["info", "nowhere.h5"], ["compare", "nowhere.h5", "nowhere.h5"]):
-            code, _, error = self.call(*arguments)
-            self.assertEqual(code, 4, error)
-            self.assertIn("nowhere.h5", error)
+    def test_2_a_file_to_read_that_is_none(self):
+        (self.folder / "folder").mkdir()
+        for name, why in (("nowhere", "does not exist"), ("folder", "is a folder")):
+            for arguments in (["info", name], ["compare", "scene.json", name], ["cage", name, "-o", "cage.msh"],
+                              ["ccd", "--kind", "edge-edge", name], ["run", name], ["validate", name],
+                              ["run", "scene.json", "--trace", name], ["validate", "scene.json", "--trace", name]):
+                code, _, error = self.call(*arguments)
+                self.assertEqual((code, error.count("\n")), (2, 1), f"{arguments}: {error}")
+                self.assertIn(f"argil: {name}: {why}; ", error)
+
+    def test_4_a_file_that_cannot_be_read(self):
+        (self.folder / "text.h5").write_text("not HDF5")
+        code, _, error = self.call("info", "text.h5")
+        self.assertEqual(code, 4, error)
+        self.assertIn("text.h5", error)
 
     def test_5_compare_tells_equal_results_from_different_ones(self):
         for name, more in (("a.h5", []), ("b.h5", ["--threads", "2"]),

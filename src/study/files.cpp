@@ -1,4 +1,4 @@
-#include "study/output_name.h"
+#include "study/files.h"
 
 #include <filesystem>
 
@@ -19,6 +19,14 @@ bool has_ending(const std::string& file, const char* ending) {
 }
 
 }  // namespace
+
+void require_input_file(const std::string& file, const std::string& place) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error))
+    throw InputError(file, place, "does not exist", "check the path");
+  if (std::filesystem::is_directory(file, error))
+    throw InputError(file, place, "is a folder", "name a file in it");
+}
 
 std::string name_xdmf(const std::string& result) {
   return std::filesystem::path(result).replace_extension(".xdmf").string();

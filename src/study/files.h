@@ -6,6 +6,10 @@
 
 namespace argil::study {
 
+/// Refuses a file that is to be read but is not there, or is a folder. Throws InputError. (What cannot be
+/// read for any other reason is an IoError of its reader.)
+void require_input_file(const std::string& file, const std::string& place = "");
+
 /// The XDMF that is written beside a result.
 std::string name_xdmf(const std::string& result);
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "study/output_name.h"
+#include "study/files.h"
 #include "study/run.h"
 #include "support/scene_files.h"
 #include "support/temp_folder.h"
