@@ -5,6 +5,7 @@ Usage: summarise.py DRY.h5 WET.h5 [ELASTICITY_ONLY.h5 YIELD_ONLY.h5] [--command 
 
 The parts are fractions of the dry value: how much lower a force is when both causes act, and when only one does. What
 both lower beyond the sum of the two parts is their interaction: negative where each takes from what the other left.
+Equal results give equal files: the commit is not in them, for a file that is committed cannot name its own.
 """
 import argparse
 import json
@@ -45,7 +46,7 @@ def summarise(file):
             "saturation_near_tool_at_first_touch": saturation_near_tool(result, time[np.argmax(push > 0.0)]),
             "saturation_near_tool_at_peak": saturation_near_tool(result, time[np.argmax(push)]),
             "water_added_kg": ledger.added[-1], "ledger_error": ledger.error().max(),
-            "commit": build.get("commit", ""), "compiler": build.get("compiler", ""),
+            "compiler": build.get("compiler", ""),
             "scenario_sha256": read_text(result, "scenario_sha256"), "trace_sha256": read_text(result, "trace_sha256"),
         }
 
