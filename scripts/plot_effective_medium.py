@@ -33,21 +33,34 @@ def probe(argil, cases):
     return json.loads(text)["results"]
 
 
-def curve(argil, nu, fluid, scheme, **more):
-    """K, G, E, ν and status against PHI."""
-    results = probe(argil, [dict(youngs_modulus_Pa=YOUNG, poissons_ratio=nu, fluid_bulk_modulus_Pa=fluid,
-                                 phi=float(phi), scheme=scheme, **more) for phi in PHI])
+def curve(argil, nu, fluid, scheme):
+    """K, G, E, ν and status against PHI, and the first φ of each failure."""
+    def ask(places):
+        return probe(argil, [dict(youngs_modulus_Pa=YOUNG, poissons_ratio=nu, fluid_bulk_modulus_Pa=fluid,
+                                  phi=float(phi), scheme=scheme) for phi in places])
+    results = ask(PHI)
     K = np.array([r["bulk_modulus_Pa"] for r in results])
     G = np.array([r["shear_modulus_Pa"] for r in results])
     with np.errstate(divide="ignore", invalid="ignore"):
         E = 9 * K * G / (3 * K + G)
         ratio = (3 * K - 2 * G) / (2 * (3 * K + G))
-    return {"K": K, "G": G, "E": E, "nu": ratio, "status": [r["status"] for r in results]}
+    status = [r["status"] for r in results]
+    return {"K": K, "G": G, "E": E, "nu": ratio, "status": status,
+            **{name: find_first(ask, status, name) for name in FAILURE}}
 
 
-def first(curve_, status):
-    hits = [phi for phi, s in zip(PHI, curve_["status"]) if s == status]
-    return hits[0] if hits else None
+def find_first(ask, status, wanted):
+    """First φ of a status (a worse one counts as well where it comes at once), to 1e-8; None without."""
+    rank = {"ok": 0, "above_voigt": 1, "not_positive_definite": 2}
+    if wanted not in status:
+        return None
+    i = status.index(wanted)
+    low, high = PHI[max(i - 1, 0)], PHI[i]
+    for _ in range(3):  # a 64th of the interval each time: to 1e-8
+        places = np.linspace(low, high, 65)
+        found = [rank[r["status"]] >= rank[wanted] for r in ask(places[1:])].index(True)
+        low, high = places[found], places[found + 1]
+    return high
 
 
 def at_porosity(data, key):
@@ -64,11 +77,20 @@ def put_legend(figure, handles, labels, columns, height):
 
 def shade(axes, data):
     """Where the paper's scheme leaves the bounds, and where it is no stiffness any more."""
-    above, broken = first(data, "above_voigt"), first(data, "not_positive_definite")
+    above, broken = data["above_voigt"], data["not_positive_definite"]
     if above is not None:
         axes.axvspan(above, broken if broken is not None else PHI[-1], color=FAILURE["above_voigt"], alpha=0.3, lw=0)
     if broken is not None:
         axes.axvspan(broken, PHI[-1], color=FAILURE["not_positive_definite"], alpha=0.25, lw=0)
+
+
+def mark_ends(axes, data, values, colour):
+    """On a curve: a circle where it leaves the Voigt bound, a cross where it stops being a stiffness."""
+    for status, marker, size in (("above_voigt", "o", 4), ("not_positive_definite", "x", 6)):
+        if data[status] is not None:
+            good = np.isfinite(values) & (PHI <= data[status])
+            axes.plot(data[status], np.interp(data[status], PHI[good], values[good]), marker=marker, color=colour,
+                      ms=size, mfc="white", mew=1.3, ls="", zorder=5)
 
 
 def draw_moduli(argil, nu, output):
@@ -85,11 +107,13 @@ def draw_moduli(argil, nu, output):
             for scheme in SCHEMES:
                 values = data[scheme][key] / unit
                 bad = np.array([s == "not_positive_definite" for s in data[scheme]["status"]])
-                # E and ν of what is no stiffness mean nothing; eq. 6's E alone is shown, for it looks healthy.
-                if key == "nu" or (key == "E" and scheme != "dilute"):
+                # What is no stiffness has no moduli; eq. 6's alone are shown, for its E looks healthy there.
+                if key == "nu" or scheme != "dilute":
                     values = np.where(bad, np.nan, values)
                 colour, dash = STYLE[scheme]
                 ax.plot(PHI, values, color=colour, ls=dash, label=NAMES[scheme])
+                if scheme in SCHEMES[:5]:
+                    mark_ends(ax, data[scheme], values, colour)
             ax.axvline(PHI_REACHED, color=GREY, lw=0.7, ls=":")
             ax.set_title(f"{water}: " + ("ν" if key == "nu" else f"{key} over dry"), loc="left")
             ax.set_xlim(0, PHI[-1])
@@ -101,8 +125,7 @@ def draw_moduli(argil, nu, output):
             else:
                 ax.set_ylim(-0.1, 1.05)
         for scheme in SCHEMES[:5]:
-            table.append((nu, water, scheme, first(data[scheme], "above_voigt"),
-                          first(data[scheme], "not_positive_definite"),
+            table.append((nu, water, scheme, data[scheme]["above_voigt"], data[scheme]["not_positive_definite"],
                           *(at_porosity(data[scheme], k) for k in ("E", "nu"))))
     for ax in rows[1]:
         ax.set_xlabel("volume fraction of water φ")
@@ -111,7 +134,9 @@ def draw_moduli(argil, nu, output):
                 plt.Rectangle((0, 0), 1, 1, color=FAILURE["above_voigt"], alpha=0.3),
                 plt.Rectangle((0, 0), 1, 1, color=FAILURE["not_positive_definite"], alpha=0.25)]
     labels += ["Reuss to Voigt", "eq. 6 above Voigt", "eq. 6 not positive definite"]
-    put_legend(figure, handles, labels, 5, 0.1)
+    handles += [plt.Line2D([], [], color="black", marker=m, mfc="white", ls="") for m in ("o", "x")]
+    labels += ["a curve leaves Voigt", "a curve is no stiffness past here"]
+    put_legend(figure, handles, labels, 4, 0.13)
     figure.suptitle(f"Spherical pores in clay of ν = {nu:.2f}; dotted: φ of saturated clay at porosity 0.4", fontsize=10)
     save(figure, output / f"moduli_nu{round(100 * nu)}")
     return table
@@ -137,7 +162,7 @@ def draw_polar(argil, output):
         ax.set_yticks([0.25, 0.5, 0.75, 1.0])
         ax.set_title(water)
     put_legend(figure, *axes[0].get_legend_handles_labels(), 3, 0.08)
-    figure.suptitle("E over dry along each direction; aligned pores, axis at 0°, φ = 0.2, ν = 0.3", fontsize=9)
+    figure.suptitle("E over dry along each direction; aligned pores, axis at 0°, φ = 0.2, ν = 0.3\n", fontsize=9)
     save(figure, output / "anisotropy")
 
 
@@ -150,7 +175,12 @@ def draw_hertz(argil, output):
             data = curve(argil, 0.3, fluid, scheme)
             good = np.array([s != "not_positive_definite" for s in data["status"]])
             modulus = np.where(good, data["E"] / (1 - data["nu"]**2), np.nan)
-            ax.plot(PHI, modulus / modulus[0], color=STYLE[scheme][0], ls=STYLE[scheme][1], label=NAMES[scheme])
+            colour, dash = STYLE[scheme]
+            # Past the Voigt bound the curve is no clay's any more: thin, and marked where that begins.
+            within = np.where(PHI <= (data["above_voigt"] or PHI[-1]), modulus, np.nan)
+            ax.plot(PHI, modulus / modulus[0], color=colour, ls=":", lw=0.8)
+            ax.plot(PHI, within / modulus[0], color=colour, ls=dash, label=NAMES[scheme])
+            mark_ends(ax, data, modulus / modulus[0], colour)
             rows.append((water, scheme, *(modulus[np.searchsorted(PHI, phi - 1e-9)] / modulus[0]
                                           for phi in (0.1, 0.2, 0.3, 0.4))))
         # Measured clay: 35-fold from plastic to liquid limit [Vardanega2014]; S = φ/n, limits at S = 0 and 1.
@@ -162,7 +192,10 @@ def draw_hertz(argil, output):
         ax.axvline(PHI_REACHED, color=GREY, lw=0.7, ls=":")
     axes[0].set_ylabel("Hertz force, wet over dry")
     axes[0].set_ylim(0, 1.02)
-    put_legend(figure, *axes[0].get_legend_handles_labels(), 3, 0.15)
+    handles, labels = axes[0].get_legend_handles_labels()
+    handles += [plt.Line2D([], [], color="black", marker=m, mfc="white", ls=s) for m, s in (("o", ":"), ("x", ""))]
+    labels += ["stiffer than Voigt from here", "no stiffness past here"]
+    put_legend(figure, handles, labels, 3, 0.18)
     save(figure, output / "hertz_force")
     return rows
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/rng.h"
 #include "mesh/shapes.h"
@@ -152,9 +153,17 @@ TEST(Diffusion, OfAPointSourceConvergesWithOrderTwoWhereTheFluxIsConsistent) {
         "%.4f of the peak\n",
         n, orthogonal[0].back(), orthogonal[1].back(), kuhn[0].back(), kuhn[1].back());
   }
-  for (const auto& errors : {orthogonal[0], orthogonal[1], kuhn[1]}) {
-    EXPECT_GT(fit_order(sizes, errors), 1.6);
-    EXPECT_LT(fit_order(sizes, errors), 2.4);
+  // Order between the two finest. Coarser ones lie below it: the source is as wide as a cell, and that width
+  // over √(4Dt) must be small (1.7, 1.8, 1.9 on orthogonal meshes). Where centroids are not opposite each
+  // other: 1.5, 1.7, 1.8.
+  const auto finest = [&](const std::vector<double>& errors) {
+    return std::log(errors[2] / errors[3]) / std::log(sizes[2] / sizes[3]);
+  };
+  for (const auto& [errors, least] :
+       {std::pair(orthogonal[0], 1.85), std::pair(orthogonal[1], 1.85), std::pair(kuhn[1], 1.75)}) {
+    EXPECT_GT(finest(errors), least);
+    EXPECT_LT(finest(errors), 2.3);
+    EXPECT_TRUE(std::is_sorted(errors.rbegin(), errors.rend()));
   }
   // The two-point flux on tets whose centroids are not opposite each other: refinement does not help.
   EXPECT_LT(fit_order(sizes, kuhn[0]), 0.5);

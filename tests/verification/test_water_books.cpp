@@ -67,7 +67,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"two_point", FluxForm::two_point, kExplicit, UptakeForm::increment, 0.0, 1000000},
                     Case{"exponent", FluxForm::corrected, kExplicit, UptakeForm::flux, 3.0, 100000},
                     Case{"implicit", FluxForm::two_point, kImplicit, UptakeForm::flux, 0.0, 1000000},
-                    Case{"implicit_corrected", FluxForm::corrected, kImplicit, UptakeForm::flux, 2.0, 20000}),
+                    Case{"implicit_corrected", FluxForm::corrected, kImplicit, UptakeForm::flux, 0.0, 100000},
+                    Case{"implicit_exponent", FluxForm::corrected, kImplicit, UptakeForm::flux, 2.0, 20000}),
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
