@@ -5,7 +5,6 @@ Usage: summarise.py DRY.h5 WET.h5 [ELASTICITY_ONLY.h5 YIELD_ONLY.h5] [--command 
 
 The parts are fractions of the dry value: how much lower a force is when both causes act, and when only one does. What
 both lower beyond the sum of the two parts is their interaction: negative where each takes from what the other left.
-Equal results give equal files: the commit is not in them, for a file that is committed cannot name its own.
 """
 import argparse
 import json
@@ -46,7 +45,7 @@ def summarise(file):
             "saturation_near_tool_at_first_touch": saturation_near_tool(result, time[np.argmax(push > 0.0)]),
             "saturation_near_tool_at_peak": saturation_near_tool(result, time[np.argmax(push)]),
             "water_added_kg": ledger.added[-1], "ledger_error": ledger.error().max(),
-            "compiler": build.get("compiler", ""),
+            "commit": build.get("commit", ""), "compiler": build.get("compiler", ""),
             "scenario_sha256": read_text(result, "scenario_sha256"), "trace_sha256": read_text(result, "trace_sha256"),
         }
 
@@ -65,6 +64,18 @@ def rounded(value):
     return float(f"{value:.6g}") if isinstance(value, (float, np.floating)) else value
 
 
+def without_commits(figures):
+    return {**figures, "runs": {name: {key: value for key, value in run.items() if key != "commit"}
+                                for name, run in figures["runs"].items()}}
+
+
+def write(figures, path):
+    """A file that holds these figures already stays: its commit is the one that first gave them."""
+    if path.exists() and without_commits(json.loads(path.read_text())) == without_commits(figures):
+        return
+    path.write_text(json.dumps(figures, indent=2) + "\n")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("files", nargs="+", metavar="RESULT.h5", help="dry, wet, and both single causes or neither")
@@ -79,7 +90,7 @@ def main():
         values = [run[name] for run in runs]
         figures[name.split("_")[0]] = (split(*values) if len(values) == 4
                                        else {"lower_by": 1.0 - values[1] / values[0]})
-    Path(options.output).write_text(json.dumps(rounded(figures), indent=2) + "\n")
+    write(rounded(figures), Path(options.output))
     print(options.output)
 
 

@@ -2,6 +2,7 @@
 """The figures show what the result file holds: a cube of six tets, pressed and wetted by a small tool, in a file made
 here by h5py. Expected values: the numbers put in. Skipped where numpy, h5py, matplotlib or VTK are absent."""
 import importlib.util
+import json
 import shutil
 import subprocess
 import sys
@@ -107,6 +108,14 @@ class Figures(unittest.TestCase):
         for name, value in {"peak_N": 2.0, "impulse_N_s": 0.031, "peak_of_wetting_N": 3.0, "peak_at_s": 0.07,
                             "water_added_kg": 2e-5 * 199}.items():
             self.assertAlmostEqual(figures[name], value, places=12)
+
+    def test_a_summary_keeps_the_commit_that_first_gave_its_figures(self):
+        path = Path(self.file("run.json"))
+        figures = {"command": "none", "runs": {"dry": {"peak_N": 2.0, "commit": "first"}}}
+        summarise.write(figures, path)
+        for peak, kept in ((2.0, "first"), (2.5, "second")):
+            summarise.write({"command": "none", "runs": {"dry": {"peak_N": peak, "commit": "second"}}}, path)
+            self.assertEqual(json.loads(path.read_text())["runs"]["dry"], {"peak_N": peak, "commit": kept})
 
     def test_the_split_gives_each_part_and_what_they_take_from_each_other(self):
         parts = summarise.split(10.0, 5.0, 8.0, 6.0)  # 50 % lower; alone 20 % and 40 %
