@@ -164,13 +164,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
     parser.add_argument("--argil", type=Path, default=ROOT / "build/bin/argil", metavar="PROGRAM")
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "results/contact/hertz", metavar="STEM")
-    parser.add_argument("--quick", action="store_true", help="without the two finest meshes")
+    parser.add_argument("--quick", action="store_true", help="without the finest meshes")
     options = parser.parse_args()
     meshes = (("p1", 2), ("p2", 2), ("p1", 4))
     cases = [(tool, element, cells, 1) for element, cells in meshes for tool in ("sphere", "punch", "cone")]
     cases += [("sphere", "p1", 4, stiffness) for stiffness in (0.03, 0.1, 0.3)]
     if not options.quick:
-        cases += [("sphere", "p2", 4, 1), ("sphere", "p1", 8, 1)]
+        cases += [("sphere", "p2", 4, 1), *((tool, "p1", 8, 1) for tool in ("sphere", "punch", "cone"))]
     rows = []
     with tempfile.TemporaryDirectory() as name:
         for tool, element, cells, stiffness in cases:
