@@ -225,12 +225,24 @@ void check_regions(const Scenario& s) {
     require_normal(s, s.body.loads.pressure[i].region, "/body/loads/pressure/" + std::to_string(i));
 }
 
-void check_plasticity(const Scenario& s) {
+void check_plasticity(Scenario& s) {
   const material::Plasticity& law = s.params.plasticity;
-  if (law.enabled && law.form == material::FlowForm::j2 &&
-      !(law.deviatoric && law.norm == material::StrainNorm::frobenius))
-    throw InputError(s.file, "/material/plasticity/form", "j2 is a law of the deviator's Frobenius norm",
+  if (!law.enabled) return;
+  const std::string place = "/material/plasticity/form";
+  if (law.form == material::FlowForm::j2 && !(law.deviatoric && law.norm == material::StrainNorm::frobenius))
+    throw InputError(s.file, place, "j2 is a law of the deviator's Frobenius norm",
                      "set deviatoric to true and norm to \"frobenius\"");
+  const double step = s.params.rates.physics_period_ticks * s.params.rates.haptic_period;
+  if (law.form == material::FlowForm::literal && law.creep_per_s * step > 1.0)
+    s.warnings.push_back(s.file + ": " + place +
+                         ": literal flow takes more than the whole strain in a step (creep_per_s times the "
+                         "physics step is above 1) and can create energy; shorten the step, or take rate");
+  const material::Moisture& m = s.params.moisture;
+  if (law.deviatoric && m.law == material::MoistureLaw::effective_medium && m.softens_elasticity &&
+      !material::is_isotropic(m.medium))
+    s.warnings.push_back(s.file +
+                         ": /material/plasticity/deviatoric: flow along the deviator can create "
+                         "energy in clay whose stiffness has a preferred axis; set it to false");
 }
 
 void check_combinations(Scenario& s) {

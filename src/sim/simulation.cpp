@@ -34,6 +34,7 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
   m_load_force = solid::compute_load_force(m_solid.elements(), m_body.topology.boundary, m_body.loads);
   m_external_force.setZero(3, n);
   m_x_before = m_state.solid.x;
+  m_v_before = m_state.solid.v;
   m_dissipation.setZero(m_solid.elements().num_points());
   m_is_moved = std::any_of(m_body.supports.begin(), m_body.supports.end(),
                            [](const solid::Support& s) { return s.displacement.norm() > 0.0; });

@@ -103,6 +103,7 @@ StepStatus Simulation::physics_step() {
   solid::SolidState& solid = m_state.solid;
   m_external_force = m_state.contact_force + m_load_force;
   const solid::StepLoads loads{m_external_force, m_contact_stiffness};
+  m_v_before = solid.v;
   ARGIL_TRY(m_solid.begin_step(solid, loads, h, m_clock.time_at_end(), m_clock.tick));
   for (bool solved = false; !solved;) {
     {
@@ -124,7 +125,12 @@ StepStatus Simulation::physics_step() {
   }
   {
     const StageScope scope(m_observer, Stage::kinematics);
-    ARGIL_TRY(m_solid.update_kinematics(solid.x, m_clock.tick));  // F → R → ε
+    const StepStatus status = m_solid.update_kinematics(solid.x, m_clock.tick);  // F → R → ε
+    if (!status.is_ok()) {
+      solid.x = m_x_before;  // the last good state stays
+      solid.v = m_v_before;
+      return status;
+    }
   }
   const StageScope scope(m_observer, Stage::plasticity);
   apply_plastic_flow(h);  // trial ε_p of every tet, committed at once

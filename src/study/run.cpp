@@ -125,7 +125,10 @@ std::optional<Failure> run_ticks(const scenario::Scenario& s, const device::Trac
   Tick last_frame = 0;
   for (Tick k = 1; k <= num_ticks && !g_interrupted; ++k) {
     const StepStatus status = simulation.tick(sample_at(s, trace, k));
-    if (!status.is_ok()) return status.failure();
+    if (!status.is_ok()) {
+      if (last_frame != simulation.clock().tick) file.append(simulation.make_frame());  // the last good state
+      return status.failure();
+    }
     file.append(simulation.haptic_record());
     if (simulation.physics_due_last_tick()) file.append(simulation.physics_record());
     if (simulation.frame_due_last_tick()) {

@@ -141,6 +141,26 @@ TEST_F(ScenarioFile, BodyOfTwoKindsIsRefused) {
   expect_refused("/body/mesh={\"file\": \"a.msh\"}", {"/body", "has 2 of mesh, shape and surface"});
 }
 
+TEST_F(ScenarioFile, WarnsOfFlowThatCanCreateEnergy) {
+  // Warnings about the flow that settings add to the scene.
+  const auto count = [&](std::vector<std::string> settings) {
+    settings.push_back("/material/plasticity/enabled=true");
+    int found = 0;
+    for (const std::string& warning : load(settings).warnings)
+      found += warning.find("create energy") != std::string::npos ? 1 : 0;
+    return found;
+  };
+  const std::string literal = "/material/plasticity/form=literal";
+  EXPECT_EQ(count({literal, "/material/plasticity/creep_per_s=999"}), 0);  // c h = 0.999 at 1 ms
+  EXPECT_EQ(count({literal, "/material/plasticity/creep_per_s=1001"}), 1);
+  EXPECT_EQ(count({"/material/plasticity/creep_per_s=1001"}), 0);  // the rate form takes 1 − e^{−c h}
+  const std::vector<std::string> flat = {"/material/effective_medium/aspect=0.1",
+                                         "/material/effective_medium/orientation=aligned"};
+  EXPECT_EQ(count(flat), 1);
+  EXPECT_EQ(count({flat[0]}), 0);
+  EXPECT_EQ(count({flat[0], flat[1], "/material/plasticity/deviatoric=false"}), 0);
+}
+
 TEST(FindNearest, IsByEditDistanceAndSilentWhenNothingIsNear) {
   const std::vector<std::string> keys = {"youngs_modulus_Pa", "density_kg_per_m3"};
   EXPECT_EQ(find_nearest("youngs_modulus", keys), "youngs_modulus_Pa");

@@ -129,6 +129,16 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(failure["bound"], 0.9999)
         self.assertLessEqual(failure["value"], 0.9999)
         self.assertAlmostEqual(last, 0.001 * failure["tick"], delta=0.0015)
+        # The last frame is where a run ends that stops a tick before.
+        ticks = round(last / 0.001)
+        code, _, error = self.call("run", "scene.json", "-o", "before.h5", "--set", "/dynamics/min_volume_ratio=0.9999",
+                                   "--set", f"/trace/duration_s={0.001 * ticks}")
+        self.assertEqual(code, 0, error)
+        with h5py.File(self.folder / "out.h5") as failed, h5py.File(self.folder / "before.h5") as whole:
+            frames = [file["frames"][max(file["frames"])] for file in (failed, whole)]
+            self.assertEqual([frame.attrs["tick"] for frame in frames], [ticks, ticks])
+            for name in ("position", "plastic_strain"):
+                self.assertTrue((frames[0][name][()] == frames[1][name][()]).all(), name)
 
     def test_4_a_place_that_cannot_be_written(self):
         code, _, error = self.call("run", "scene.json", "-o", "no/such/folder/out.h5")
