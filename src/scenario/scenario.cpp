@@ -199,8 +199,7 @@ void check_solid(Scenario& s) {
       p.model == solid::StrainModel::neo_hookean || p.element == solid::ElementKind::p1_nodal;
   const material::EffectiveMedium& medium = s.params.moisture.medium;
   if (needs_isotropy && s.params.moisture.law == material::MoistureLaw::effective_medium &&
-      s.params.moisture.softens_elasticity && medium.orientation == material::Orientation::aligned &&
-      medium.aspect != 1.0)
+      s.params.moisture.softens_elasticity && !material::is_isotropic(medium))
     throw InputError(s.file,
                      p.model == solid::StrainModel::neo_hookean ? "/dynamics/model" : "/dynamics/element",
                      "takes isotropic stiffness only, but the pores are aligned spheroids",

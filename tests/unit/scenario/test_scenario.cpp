@@ -161,6 +161,20 @@ TEST_F(ScenarioFile, WarnsOfFlowThatCanCreateEnergy) {
   EXPECT_EQ(count({flat[0], flat[1], "/material/plasticity/deviatoric=false"}), 0);
 }
 
+TEST_F(ScenarioFile, LawOfIsotropicClayTakesEverySchemeThatLeavesItIsotropic) {
+  const std::vector<std::string> flat = {"/dynamics/model=neo_hookean", "/material/plasticity/enabled=false",
+                                         "/material/effective_medium/aspect=0.1",
+                                         "/material/effective_medium/orientation=aligned"};
+  ARGIL_EXPECT_THROW_WITH(load(flat), InputError, "takes isotropic stiffness only");
+  for (const char* other :
+       {"/material/effective_medium/scheme=voigt",  // knows no shape
+        "/material/effective_medium/orientation=random", "/material/effective_medium/aspect=1"}) {
+    std::vector<std::string> settings = flat;
+    settings.emplace_back(other);
+    EXPECT_NO_THROW(load(settings)) << other;
+  }
+}
+
 TEST(FindNearest, IsByEditDistanceAndSilentWhenNothingIsNear) {
   const std::vector<std::string> keys = {"youngs_modulus_Pa", "density_kg_per_m3"};
   EXPECT_EQ(find_nearest("youngs_modulus", keys), "youngs_modulus_Pa");
