@@ -71,9 +71,10 @@ struct Moisture {
 /// Plastic flow in additive strain: after Müller and Gross 2004 in rate form or to the letter, or rate
 /// independent.
 enum class FlowForm {
-  rate,     ///< 1 − e^{−c h} of the elastic strain
-  literal,  ///< c h of it
-  j2,       ///< radial return of its deviator to the yield norm [Wilkins1964]; takes no creep rate
+  rate,           ///< 1 − e^{−c h} of the elastic strain
+  rate_to_yield,  ///< the same, no further than to the yield norm
+  literal,        ///< c h of it
+  j2,             ///< radial return of its deviator to the yield norm [Wilkins1964]; takes no creep rate
 };
 enum class StrainNorm { frobenius, voigt6 };
 

@@ -1,5 +1,8 @@
 #include "material/plasticity.h"
 
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
 #include <cmath>
 
 #include "base/mandel.h"
@@ -21,31 +24,57 @@ Vec6 deviator(Vec6 e) {
 
 /// Share of the elastic strain that flows in a step.
 double compute_flow(const Plasticity& law, double step_s, double elastic_norm, double yield) {
+  const double to_yield = 1.0 - yield / elastic_norm;
   switch (law.form) {
     case FlowForm::rate:
       return -std::expm1(-law.creep_per_s * step_s);
+    case FlowForm::rate_to_yield:
+      return std::min(-std::expm1(-law.creep_per_s * step_s), to_yield);
     case FlowForm::literal:
       return law.creep_per_s * step_s;
     case FlowForm::j2:
       break;
   }
-  return 1.0 - yield / elastic_norm;
+  return to_yield;
+}
+
+/// Share f ≤ `flow` at which ‖before + f q‖ reaches `max`: 0 when it lies there already.
+double shorten_to_cap(const Vec6& before, const Vec6& q, double max, double flow) {
+  const double a = q.squaredNorm();
+  const double b = before.dot(q);
+  const double room = max * max - before.squaredNorm();
+  if (!(room > 0.0)) return 0.0;
+  return std::min(flow, (std::sqrt(b * b + a * room) - b) / a);
 }
 
 }  // namespace
 
-Vec6 compute_plastic_strain(const Vec6& strain, const Vec6& plastic_strain, double yield,
+Vec6 compute_plastic_strain(const Vec6& strain, const Vec6& plastic_strain, const FlowPoint& point,
                             const Plasticity& law, double step_s) {
   Vec6 elastic = strain - plastic_strain;
   const bool is_j2 = law.form == FlowForm::j2;
-  if (law.deviatoric || is_j2) elastic = deviator(elastic);
+  const bool follows_stress = law.deviatoric && !is_j2 && point.direction;
+  if (follows_stress)
+    elastic = *point.direction * elastic;
+  else if (law.deviatoric || is_j2)
+    elastic = deviator(elastic);
   const double elastic_norm = compute_norm(elastic, is_j2 ? StrainNorm::frobenius : law.norm);
-  if (!(elastic_norm > yield)) return plastic_strain;
-  const double flow = compute_flow(law, step_s, elastic_norm, yield);
+  if (!(elastic_norm > point.yield)) return plastic_strain;
+  const double flow = compute_flow(law, step_s, elastic_norm, point.yield);
   Vec6 after = plastic_strain + flow * elastic;
   const double norm = compute_norm(after, law.norm);
-  if (norm > law.max) after *= law.max / norm;
-  return after;
+  if (!(norm > law.max)) return after;
+  if (follows_stress)
+    return plastic_strain + shorten_to_cap(plastic_strain, elastic, law.max, flow) * elastic;
+  return after * (law.max / norm);
+}
+
+Mat6 make_flow_direction(const Mat6& C) {
+  Mat6 direction;
+  for (int k = 0; k < 6; ++k) direction.col(k) = deviator(C.col(k));
+  Mat6 shape = direction;  // dev C dev
+  for (int k = 0; k < 6; ++k) shape.row(k) = deviator(Vec6(direction.row(k).transpose())).transpose();
+  return direction / Eigen::SelfAdjointEigenSolver<Mat6>(shape, Eigen::EigenvaluesOnly).eigenvalues()(5);
 }
 
 double compute_clay_weight(double r, const ClayKernel& kernel) {

@@ -182,10 +182,12 @@ void bind_material(Binder& b, sim::Params& p) {
             "Flow keeps the volume, and only the deviator yields.");
   b.choice<material::FlowForm>("/material/plasticity/form", y.form,
                                {{material::FlowForm::rate, "rate"},
+                                {material::FlowForm::rate_to_yield, "rate_to_yield"},
                                 {material::FlowForm::literal, "literal"},
                                 {material::FlowForm::j2, "j2"}},
-                               "Flow of 1 − e^{−c h} or the literal c h of the elastic strain; or j2: radial "
-                               "return to the yield norm, rate independent.");
+                               "Flow of 1 − e^{−c h} of the elastic strain, whose last step may pass the "
+                               "yield norm; the same no further than to it, whatever the step; the literal "
+                               "c h; or j2: radial return to the yield norm, rate independent.");
   b.choice<material::StrainNorm>(
       "/material/plasticity/norm", y.norm,
       {{material::StrainNorm::frobenius, "frobenius"}, {material::StrainNorm::voigt6, "voigt6"}},

@@ -241,12 +241,14 @@ Json probe_plastic_update(Case& c) {
   law.max = c.not_negative("max");
   law.deviatoric = c.flag("deviatoric", false);
   using material::FlowForm;
-  constexpr std::array<FlowForm, 3> kForms = {FlowForm::rate, FlowForm::literal, FlowForm::j2};
-  law.form = kForms[c.word("form", {"rate", "literal", "j2"}, 0)];
+  constexpr std::array<FlowForm, 4> kForms = {FlowForm::rate, FlowForm::rate_to_yield, FlowForm::literal,
+                                              FlowForm::j2};
+  law.form = kForms[c.word("form", {"rate", "rate_to_yield", "literal", "j2"}, 0)];
   law.norm = c.word("norm", {"frobenius", "voigt6"}, 0) == 0 ? material::StrainNorm::frobenius
                                                              : material::StrainNorm::voigt6;
-  const Vec6 after = material::compute_plastic_strain(strain, plastic, c.not_negative("yield"), law,
-                                                      c.not_negative("step_s", "s"));
+  const material::FlowPoint point{c.not_negative("yield"), nullptr};
+  const Vec6 after =
+      material::compute_plastic_strain(strain, plastic, point, law, c.not_negative("step_s", "s"));
   if (as_matrix) return {{"plastic_strain", to_json(from_mandel(after))}};
   return {{"plastic_strain", std::vector<double>(after.data(), after.data() + 6)}};
 }

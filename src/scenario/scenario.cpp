@@ -184,6 +184,12 @@ void check_pore_axes(Scenario& s) {
                          "water leaves this clay isotropic (moisture law, scheme and aspect)");
 }
 
+/// Do aligned pores give the wet clay a preferred axis?
+bool is_anisotropic(const material::Moisture& m) {
+  return m.law == material::MoistureLaw::effective_medium && m.softens_elasticity &&
+         !material::is_isotropic(m.medium);
+}
+
 /// What the elements and laws cannot do together.
 void check_solid(Scenario& s) {
   const solid::SolidParams& p = s.params.solid;
@@ -197,9 +203,7 @@ void check_solid(Scenario& s) {
         "the body turns (results/verification); newton does not");
   const bool needs_isotropy =
       p.model == solid::StrainModel::neo_hookean || p.element == solid::ElementKind::p1_nodal;
-  const material::EffectiveMedium& medium = s.params.moisture.medium;
-  if (needs_isotropy && s.params.moisture.law == material::MoistureLaw::effective_medium &&
-      s.params.moisture.softens_elasticity && !material::is_isotropic(medium))
+  if (needs_isotropy && is_anisotropic(s.params.moisture))
     throw InputError(s.file,
                      p.model == solid::StrainModel::neo_hookean ? "/dynamics/model" : "/dynamics/element",
                      "takes isotropic stiffness only, but the pores are aligned spheroids",
@@ -231,17 +235,20 @@ void check_plasticity(Scenario& s) {
   if (law.form == material::FlowForm::j2 && !(law.deviatoric && law.norm == material::StrainNorm::frobenius))
     throw InputError(s.file, place, "j2 is a law of the deviator's Frobenius norm",
                      "set deviatoric to true and norm to \"frobenius\"");
-  const double step = s.params.rates.physics_period_ticks * s.params.rates.haptic_period;
-  if (law.form == material::FlowForm::literal && law.creep_per_s * step > 1.0)
-    s.warnings.push_back(s.file + ": " + place +
-                         ": literal flow takes more than the whole strain in a step (creep_per_s times the "
-                         "physics step is above 1) and can create energy; shorten the step, or take rate");
-  const material::Moisture& m = s.params.moisture;
-  if (law.deviatoric && m.law == material::MoistureLaw::effective_medium && m.softens_elasticity &&
-      !material::is_isotropic(m.medium))
-    s.warnings.push_back(s.file +
-                         ": /material/plasticity/deviatoric: flow along the deviator can create "
-                         "energy in clay whose stiffness has a preferred axis; set it to false");
+  if (law.form == material::FlowForm::j2 && is_anisotropic(s.params.moisture))
+    throw InputError(s.file, place, "j2 is a law of isotropic clay, but the pores are aligned spheroids",
+                     "take rate_to_yield, or orientation random");
+  const double flow = law.creep_per_s * s.params.rates.physics_period_ticks * s.params.rates.haptic_period;
+  if (law.form != material::FlowForm::literal || !(flow > 1.0)) return;
+  if (!(flow <= 2.0))
+    throw InputError(s.file, place,
+                     "literal flow of creep_per_s times the physics step, " + Json(flow).dump() +
+                         ", of the elastic strain creates energy in every step (allowed: [0, 2])",
+                     "shorten the step or lower creep_per_s, or take rate");
+  s.warnings.push_back(
+      s.file + ": " + place +
+      ": literal flow takes more than the whole elastic strain in a step (creep_per_s times "
+      "the physics step is above 1), which then changes sign; shorten the step, or take rate");
 }
 
 void check_combinations(Scenario& s) {

@@ -36,6 +36,8 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
   m_x_before = m_state.solid.x;
   m_v_before = m_state.solid.v;
   m_dissipation.setZero(m_solid.elements().num_points());
+  if (!m_moisture.is_isotropic() && params.plasticity.enabled)
+    m_flow_direction.resize(static_cast<std::size_t>(m_body.mesh.num_tets()));
   m_is_moved = std::any_of(m_body.supports.begin(), m_body.supports.end(),
                            [](const solid::Support& s) { return s.displacement.norm() > 0.0; });
   StepStatus rest = m_solid.update_kinematics(m_state.solid.x, 0);
@@ -73,10 +75,13 @@ void Simulation::apply_plastic_flow(double step_s) {
   TensorField& plastic = m_state.solid.plastic_strain;
   parallel_for(plastic.cols(), m_params.threads, [&](std::ptrdiff_t p) {
     const int point = static_cast<int>(p);
-    const double yield = m_solid.material(m_solid.elements().tet_of_point(point)).yield;
+    const int tet = m_solid.elements().tet_of_point(point);
+    const material::FlowPoint flow{
+        m_solid.material(tet).yield,
+        m_flow_direction.empty() ? nullptr : &m_flow_direction[static_cast<std::size_t>(tet)]};
     const Vec6 before = plastic.col(p);
     const Vec6 after =
-        material::compute_plastic_strain(m_solid.strain().col(p), before, yield, m_params.plasticity, step_s);
+        material::compute_plastic_strain(m_solid.strain().col(p), before, flow, m_params.plasticity, step_s);
     m_dissipation(p) = 0.0;
     if ((after.array() == before.array()).all()) return;
     // At fixed strain, the elastic energy that flow releases is what it dissipates.
@@ -105,8 +110,10 @@ void Simulation::refresh_material(int tet) {
   if (m_moisture.is_isotropic()) return;
   const Vec3 axis =
       m_body.pore_axis.cols() > 0 ? Vec3(m_body.pore_axis.col(tet)) : m_params.moisture.medium.axis;
-  m_solid.set_anisotropic_stiffness(
-      tet, has_own_modulus ? m_moisture.stiffness_at(S, axis, E) : m_moisture.stiffness_at(S, axis));
+  const Mat6 C = has_own_modulus ? m_moisture.stiffness_at(S, axis, E) : m_moisture.stiffness_at(S, axis);
+  m_solid.set_anisotropic_stiffness(tet, C);
+  if (!m_flow_direction.empty())
+    m_flow_direction[static_cast<std::size_t>(tet)] = material::make_flow_direction(C);
 }
 
 /// Brings the solid up to date with every tet whose saturation moved by more than `tolerance` since last

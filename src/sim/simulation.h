@@ -114,8 +114,9 @@ class Simulation {
   Points m_load_force;  // 3×n, constant
   Points m_external_force;
   Points m_x_before, m_v_before;
-  Field m_dissipation;                                      // of each point in the last physics step [J]
-  bool m_is_moved = false;                                  // some support moves
+  std::vector<Mat6> m_flow_direction;  // per tet: B of plastic flow; empty: isotropic stiffness
+  Field m_dissipation;                 // of each point in the last physics step [J]
+  bool m_is_moved = false;             // some support moves
   double m_rest_energy = 0.0, m_rest_plastic_strain = 0.0;  // of the body while it is at rest
   StageObserver* m_observer = nullptr;
 };

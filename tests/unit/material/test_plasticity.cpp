@@ -32,8 +32,8 @@ TEST(PlasticFlow, DoesNotHappenBelowTheYieldNorm) {
   const Plasticity law = make_law();
   const Vec6 before = make_strain(1, 0.1);
   const Vec6 direction = make_strain(2, 1.0);
-  EXPECT_EQ(compute_plastic_strain(before + 0.01999 * direction, before, law.yield, law, 0.01), before);
-  EXPECT_NE(compute_plastic_strain(before + 0.02001 * direction, before, law.yield, law, 0.01), before);
+  EXPECT_EQ(compute_plastic_strain(before + 0.01999 * direction, before, {law.yield}, law, 0.01), before);
+  EXPECT_NE(compute_plastic_strain(before + 0.02001 * direction, before, {law.yield}, law, 0.01), before);
 }
 
 TEST(PlasticFlow, InRateFormRelaxesHeldStrainExponentially) {
@@ -43,8 +43,38 @@ TEST(PlasticFlow, InRateFormRelaxesHeldStrainExponentially) {
   for (const int steps : {1, 7, 100}) {
     Vec6 plastic = Vec6::Zero();
     for (int i = 0; i < steps; ++i)
-      plastic = compute_plastic_strain(strain, plastic, law.yield, law, 0.1 / steps);
+      plastic = compute_plastic_strain(strain, plastic, {law.yield}, law, 0.1 / steps);
     EXPECT_LT((plastic - (1.0 - std::exp(-1.0)) * strain).norm(), 1e-15 * steps);
+  }
+}
+
+TEST(PlasticFlow, ToYieldStopsThereHoweverTheTimeIsCut) {
+  // ‖ε_e‖ falls as e^{−ct} until it is the yield norm, reached at t = ln(15)/c, and stays.
+  Plasticity law = make_law();
+  law.form = FlowForm::rate_to_yield;
+  const Vec6 strain = make_strain(3, 0.3);
+  for (const double time : {0.1, 0.27, 0.28, 3.0}) {
+    const double left = std::max(0.3 * std::exp(-10.0 * time), law.yield);
+    for (const int steps : {1, 7, 100}) {
+      Vec6 plastic = Vec6::Zero();
+      for (int i = 0; i < steps; ++i)
+        plastic = compute_plastic_strain(strain, plastic, {law.yield}, law, time / steps);
+      EXPECT_LT((strain - plastic - left / 0.3 * strain).norm(), 1e-15 * steps) << time << " " << steps;
+    }
+  }
+}
+
+TEST(PlasticFlow, InRateFormGoesPastTheYieldNormByLessThanAStep) {
+  // After the step that crosses it, yield e^{−c h} < ‖ε_e‖ ≤ yield: an error of first order in h.
+  const Plasticity law = make_law();
+  const Vec6 strain = make_strain(3, 0.3);
+  for (const double step : {0.05, 0.01, 0.001}) {
+    Vec6 plastic = Vec6::Zero();
+    for (int i = 0; i < 0.5 / step; ++i)
+      plastic = compute_plastic_strain(strain, plastic, {law.yield}, law, step);
+    const double left = (strain - plastic).norm();
+    EXPECT_LE(left, law.yield);
+    EXPECT_GT(left, law.yield * std::exp(-law.creep_per_s * step));
   }
 }
 
@@ -53,17 +83,17 @@ TEST(PlasticFlow, InLiteralFormIsForwardEuler) {
   law.form = FlowForm::literal;
   const Vec6 strain = make_strain(4, 0.1);
   const Vec6 before = make_strain(5, 0.03);
-  const Vec6 after = compute_plastic_strain(strain, before, law.yield, law, 0.014);
+  const Vec6 after = compute_plastic_strain(strain, before, {law.yield}, law, 0.014);
   EXPECT_LT((after - (before + 0.14 * (strain - before))).norm(), 1e-16);
 }
 
 TEST(PlasticFlow, StopsAtTheCap) {
   const Plasticity law = make_law();
   const Vec6 strain = make_strain(6, 2.0);
-  const Vec6 plastic = compute_plastic_strain(strain, Vec6::Zero(), law.yield, law, 10.0);
+  const Vec6 plastic = compute_plastic_strain(strain, Vec6::Zero(), {law.yield}, law, 10.0);
   EXPECT_NEAR(plastic.norm(), law.max, 1e-15);
   EXPECT_LT((plastic.normalized() - strain.normalized()).norm(), 1e-15);
-  EXPECT_LT((compute_plastic_strain(strain, plastic, law.yield, law, 10.0) - plastic).norm(), 1e-15);
+  EXPECT_LT((compute_plastic_strain(strain, plastic, {law.yield}, law, 10.0) - plastic).norm(), 1e-15);
 }
 
 TEST(PlasticFlow, WhenDeviatoricKeepsTheVolumeAndYieldsOnTheDeviator) {
@@ -71,9 +101,9 @@ TEST(PlasticFlow, WhenDeviatoricKeepsTheVolumeAndYieldsOnTheDeviator) {
   law.deviatoric = true;
   Vec6 pressure = Vec6::Zero();
   pressure.head<3>().setConstant(-0.4);
-  EXPECT_EQ(compute_plastic_strain(pressure, Vec6::Zero(), law.yield, law, 0.01), Vec6::Zero());
+  EXPECT_EQ(compute_plastic_strain(pressure, Vec6::Zero(), {law.yield}, law, 0.01), Vec6::Zero());
   const Vec6 strain = pressure + make_strain(8, 0.2);
-  const Vec6 after = compute_plastic_strain(strain, Vec6::Zero(), law.yield, law, 0.01);
+  const Vec6 after = compute_plastic_strain(strain, Vec6::Zero(), {law.yield}, law, 0.01);
   EXPECT_GT(after.norm(), 0.0);
   EXPECT_NEAR(after.head<3>().sum(), 0.0, 1e-16);
 }
@@ -91,11 +121,58 @@ TEST(PlasticFlow, WhenDeviatoricNeverCreatesEnergy) {
   };
   for (std::uint64_t i = 0; i < 2000; ++i) {
     const Vec6 strain = make_strain(100 + i, 0.3);
-    const Vec6 after = compute_plastic_strain(strain, plastic, law.yield, law, 0.05);
+    const Vec6 after = compute_plastic_strain(strain, plastic, {law.yield}, law, 0.05);
     EXPECT_LE(energy(strain - after), energy(strain - plastic) * (1.0 + 1e-14));
     EXPECT_LE(after.norm(), law.max * (1.0 + 1e-15));
     plastic = after;
   }
+}
+
+/// Clay with a preferred axis: soft along it, and strongly coupled to the volume.
+Mat6 make_layered_stiffness() {
+  Mat6 C = Mat6::Zero();
+  C.topLeftCorner<3, 3>() << 9, 5, 1, 5, 9, 1, 1, 1, 2;
+  C.diagonal().tail<3>() << 1.5, 1.5, 4;
+  const Mat3 Q = Eigen::AngleAxisd(0.7, Vec3(2, -1, 2) / 3.0).toRotationMatrix();
+  Mat6 turn;
+  for (int k = 0; k < 6; ++k) turn.col(k) = to_mandel(Q * from_mandel(Vec6::Unit(k)) * Q.transpose());
+  return turn * C * turn.transpose();
+}
+
+TEST(PlasticFlow, AlongTheStressDeviatorCreatesNoEnergyInAnisotropicClay) {
+  // ½ ε_e:C:ε_e falls for every f in [0, 2]; along the strain's deviator it does not.
+  const Mat6 C = make_layered_stiffness();
+  const Mat6 direction = make_flow_direction(C);
+  Plasticity law = make_law();
+  law.deviatoric = true;
+  law.max = 0.1;
+  int created = 0;
+  for (const FlowForm form : {FlowForm::rate, FlowForm::rate_to_yield, FlowForm::literal}) {
+    law.form = form;
+    law.creep_per_s = form == FlowForm::literal ? 39.9 : 20.0;
+    Vec6 plastic = Vec6::Zero();
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+      const Vec6 strain = plastic + make_strain(100 + i, 0.3);
+      const auto energy = [&](const Vec6& after) { return 0.5 * (strain - after).dot(C * (strain - after)); };
+      const Vec6 after = compute_plastic_strain(strain, plastic, {law.yield, &direction}, law, 0.05);
+      const Vec6 along_strain = compute_plastic_strain(strain, plastic, {law.yield}, law, 0.05);
+      EXPECT_LE(energy(after), energy(plastic) * (1.0 + 1e-14));
+      EXPECT_NEAR(after.head<3>().sum(), 0.0, 1e-15);  // rounding of up to ten steps
+      EXPECT_LE(after.norm(), law.max * (1.0 + 1e-14));
+      created += energy(along_strain) > energy(plastic) ? 1 : 0;
+      plastic = i % 10 == 0 ? Vec6(Vec6::Zero()) : after;
+    }
+  }
+  EXPECT_GT(created, 100);
+}
+
+TEST(FlowDirection, OfAnIsotropicStiffnessIsTheDeviator) {
+  Mat6 C = 2.0 * 3e4 * Mat6::Identity();
+  C.topLeftCorner<3, 3>().array() += 7e4;
+  const Vec6 e = make_strain(11, 0.2);
+  Vec6 expected = e;
+  expected.head<3>().array() -= e.head<3>().sum() / 3.0;
+  EXPECT_LT((make_flow_direction(C) * e - expected).norm(), 1e-16);
 }
 
 TEST(PlasticFlow, InFrobeniusNormDoesNotSeeTheFrameAndInVoigt6NormDoes) {
@@ -109,7 +186,7 @@ TEST(PlasticFlow, InFrobeniusNormDoesNotSeeTheFrameAndInVoigt6NormDoes) {
   Vec6 turned = Vec6::Zero();
   turned(5) = kSqrt2 * gamma;
   const auto flows = [&](const Vec6& e) {
-    return compute_plastic_strain(e, Vec6::Zero(), law.yield, law, 0.01).norm() > 0.0;
+    return compute_plastic_strain(e, Vec6::Zero(), {law.yield}, law, 0.01).norm() > 0.0;
   };
   EXPECT_TRUE(flows(straight));
   EXPECT_TRUE(flows(turned));
@@ -148,7 +225,7 @@ TEST(J2Flow, FollowsAShearCycleOfPerfectPlasticity) {
       Vec6 strain = Vec6::Zero();
       strain(5) = gamma / kSqrt2;
       const Vec6 before = plastic;
-      plastic = compute_plastic_strain(strain, plastic, kYield, make_j2(), 0.0);
+      plastic = compute_plastic_strain(strain, plastic, {kYield}, make_j2(), 0.0);
       EXPECT_NEAR(2.0 * kMu * (strain - plastic)(5) / kSqrt2, tau, 1e-15) << k;
       if (k > 5 * steps) dissipated += 2.0 * kMu * (strain - plastic).dot(plastic - before);
     }
@@ -178,10 +255,10 @@ TEST(J2Flow, FollowsAUniaxialCycleBetweenPlusAndMinusTheTensileStrength) {
     for (int k = 0; k < 60; ++k) {
       const double lateral = 0.5 * (low + high);
       strain.head<3>() = Vec3(axial, lateral, lateral);
-      const Vec6 after = compute_plastic_strain(strain, plastic, kYield, make_j2(), 0.0);
+      const Vec6 after = compute_plastic_strain(strain, plastic, {kYield}, make_j2(), 0.0);
       (stress(strain - after)(1) > 0.0 ? high : low) = lateral;
     }
-    plastic = compute_plastic_strain(strain, plastic, kYield, make_j2(), 0.0);
+    plastic = compute_plastic_strain(strain, plastic, {kYield}, make_j2(), 0.0);
     EXPECT_NEAR(stress(strain - plastic)(0), expected, 1e-14) << next;
     EXPECT_NEAR(plastic.head<3>().sum(), 0.0, 1e-16);
   }
@@ -189,23 +266,23 @@ TEST(J2Flow, FollowsAUniaxialCycleBetweenPlusAndMinusTheTensileStrength) {
 
 TEST(J2Flow, ASecondUpdateIsNone) {
   const Vec6 strain = make_strain(6, 0.3);
-  const Vec6 once = compute_plastic_strain(strain, Vec6::Zero(), kYield, make_j2(), 0.0);
-  EXPECT_LT((compute_plastic_strain(strain, once, kYield, make_j2(), 0.0) - once).norm(), 1e-16);
+  const Vec6 once = compute_plastic_strain(strain, Vec6::Zero(), {kYield}, make_j2(), 0.0);
+  EXPECT_LT((compute_plastic_strain(strain, once, {kYield}, make_j2(), 0.0) - once).norm(), 1e-16);
 }
 
 TEST(EveryFlow, TurnsWithTheBody) {
   const Mat3 Q = Eigen::AngleAxisd(0.9, Vec3(1, 2, -2) / 3.0).toRotationMatrix();
   const auto turn = [&](const Vec6& e) { return to_mandel(Q * from_mandel(e) * Q.transpose()); };
-  for (const FlowForm form : {FlowForm::rate, FlowForm::literal, FlowForm::j2})
+  for (const FlowForm form : {FlowForm::rate, FlowForm::rate_to_yield, FlowForm::literal, FlowForm::j2})
     for (const bool deviatoric : {true, false}) {
       Plasticity law = make_law();
       law.form = form;
       law.deviatoric = deviatoric || form == FlowForm::j2;
       const Vec6 strain = make_strain(7, 0.2);
       const Vec6 before = make_strain(8, 0.05);
-      const Vec6 after = compute_plastic_strain(strain, before, law.yield, law, 0.01);
+      const Vec6 after = compute_plastic_strain(strain, before, {law.yield}, law, 0.01);
       EXPECT_LT(
-          (compute_plastic_strain(turn(strain), turn(before), law.yield, law, 0.01) - turn(after)).norm(),
+          (compute_plastic_strain(turn(strain), turn(before), {law.yield}, law, 0.01) - turn(after)).norm(),
           1e-15);
     }
 }

@@ -141,24 +141,30 @@ TEST_F(ScenarioFile, BodyOfTwoKindsIsRefused) {
   expect_refused("/body/mesh={\"file\": \"a.msh\"}", {"/body", "has 2 of mesh, shape and surface"});
 }
 
-TEST_F(ScenarioFile, WarnsOfFlowThatCanCreateEnergy) {
-  // Warnings about the flow that settings add to the scene.
-  const auto count = [&](std::vector<std::string> settings) {
-    settings.push_back("/material/plasticity/enabled=true");
+TEST_F(ScenarioFile, LiteralFlowOfMoreThanTheElasticStrainIsWarnedOfAndOfTwiceThatRefused) {
+  const auto warnings = [&](const std::string& form, int creep) {
     int found = 0;
-    for (const std::string& warning : load(settings).warnings)
-      found += warning.find("create energy") != std::string::npos ? 1 : 0;
+    for (const std::string& warning :
+         load({"/material/plasticity/enabled=true", "/material/plasticity/form=" + form,
+               "/material/plasticity/creep_per_s=" + std::to_string(creep)})
+             .warnings)
+      found += warning.find("more than the whole elastic strain") != std::string::npos ? 1 : 0;
     return found;
   };
-  const std::string literal = "/material/plasticity/form=literal";
-  EXPECT_EQ(count({literal, "/material/plasticity/creep_per_s=999"}), 0);  // c h = 0.999 at 1 ms
-  EXPECT_EQ(count({literal, "/material/plasticity/creep_per_s=1001"}), 1);
-  EXPECT_EQ(count({"/material/plasticity/creep_per_s=1001"}), 0);  // the rate form takes 1 − e^{−c h}
-  const std::vector<std::string> flat = {"/material/effective_medium/aspect=0.1",
+  EXPECT_EQ(warnings("literal", 999), 0);  // c h = 0.999 at 1 ms
+  EXPECT_EQ(warnings("literal", 1001), 1);
+  EXPECT_EQ(warnings("literal", 1999), 1);
+  EXPECT_EQ(warnings("rate", 3000), 0);  // takes 1 − e^{−c h}
+  ARGIL_EXPECT_THROW_WITH(warnings("literal", 2001), InputError, "/material/plasticity/form");
+  ARGIL_EXPECT_THROW_WITH(warnings("literal", 2001), InputError, "creates energy in every step");
+}
+
+TEST_F(ScenarioFile, J2IsALawOfIsotropicClay) {
+  const std::vector<std::string> flat = {"/material/plasticity/enabled=true", "/material/plasticity/form=j2",
+                                         "/material/effective_medium/aspect=0.1",
                                          "/material/effective_medium/orientation=aligned"};
-  EXPECT_EQ(count(flat), 1);
-  EXPECT_EQ(count({flat[0]}), 0);
-  EXPECT_EQ(count({flat[0], flat[1], "/material/plasticity/deviatoric=false"}), 0);
+  ARGIL_EXPECT_THROW_WITH(load(flat), InputError, "j2 is a law of isotropic clay");
+  EXPECT_NO_THROW(load({flat[0], flat[1], flat[2]}));
 }
 
 TEST_F(ScenarioFile, LawOfIsotropicClayTakesEverySchemeThatLeavesItIsotropic) {

@@ -93,6 +93,29 @@ TEST_F(PulledBox, OfRateFlowRelaxesAtItsRateWhateverTheStep) {
   }
 }
 
+TEST_F(PulledBox, OfRateFlowToYieldEndsThereWhateverTheStepAndOfRateFlowPastItToFirstOrder) {
+  // At held strain flow ends with the tensile strain ε_y that the yield norm allows, ½ E ε_y² stored. The
+  // rate form's last step relaxes by up to e^{−c h} too far.
+  const double strain_at_yield = 0.003;
+  const double yield = strain_at_yield * 2.0 * (1.0 + kNu) / std::sqrt(6.0);
+  const double stored = 0.5 * kYoungsModulus * strain_at_yield * strain_at_yield * kVolume;
+  const auto run_form = [&](const std::string& form, int period) {
+    return run(R"("form": ")" + form + R"(", "yield": )" + std::to_string(yield) +
+                   R"(, "creep_per_s": 50, "max": 1)",
+               period)
+        .back()
+        .elastic_energy;
+  };
+  for (const int period : {10, 5, 2, 1}) {
+    EXPECT_NEAR(run_form("rate_to_yield", period), stored, 0.004 * stored) << period;
+    // Flow of the deviator's share f takes ⅔(1+ν) f of the tensile stress.
+    const double left = 1.0 - 2.0 / 3.0 * (1.0 + kNu) * (1.0 - std::exp(-50.0 * period * 1e-3));
+    const double rate = run_form("rate", period);
+    EXPECT_LT(rate, 0.98 * stored) << period;
+    EXPECT_GT(rate, left * left * stored) << period;
+  }
+}
+
 TEST_F(PulledBox, MayNotMixJ2WithAnotherNormOrWithFlowOfTheVolume) {
   const std::string j2 = R"("form": "j2", "yield": 0.01, "max": 1)";
   expect_refused(j2 + R"(, "norm": "voigt6")", {"/material/plasticity/form", "j2", "Frobenius", "norm"});
