@@ -201,6 +201,15 @@ void check_solid(Scenario& s) {
         s.file +
         ": /dynamics/iteration: one linearised solve with bdf2 or newmark gains energy where "
         "the body turns (results/verification); newton does not");
+  if (s.mode == Mode::equilibrium && p.integrator != solid::Integrator::backward_euler)
+    s.warnings.push_back(
+        s.file +
+        ": /dynamics/integrator has no effect: an equilibrium (/dynamics/mode static) has no "
+        "step in time");
+  if (s.mode == Mode::dynamic && p.integrator == solid::Integrator::symplectic_euler &&
+      p.iteration == solid::Iteration::newton)
+    s.warnings.push_back(
+        s.file + ": /dynamics/iteration has no effect: symplectic_euler is explicit and solves nothing");
   const bool needs_isotropy =
       p.model == solid::StrainModel::neo_hookean || p.element == solid::ElementKind::p1_nodal;
   if (needs_isotropy && is_anisotropic(s.params.moisture))

@@ -25,9 +25,13 @@ bool has_own_rotation(StrainModel model) {
   return model == StrainModel::corotational;
 }
 
-/// Inverse of the plastic stretch 1 + ε_p of the multiplicative split.
+/// Inverse of the plastic stretch of the multiplicative split: 1 + ε_p, scaled so that it has the volume
+/// 1 + tr ε_p. Flow that keeps the volume does so at any strain then; else, in nearly incompressible clay, it
+/// would create energy.
 Mat3 compute_inverse_plastic_stretch(const Vec6& plastic_strain) {
-  return (Mat3::Identity() + from_mandel(plastic_strain)).inverse();
+  const Mat3 stretch = Mat3::Identity() + from_mandel(plastic_strain);
+  const double volume = 1.0 + plastic_strain.head<3>().sum();
+  return std::cbrt(stretch.determinant() / volume) * stretch.inverse();
 }
 
 /// P of the neo-Hookean law at Fₑ, before the plastic pull-back.

@@ -36,7 +36,8 @@ Vec6 compute_stress(const Elasticity& e, const Vec6& elastic_strain);
 
 /// Energy per rest volume [J/m³] without the excess bulk modulus.
 /// linear, corotational: ½ ε_e:C:ε_e with ε_e = ε − ε_p. neo_hookean [Smith2018, without the logarithm]:
-/// ½μ(tr FₑᵀFₑ − 3) − μ(J − 1) + ½(λ + μ)(J − 1)², J = det Fₑ, Fₑ = F(1 + ε_p)⁻¹.
+/// ½μ(tr FₑᵀFₑ − 3) − μ(J − 1) + ½(λ + μ)(J − 1)², J = det Fₑ, Fₑ = F F_p⁻¹, F_p = 1 + ε_p scaled to det F_p
+/// = 1 + tr ε_p.
 double compute_energy_density(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
                               const Elasticity& e);
 

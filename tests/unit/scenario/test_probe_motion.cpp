@@ -174,6 +174,36 @@ TEST(ProbeElement, StiffnessHasRankSixAndTheLinearModelsForceIsItTimesTheDisplac
     EXPECT_NEAR(at(result["force"], i / 3, i % 3), f(static_cast<int>(i)), 1e-11);
 }
 
+TEST(ProbeElement, StiffnessIsTheForcesSlope) {
+  // At a turned rest shape, and for neo_hookean also where it is strained, against central differences.
+  const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(2, -1, 2) / 3.0).toRotationMatrix();
+  const Mat3 strained = turn * Vec3(1.1, 1.05, 0.97).asDiagonal();
+  Eigen::Matrix<double, 3, 4> rest;
+  rest << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;
+  const auto probe = [](const std::string& model, const Eigen::Matrix<double, 3, 4>& x) {
+    Json points = Json::array();
+    for (int i = 0; i < 4; ++i) points.push_back({x(0, i), x(1, i), x(2, i)});
+    return probe_one("element", std::string("{") + kUnitTet + R"("model": ")" + model + R"(", "deformed": )" +
+                                    points.dump() + "}");
+  };
+  for (const auto& [model, F] : {std::pair<std::string, Mat3>{"corotational", turn},
+                                 {"neo_hookean", turn},
+                                 {"neo_hookean", strained}}) {
+    const Eigen::Matrix<double, 3, 4> x = F * rest;
+    const Json K = probe(model, x)["stiffness"];
+    for (std::size_t j = 0; j < 12; ++j) {
+      const double d = 1e-5;
+      Eigen::Matrix<double, 3, 4> step = Eigen::Matrix<double, 3, 4>::Zero();
+      step(static_cast<int>(j)) = d;
+      const Json plus = probe(model, x + step)["force"];
+      const Json minus = probe(model, x - step)["force"];
+      for (std::size_t i = 0; i < 12; ++i)
+        EXPECT_NEAR(at(K, i, j), (at(plus, i / 3, i % 3) - at(minus, i / 3, i % 3)) / (2 * d), 1e-6 * 1000)
+            << model << " " << i << " " << j;
+    }
+  }
+}
+
 void expect_refused(const std::string& kernel, const std::string& cases, std::vector<std::string> parts) {
   for (const std::string& part : parts)
     ARGIL_EXPECT_THROW_WITH(run_probe(kernel, "{\"cases\": [" + cases + "]}"), InputError, part);

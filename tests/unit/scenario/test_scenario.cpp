@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "scenario/json_document.h"
 #include "support/scene_files.h"
@@ -24,6 +26,12 @@ class ScenarioFile : public testing::Test {
     std::vector<Setting> parsed;
     for (const std::string& text : settings) parsed.push_back(parse_setting(text));
     return load_scenario(file, parsed);
+  }
+  int count_warnings(const std::vector<std::string>& settings, const std::string& text) const {
+    const std::vector<std::string> warnings = load(settings).warnings;
+    return static_cast<int>(std::count_if(warnings.begin(), warnings.end(), [&](const std::string& warning) {
+      return warning.find(text) != std::string::npos;
+    }));
   }
   void expect_refused(const std::string& setting, const std::vector<std::string>& parts) const {
     for (const std::string& part : parts) ARGIL_EXPECT_THROW_WITH(load({setting}), InputError, part);
@@ -143,13 +151,9 @@ TEST_F(ScenarioFile, BodyOfTwoKindsIsRefused) {
 
 TEST_F(ScenarioFile, LiteralFlowOfMoreThanTheElasticStrainIsWarnedOfAndOfTwiceThatRefused) {
   const auto warnings = [&](const std::string& form, int creep) {
-    int found = 0;
-    for (const std::string& warning :
-         load({"/material/plasticity/enabled=true", "/material/plasticity/form=" + form,
-               "/material/plasticity/creep_per_s=" + std::to_string(creep)})
-             .warnings)
-      found += warning.find("more than the whole elastic strain") != std::string::npos ? 1 : 0;
-    return found;
+    return count_warnings({"/material/plasticity/enabled=true", "/material/plasticity/form=" + form,
+                           "/material/plasticity/creep_per_s=" + std::to_string(creep)},
+                          "more than the whole elastic strain");
   };
   EXPECT_EQ(warnings("literal", 999), 0);  // c h = 0.999 at 1 ms
   EXPECT_EQ(warnings("literal", 1001), 1);
@@ -157,6 +161,21 @@ TEST_F(ScenarioFile, LiteralFlowOfMoreThanTheElasticStrainIsWarnedOfAndOfTwiceTh
   EXPECT_EQ(warnings("rate", 3000), 0);  // takes 1 − e^{−c h}
   ARGIL_EXPECT_THROW_WITH(warnings("literal", 2001), InputError, "/material/plasticity/form");
   ARGIL_EXPECT_THROW_WITH(warnings("literal", 2001), InputError, "creates energy in every step");
+}
+
+TEST_F(ScenarioFile, IntegratorsThatDoNotServeAreWarnedOf) {
+  const std::string newton = "/dynamics/iteration=newton";
+  const auto integrator = [](const char* name) { return std::string("/dynamics/integrator=") + name; };
+  EXPECT_EQ(count_warnings({integrator("bdf2")}, "gains energy"), 1);
+  EXPECT_EQ(count_warnings({integrator("newmark")}, "gains energy"), 1);
+  EXPECT_EQ(count_warnings({integrator("bdf2"), newton}, "gains energy"), 0);
+  EXPECT_EQ(count_warnings({integrator("bdf2"), "/dynamics/model=linear"}, "gains energy"), 0);
+  EXPECT_EQ(count_warnings({integrator("symplectic_euler"), newton}, "/dynamics/iteration has no effect"), 1);
+  EXPECT_EQ(count_warnings({integrator("symplectic_euler")}, "no effect"), 0);
+  EXPECT_EQ(count_warnings({integrator("newmark"), newton, "/dynamics/mode=static"},
+                           "/dynamics/integrator has no effect"),
+            1);
+  EXPECT_EQ(count_warnings({"/dynamics/mode=static"}, "no effect"), 0);
 }
 
 TEST_F(ScenarioFile, J2IsALawOfIsotropicClay) {

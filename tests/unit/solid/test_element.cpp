@@ -7,7 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 #include "base/rng.h"
+#include "material/plasticity.h"
 
 namespace argil::solid {
 namespace {
@@ -206,6 +210,57 @@ TEST(ComputeElementStiffness, HasTheSixRigidModesAndNoNegativeOnes) {
   EXPECT_LT(eigen.head<6>().cwiseAbs().maxCoeff(), 1e-13 * eigen(11));
   EXPECT_GT(eigen(6), 1e-3 * eigen(11));
 }
+
+Vec6 make_deviator(Vec6 e) {
+  e.head<3>().array() -= e.head<3>().sum() / 3.0;
+  return e;
+}
+
+TEST(NeoHookean, PlasticStrainWithoutTraceTakesNoVolumeHoweverLarge) {
+  // The body at its rest shape after ε_p: det Fₑ = 1/det F_p = 1/(1 + tr ε_p).
+  Rng rng(3, "plastic");
+  const Mat3 a = make_random_matrix(rng, 0.3);
+  const Vec6 e = to_mandel(0.5 * (a + a.transpose()));
+  const PointMotion rest = make_motion(StrainModel::neo_hookean, Mat3::Identity());
+  EXPECT_NEAR(compute_volume_change(StrainModel::neo_hookean, rest, make_deviator(e)), 0.0, 1e-15);
+  EXPECT_NEAR(compute_volume_change(StrainModel::neo_hookean, rest, e), 1.0 / (1.0 + e.head<3>().sum()) - 1.0,
+              1e-15);
+}
+
+class Dissipation : public testing::TestWithParam<StrainModel> {};
+
+TEST_P(Dissipation, OfFlowThatKeepsTheVolumeIsNeverNegative) {
+  // Second law, at held F: what flow takes from the elastic energy is lost. Also where λ is 100 μ.
+  const StrainModel model = GetParam();
+  Rng rng(7, "flow");
+  material::Plasticity law;
+  law.yield = 0.005;
+  law.creep_per_s = 20.0;
+  law.max = 0.3;
+  int flowed = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const double size = std::array{0.02, 0.1, 0.4}[static_cast<std::size_t>(i % 3)];
+    Mat3 F = Mat3::Identity();
+    Vec6 plastic;
+    for (int k = 0; k < 9; ++k) F(k) += size * rng.uniform(-1.0, 1.0);
+    for (int k = 0; k < 6; ++k) plastic(k) = size * rng.uniform(-1.0, 1.0);
+    plastic = make_deviator(plastic);
+    plastic *= std::min(1.0, law.max / plastic.norm());
+    if (F.determinant() < 0.1) continue;
+    const PointMotion motion = make_motion(model, F);
+    const Elasticity e{i % 2 == 0 ? 1.0 : 100.0, 1.0};
+    const Vec6 after = material::compute_plastic_strain(compute_strain(motion.F, motion.R), plastic,
+                                                        {law.yield}, law, 0.014);
+    const double before = compute_energy_density(model, motion, plastic, e);
+    EXPECT_LE(compute_energy_density(model, motion, after, e), before * (1.0 + 1e-13)) << i;
+    flowed += after != plastic ? 1 : 0;
+  }
+  EXPECT_GT(flowed, 5000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Dissipation,
+                         testing::Values(StrainModel::linear, StrainModel::corotational,
+                                         StrainModel::neo_hookean));
 
 }  // namespace
 }  // namespace argil::solid
