@@ -12,6 +12,7 @@ BoundingTree::BoundingTree(const Points& vertices, const Triangles& triangles) :
         (vertices.col(triangles(0, t)) + vertices.col(triangles(1, t)) + vertices.col(triangles(2, t))) / 3.0;
   m_order.resize(static_cast<std::size_t>(triangles.cols()));
   std::iota(m_order.begin(), m_order.end(), 0);
+  m_triangle_bounds.resize(m_order.size());
   m_nodes.reserve(m_order.size() + 1);
   m_nodes.emplace_back();
   split(0, 0, static_cast<int>(m_order.size()), centroids);
@@ -23,6 +24,7 @@ void BoundingTree::fit_all(const Points& x) {
   for (std::size_t n = m_nodes.size(); n-- > 0;) {
     Node& node = m_nodes[n];
     node.motion = -1.0;  // no motion summed so far: needs a fit
+    node.interval = -1;
     node.count > 0 ? fit_leaf(node, x, x) : fit_inner(node);
   }
 }
@@ -69,10 +71,9 @@ void BoundingTree::visit(int index, const Bounds& query, const Points& x_t0, con
   if (node.count > 0) {
     fit_leaf(node, x_t0, x_t1);
     if (!node.bounds.overlaps(query)) return;
-    for (int i = node.first; i < node.first + node.count; ++i) {
-      const int triangle = m_order[static_cast<std::size_t>(i)];
-      if (fit_triangle(triangle, x_t0, x_t1).overlaps(query)) triangles.push_back(triangle);
-    }
+    for (auto i = static_cast<std::size_t>(node.first); i < static_cast<std::size_t>(node.first + node.count);
+         ++i)
+      if (m_triangle_bounds[i].overlaps(query)) triangles.push_back(m_order[i]);
   } else {
     visit(node.first, query, x_t0, x_t1, triangles);
     visit(node.first + 1, query, x_t0, x_t1, triangles);
@@ -81,11 +82,15 @@ void BoundingTree::visit(int index, const Bounds& query, const Points& x_t0, con
 }
 
 void BoundingTree::fit_leaf(Node& node, const Points& x_t0, const Points& x_t1) {
-  if (node.motion == m_motion) return;
+  if (node.interval == m_interval) return;
   node.bounds = Bounds();
-  for (int i = node.first; i < node.first + node.count; ++i)
-    node.bounds.include(fit_triangle(m_order[static_cast<std::size_t>(i)], x_t0, x_t1));
+  for (auto i = static_cast<std::size_t>(node.first); i < static_cast<std::size_t>(node.first + node.count);
+       ++i) {
+    m_triangle_bounds[i] = fit_triangle(m_order[i], x_t0, x_t1);
+    node.bounds.include(m_triangle_bounds[i]);
+  }
   node.motion = m_motion;
+  node.interval = m_interval;
 }
 
 void BoundingTree::fit_inner(Node& node) {

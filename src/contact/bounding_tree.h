@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "base/types.h"
@@ -40,7 +41,10 @@ class BoundingTree {
   void fit_all(const Points& x);
 
   /// The vertices move on; none by more than `bound` along any axis [m].
-  void advance(double bound) { m_motion += bound; }
+  void advance(double bound) {
+    m_motion += bound;
+    ++m_interval;
+  }
 
   /// Box that holds the surface during the whole present motion.
   Bounds bounds() const { return current(m_nodes.front()); }
@@ -62,9 +66,10 @@ class BoundingTree {
  private:
   struct Node {
     Bounds bounds;
-    double motion = 0.0;  // m_motion when the box was fitted
-    int first = 0;        // leaf: first triangle in m_order; inner: index of the left child, right is next
-    int count = 0;        // leaf: number of triangles; inner: 0
+    double motion = 0.0;         // m_motion when the box was fitted
+    std::int64_t interval = -1;  // leaf: of its triangles' boxes
+    int first = 0;  // leaf: first triangle in m_order; inner: index of the left child, right is next
+    int count = 0;  // leaf: number of triangles; inner: 0
   };
   Bounds current(const Node& node) const {
     // The factor takes up the rounding of the sum of many motions.
@@ -100,8 +105,10 @@ class BoundingTree {
 
   Triangles m_triangles;
   std::vector<int> m_order;
-  std::vector<Node> m_nodes;  // children after their parent
+  std::vector<Bounds> m_triangle_bounds;  // in that order; of a leaf's last fit
+  std::vector<Node> m_nodes;              // children after their parent
   double m_motion = 0.0;
+  std::int64_t m_interval = 0;
 };
 
 }  // namespace argil::contact

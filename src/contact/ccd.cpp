@@ -33,8 +33,11 @@ double compute_extent(const PairPath& path) {
 /// Comparisons cannot tell where a point is that is not a number.
 bool is_finite(const PairPath& path) {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < 4; ++i) sum += 0.0 * path.t0[i] + 0.0 * path.t1[i];
-  return sum == Vec3::Zero();
+  for (std::size_t i = 0; i < 4; ++i) sum += path.t0[i] + path.t1[i];
+  if (std::isfinite(sum.sum())) return true;
+  for (std::size_t i = 0; i < 4; ++i)  // not so when the sum alone is too large
+    if (!path.t0[i].allFinite() || !path.t1[i].allFinite()) return false;
+  return true;
 }
 
 /// Number of points of the first feature; the others are the second's.
@@ -54,6 +57,15 @@ bool are_boxes_apart(PairKind kind, const PairPath& path) {
     high[side] = path.t0[i].cwiseMax(is_first ? path.t1[i] : high[side].cwiseMax(path.t1[i]).eval());
   }
   return (low[0].array() > high[1].array()).any() || (low[1].array() > high[0].array()).any();
+}
+
+/// can_meet for coordinates that are finite.
+bool passes_filter(PairKind kind, const PairPath& path) {
+  if (are_boxes_apart(kind, path)) return false;
+  const std::array<double, 4> c = compute_coplanarity(kind, path);
+  if (!std::isfinite(c[0] + c[1] + c[2] + c[3])) return true;  // products beyond the range of double
+  const double error = coplanarity_error_bound(path);
+  return *std::min_element(c.begin(), c.end()) <= error && *std::max_element(c.begin(), c.end()) >= -error;
 }
 
 /// Two convex features that are apart and not degenerate are apart along one of these: the common normal, and
@@ -141,17 +153,12 @@ double coplanarity_error_bound(const PairPath& path) {
 }
 
 bool can_meet(PairKind kind, const PairPath& path) {
-  if (!is_finite(path)) return true;
-  if (are_boxes_apart(kind, path)) return false;
-  const std::array<double, 4> c = compute_coplanarity(kind, path);
-  if (!std::isfinite(c[0] + c[1] + c[2] + c[3])) return true;  // products beyond the range of double
-  const double error = coplanarity_error_bound(path);
-  return *std::min_element(c.begin(), c.end()) <= error && *std::max_element(c.begin(), c.end()) >= -error;
+  return !is_finite(path) || passes_filter(kind, path);
 }
 
 std::optional<double> find_time_of_impact(PairKind kind, const PairPath& path) {
   if (!is_finite(path)) return 0.0;
-  if (!can_meet(kind, path)) return {};
+  if (!passes_filter(kind, path)) return {};
 
   // Seen from the first point, coordinates are at most L; shifting, interpolating, subtracting and the
   // product with d make fewer than 12 roundings of at most 2L|d|∞ each.

@@ -46,7 +46,7 @@ ContactDetector::Impl::Impl(const Triangles& surface, int num_body_vertices,
       body_vertices(num_body_vertices) {
   ARGIL_ASSERT(tool_mesh.num_triangles() > 0 && surface.cols() > 0);
   tool_centre = 0.5 * (tool_rest.rowwise().minCoeff() + tool_rest.rowwise().maxCoeff());
-  tool_radius = (tool_rest.colwise() - tool_centre).colwise().norm().maxCoeff();
+  tool_radius = (tool_rest.colwise() - tool_centre).colwise().norm().maxCoeff() * (1.0 + 1e-9);
   tool_reach = tool_rest.colwise().norm().maxCoeff();
   for (Eigen::Index e = 0; e < tool.edges.cols(); ++e)
     tool_edge_length += (tool_rest.col(tool.edges(0, e)) - tool_rest.col(tool.edges(1, e))).norm();
@@ -69,11 +69,11 @@ void ContactDetector::Impl::place_tool(const Pose& pose, Points& out) const {
 
 /// Box around the bounding sphere on its way. Vertices move linearly between places within the spheres at
 /// both ends, and the box is convex.
-Bounds ContactDetector::Impl::tool_bounds(const Pose& pose_t0, const Pose& pose_t1) const {
+Bounds ContactDetector::Impl::tool_bounds() const {
   Bounds bounds;
-  bounds.include(pose_t0.position + pose_t0.orientation * tool_centre);
-  bounds.include(pose_t1.position + pose_t1.orientation * tool_centre);
-  return bounds.grown(tool_radius * (1.0 + 1e-9));
+  bounds.include(centre_t0);
+  bounds.include(centre_t1);
+  return bounds.grown(tool_radius);
 }
 
 ContactDetector::ContactDetector(const Triangles& surface, int num_body_vertices,
@@ -99,7 +99,9 @@ void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, cons
   const Mat3 turn = pose_t1.orientation.toRotationMatrix() - pose_t0.orientation.toRotationMatrix();
   impl.tool_tree.advance((pose_t1.position - pose_t0.position).norm() + turn.norm() * impl.tool_reach);
 
-  const Bounds tool_bounds = impl.tool_bounds(pose_t0, pose_t1);
+  impl.centre_t0 = pose_t0.position + pose_t0.orientation * impl.tool_centre;
+  impl.centre_t1 = pose_t1.position + pose_t1.orientation * impl.tool_centre;
+  const Bounds tool_bounds = impl.tool_bounds();
   const bool is_carrying = !impl.tool_vertices.inside.empty() || !impl.body_vertices.inside.empty();
   if (!is_carrying && !tool_bounds.overlaps(impl.body_tree->bounds())) {
     impl.edge_springs.clear();

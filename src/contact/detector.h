@@ -107,9 +107,10 @@ struct ContactDetector::Impl {
   Vec3 tool_centre;  // of a sphere around the tool, in the tool frame
   bool tool_is_convex = true;
   double tool_edge_length = 0.0;            // mean [m]
-  double tool_radius = 0.0;                 // of that sphere
+  double tool_radius = 0.0;                 // of that sphere, a little more
   double tool_reach = 0.0;                  // largest distance of a vertex from the hand's point
   Points tool_t0, tool_t1;                  // in the world
+  Vec3 centre_t0, centre_t1;                // of the sphere
   std::unique_ptr<BoundingTree> body_tree;  // made at the first call, where the body's shape is known
   BoundingTree tool_tree;
 
@@ -127,7 +128,7 @@ struct ContactDetector::Impl {
        const ContactParams& p);
 
   void place_tool(const Pose& pose, Points& out) const;
-  Bounds tool_bounds(const Pose& pose_t0, const Pose& pose_t1) const;
+  Bounds tool_bounds() const;
   VertexFaceMotion tool_vertex_motion(const Motion& m) {
     return {tool_vertices, m.tool_t0, m.tool_t1, {body, m.body_t0, m.body_t1, 1.0}, *body_tree, true};
   }

@@ -7,12 +7,27 @@
 namespace argil::contact {
 namespace {
 
+/// Do both parameters of compute_line_parameters lie in [0, 1]? Without its divisions.
+bool are_nearest_within(const std::array<Vec3, 4>& p) {
+  const Vec3 a = p[1] - p[0];
+  const Vec3 b = p[3] - p[2];
+  const Vec3 w = p[2] - p[0];
+  const double aa = a.squaredNorm();
+  const double bb = b.squaredNorm();
+  const double ab = a.dot(b);
+  const double det = aa * bb - ab * ab;
+  const double wa = w.dot(a);
+  const double wb = w.dot(b);
+  const double s = wa * bb - wb * ab;
+  const double r = wa * ab - wb * aa;
+  return (s >= 0.0 && s <= det && r >= 0.0 && r <= det) || !(det > kParallel * aa * bb);
+}
+
 /// Do the edges cross in penetration at one end of the interval? Both parameters lie in [0, 1], the common
 /// normal points out of the body and into the tool, and along it the tool's edge lies deeper than the body's.
 bool is_crossed(const std::array<Vec3, 4>& p, const SurfaceAt& tool, int tool_edge, const SurfaceAt& body,
                 int body_edge) {
-  const Eigen::Vector2d s = compute_line_parameters(p);
-  if (!(s.minCoeff() >= 0.0 && s.maxCoeff() <= 1.0)) return false;
+  if (!are_nearest_within(p)) return false;
   Vec3 n = (p[1] - p[0]).cross(p[3] - p[2]);
   if (n.dot(p[0] - p[2]) > 0.0) n = -n;  // now the tool's edge lies behind the body's along n
   return is_in_normal_cone(body, body_edge, n) && is_in_normal_cone(tool, tool_edge, -n);
@@ -33,12 +48,15 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
   edge_pairs.clear();
   body_candidates.clear();
   body_tree->find_overlaps(tool_bounds, motion.body_t0, motion.body_t1, body_candidates);
+  // The tool stays within its sphere, whose centre never is farther from where it began than at the end.
+  const double reach = tool_radius + (centre_t1 - centre_t0).norm() * (1.0 + 1e-9);
   for (const int body_face : body_candidates) {
     Bounds swept;
     for (int k = 0; k < 3; ++k) {
       swept.include(Vec3(motion.body_t0.col(body.triangles(k, body_face))));
       swept.include(Vec3(motion.body_t1.col(body.triangles(k, body_face))));
     }
+    if (swept.squared_distance(centre_t0) > reach * reach) continue;
     tool_candidates.clear();
     tool_tree.find_overlaps(swept, motion.tool_t0, motion.tool_t1, tool_candidates);
     for (const int tool_face : tool_candidates) {

@@ -28,6 +28,9 @@ struct Penalty {
 /// the next crossing outwards, or at `until` when the vertex leaves the face sideways at that time.
 Penalty compute_vertex_face_penalty(const PairPath& path, bool inside_at_start, double until = 1.0);
 
+/// Does a vertex that starts outside go in through the face?
+bool enters_face(const PairPath& path);
+
 /// Eq. 8: p on edge a, q on edge b, n the edges' common unit normal, turned so that nᵀ(p−q) > 0 before the
 /// entry. `orientation` (±1) is used when inside_at_start; 0 finds it so that the start lies inside. On b's
 /// body the force is `integral`. Opens where both edges' parameters lie in [0, 1].
@@ -41,6 +44,9 @@ std::array<Vec3, 4> interpolate(const PairPath& path, double t);
 
 /// Barycentric coordinates (of f0, f1, f2) of the projection of `p` onto the triangle's plane.
 Vec3 compute_barycentric(const Vec3& p, const Vec3& f0, const Vec3& f1, const Vec3& f2);
+
+/// Edges whose sine² of the angle between them is no more count as parallel.
+inline constexpr double kParallel = 1e-14;
 
 /// Parameters (s, r) of the closest points a0+s(a1−a0), b0+r(b1−b0) of the two edges' lines; (½, ½) when
 /// parallel.

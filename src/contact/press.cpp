@@ -193,7 +193,7 @@ void ContactDetector::Impl::press_vertices(const VertexFaceMotion& m, Contacts& 
     int face = entry->face;
     bool is_found = false;
     for (; entry != side.entries.cend() && entry->vertex == v; ++entry) {
-      if (is_found || compute_vertex_face_penalty(m.path(v, entry->face), false).num_intervals == 0) continue;
+      if (is_found || !enters_face(m.path(v, entry->face))) continue;
       is_found = true;
       face = entry->face;
     }

@@ -102,6 +102,7 @@ void ContactDetector::Impl::measure_touched(const Motion& m, Contacts& out) {
   if (!out.with_touched) return;
   if (out.contacts.empty() && tool_vertices.inside.empty() && body_vertices.inside.empty()) return;
   const Bounds tool_box = tool_tree.bounds();
+  const double reach2 = tool_radius * tool_radius;
   const SurfaceAt tool_at{tool, m.tool_t0, m.tool_t1};
   Measure measure{tool_at, tool_tree};
   std::sort(body_candidates.begin(), body_candidates.end());
@@ -112,6 +113,7 @@ void ContactDetector::Impl::measure_touched(const Motion& m, Contacts& out) {
     Bounds box;
     for (const Vec3& p : x) box.include(p);
     if (!box.overlaps(tool_box)) continue;
+    if (compute_nearest_on_triangle(centre_t1, x[0], x[1], x[2]).squared_distance > reach2) continue;
     double area = 0.0;
     if (tool_is_convex) {
       area = compute_convex_overlap(x, tool_at, box);

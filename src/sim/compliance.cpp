@@ -79,7 +79,8 @@ StepStatus LocalCompliance::begin_frame(const BodyAtFrame& body, const Points& x
     m_own.segment<3>(3 * static_cast<Eigen::Index>(s)) =
         body.state.x.col(m_nodes[s]) - x_before.col(m_nodes[s]);
   std::fill(m_held.begin(), m_held.end(), Vec3::Zero());
-  for (const auto& [spring, share] : m_acting) {
+  for (const auto& [spring, share, group] : m_acting) {
+    if (!body.solid.acts(group)) continue;
     const double yielded = spring.normal.dot(compute_mean(body.surface, spring, m_own));
     const Vec3 acted = share * (spring.force - spring.stiffness * yielded) * spring.normal;
     for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) {

@@ -35,7 +35,10 @@ class LocalCompliance {
   LocalCompliance(const ContactSurface& surface, int num_nodes);
 
   /// A share of the step in which `spring` acts on the body: its force with the body where the step begins.
-  void hold(const ContactSpring& spring, double share) { m_acting.push_back({spring, share}); }
+  /// `group` of the solid's contacts that it belongs to.
+  void hold(const ContactSpring& spring, double share, int group) {
+    m_acting.push_back({spring, share, group});
+  }
 
   /// After a physics step from x_before (3×n) on, under what was held: forgets the vertices that nothing
   /// presses.
@@ -59,6 +62,7 @@ class LocalCompliance {
   struct Acting {
     ContactSpring spring;
     double share;
+    int group;
   };
   StepStatus learn(const BodyAtFrame& body, int vertex);
   StepStatus find_columns(const BodyAtFrame& body, std::size_t place);

@@ -23,6 +23,8 @@ void Simulation::move_hand(const device::DeviceSample& sample) {
 /// last one ended, so none has a gap.
 void Simulation::find_contacts(const Points& x, int ticks) {
   const bool has_moved = m_state.has_moved;
+  const bool is_wetting = m_state.mode == ToolMode::wet || m_state.mode == ToolMode::dry;
+  m_contacts.with_touched = is_wetting && m_clock.due(m_params.rates.water_period_ticks);
   if (has_moved) m_surface.find_positions(x, m_surface_x);
   m_detector.find_contacts(m_state.contact_x, has_moved ? m_surface_x : m_state.contact_x,
                            m_state.contact_tool, m_state.tool, m_contacts,
@@ -54,23 +56,47 @@ void Simulation::spread_contact_force(int ticks) {
   const bool pushes = m_state.mode == ToolMode::push;
   const double share = static_cast<double>(ticks) / m_params.rates.physics_period_ticks;
   for (const contact::Contact& c : m_contacts.contacts) {
-    act_on_body(c, (pushes ? c.force : Vec3(-c.force)) + c.resistance, share);
-    add_contact_stiffness(c, pushes, share);
+    const Vec3 force = (pushes ? c.force : Vec3(-c.force)) + c.resistance;
+    act_on_body(c, force, share);
+    add_contact_stiffness(c, share * force, pushes, share);
   }
 }
 
 /// How a contact's force changes as the body moves on: falls by its stiffness, by damping with the speed, and
-/// along the surface while it sticks. A pulling contact has negative stiffness; left out, so that the system
-/// stays positive definite.
-void Simulation::add_contact_stiffness(const contact::Contact& c, bool pushes, double share) {
+/// along the surface while it sticks. One that pushes lets go before it would draw. A pulling contact has
+/// negative stiffness; left out, so that the system stays positive definite.
+void Simulation::add_contact_stiffness(const contact::Contact& c, const Vec3& force, bool pushes,
+                                       double share) {
   // The damping force counted with the body's last speed; the solve finds the next, from a force without it.
   const double per_speed = c.damping / m_clock.seconds(m_params.rates.physics_period_ticks);
   const double at_rest = c.damping * c.body_speed;
+  const std::size_t first = m_contact_stiffness.size();
   add_contact_stiffness(c, c.normal, share * ((pushes ? c.stiffness : 0.0) + per_speed), share * at_rest);
+  const std::size_t pieces = m_contact_stiffness.size() - first;
+  const std::size_t leader = pushes && pieces > 0 ? find_group(c, first, pieces) : 0;
+  for (std::size_t i = 0; pushes && i < pieces; ++i) {
+    solid::PointStiffness& piece = m_contact_stiffness[first + i];
+    piece.force = (pieces == 1 ? 1.0 : c.weight[i]) * force + m_yields[first + i].force_at_rest * c.normal;
+    piece.group = static_cast<int>(leader + i);
+    piece.counts = true;
+  }
   if (c.sticking == 0.0) return;
   const Vec3 along = c.normal.unitOrthogonal();
-  for (const Vec3& direction : {along, Vec3(c.normal.cross(along))})
+  for (const Vec3& direction : {along, Vec3(c.normal.cross(along))}) {
+    const std::size_t begin = m_contact_stiffness.size();
     add_contact_stiffness(c, direction, share * c.sticking, 0.0);
+    for (std::size_t i = 0; pushes && i < pieces; ++i)
+      m_contact_stiffness[begin + i].group = static_cast<int>(leader + i);
+  }
+}
+
+/// What presses on the same vertices in several ticks of a step is one contact to the body, which gets the
+/// mean. Number of the first piece of the first of them, or `first` when there was none yet.
+std::size_t Simulation::find_group(const contact::Contact& c, std::size_t first, std::size_t pieces) {
+  for (const ContactGroup& group : m_contact_groups)
+    if (group.vertex == c.vertex && group.pieces == pieces) return group.first;
+  m_contact_groups.push_back({c.vertex, first, pieces});
+  return first;
 }
 
 void Simulation::add_contact_stiffness(const contact::Contact& c, const Vec3& direction, double stiffness,
@@ -96,13 +122,13 @@ void Simulation::apply_contact_yield() {
   const RateParams& rates = m_params.rates;
   const double per_share = rates.between_frames == BetweenFrames::hold ? 1.0 : rates.physics_period_ticks;
   for (std::size_t i = m_last_detection; i < m_contact_stiffness.size(); ++i) {
-    const solid::PointStiffness& stiffness = m_contact_stiffness[i];
-    const double fall = m_yields[i].force_at_rest + m_solid.compute_contact_change(stiffness);
-    const Vec3 change = per_share * fall * stiffness.normal;
+    const Vec3 at_rest = m_yields[i].force_at_rest * m_contact_stiffness[i].normal;
+    const Vec3 change = per_share * (at_rest + m_solid.compute_contact_change(m_contact_stiffness, i));
     m_state.hand_force -= change;
     m_state.hand_torque -= (m_yields[i].point - m_state.tool.position).cross(change);
   }
   m_contact_stiffness.clear();
+  m_contact_groups.clear();
   m_yields.clear();
   m_last_detection = 0;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -65,9 +66,10 @@ class Simulation {
   void find_contacts(const Points& x, int ticks);
   void act_on_body(const contact::Contact& c, const Vec3& force, double share);
   void spread_contact_force(int ticks);
-  void add_contact_stiffness(const contact::Contact& c, bool pushes, double share);
+  void add_contact_stiffness(const contact::Contact& c, const Vec3& force, bool pushes, double share);
   void add_contact_stiffness(const contact::Contact& c, const Vec3& direction, double stiffness,
                              double force_at_rest);
+  std::size_t find_group(const contact::Contact& c, std::size_t first, std::size_t pieces);
   void apply_contact_yield();
   bool is_yielding() const;
   BodyAtFrame body_at_frame();
@@ -105,7 +107,13 @@ class Simulation {
     Vec3 point;                  // where the force acts [m]
     double force_at_rest = 0.0;  // what the solve was told besides, for damping [N]
   };
-  std::vector<Yield> m_yields;       // of each of these
+  std::vector<Yield> m_yields;  // of each of these
+  struct ContactGroup {
+    std::array<int, 3> vertex;  // of the surface
+    std::size_t first;          // entry of m_contact_stiffness
+    std::size_t pieces;         // and how many stand for a contact
+  };
+  std::vector<ContactGroup> m_contact_groups;
   std::size_t m_last_detection = 0;  // where in it the last detection's contacts begin
   std::vector<int> m_touched_tet;    // tets under the tool, and how much of their surface
   std::vector<double> m_touched_area;

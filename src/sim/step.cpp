@@ -67,10 +67,13 @@ StepStatus Simulation::yielding_contact_step() {
   const auto act = [&](contact::Contact c, const Vec3& on_hand, const ContactSpring& spring) {
     m_state.hand_force -= on_hand + c.resistance;
     m_state.hand_torque -= (c.point - m_state.tool.position).cross(on_hand + c.resistance);
-    act_on_body(c, spring.force * spring.normal + c.resistance, share);
+    const Vec3 force = spring.force * spring.normal + c.resistance;
+    act_on_body(c, force, share);
     c.stiffness = spring.stiffness;
-    add_contact_stiffness(c, true, share);
-    m_compliance.hold(spring, share);
+    const std::size_t entry = m_contact_stiffness.size();
+    add_contact_stiffness(c, share * force, true, share);
+    const bool is_spring = m_contact_stiffness.size() > entry;
+    m_compliance.hold(spring, share, is_spring ? m_contact_stiffness[entry].group : -1);
   };
   for (std::size_t i = 0; i < m_springs.size(); ++i) {
     ContactSpring spring = m_springs[i];

@@ -128,36 +128,4 @@ Mat3 Solid::kept_rotation(int point) const {
   return R.middleCols<3>(3 * static_cast<Eigen::Index>(point));
 }
 
-double Solid::compute_contact_change(const PointStiffness& contact) const {
-  if (!m_params.implicit_contact || is_explicit()) return 0.0;
-  // Newmark's step takes the mean of both ends.
-  const double share = m_params.integrator == Integrator::newmark ? 0.5 : 1.0;
-  return -share * contact.stiffness * compute_gap_change(contact, m_x, m_x_start);
-}
-
-void Solid::apply_contact_stiffness(std::span<const PointStiffness> contacts, Points& force) const {
-  for (const PointStiffness& contact : contacts) {
-    const double change = compute_contact_change(contact);
-    for (std::size_t i = 0; i < contact.count(); ++i)
-      force.col(contact.vertex[i]) += contact.weight[i] * change * contact.normal;
-  }
-}
-
-/// scale · Σ k n n·(to − from): how contact forces change on the way.
-void Solid::add_contact_change(const Points& to, const Points& from, std::span<const PointStiffness> contacts,
-                               double scale, Points& force) const {
-  for (const PointStiffness& contact : contacts) {
-    const Vec3 change = scale * contact.stiffness * compute_gap_change(contact, to, from) * contact.normal;
-    for (std::size_t i = 0; i < contact.count(); ++i)
-      force.col(contact.vertex[i]) += contact.weight[i] * change;
-  }
-}
-
-double Solid::compute_gap_change(const PointStiffness& contact, const Points& to, const Points& from) {
-  Vec3 mean = Vec3::Zero();
-  for (std::size_t i = 0; i < contact.count(); ++i)
-    mean += contact.weight[i] * (to.col(contact.vertex[i]) - from.col(contact.vertex[i]));
-  return contact.normal.dot(mean);
-}
-
 }  // namespace argil::solid

@@ -183,6 +183,7 @@ void Solid::gather_row(int row, const MatrixShares& share) {
 
 void Solid::add_contacts(std::span<const PointStiffness> contacts) {
   for (const PointStiffness& contact : contacts) {
+    if (!acts(contact.group)) continue;
     const Mat3 block = m_tau * m_tau * contact.stiffness * contact.normal * contact.normal.transpose();
     for (std::size_t i = 0; i < contact.count(); ++i)
       for (std::size_t j = 0; j < contact.count(); ++j) {

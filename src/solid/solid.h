@@ -22,13 +22,17 @@ struct SolidState {
   Points x_before, v_before;   ///< a step earlier, bdf2 only; empty before the first step
 };
 
-/// Stiffness that a penalty contact adds between its nodes: k·wᵢwⱼ n⊗n.
+/// Stiffness that a penalty contact adds between its nodes: k·wᵢwⱼ n⊗n. Entries of one group press on
+/// the body with Σ n·f − k n·(x' − x) of those that count, or are let go all together where that would draw.
 struct PointStiffness {
   /// −1 beyond the last; all of one tet.
   std::array<int, 10> vertex = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
   std::array<double, 10> weight = {};
   Vec3 normal = Vec3::Zero();
-  double stiffness = 0.0;  ///< k [N/m]
+  double stiffness = 0.0;     ///< k [N/m]
+  Vec3 force = Vec3::Zero();  ///< f [N]: how much of the loads is this contact's at x
+  int group = -1;             ///< number of the group's first entry; −1: acts whatever its force
+  bool counts = false;        ///< it is along this normal that its group must not draw
   std::size_t count() const {
     return static_cast<std::size_t>(std::find(vertex.begin(), vertex.end(), -1) - vertex.begin());
   }
@@ -92,12 +96,15 @@ class Solid {
   void finish_step(SolidState& state);  ///< v ← v', and what bdf2 must remember
   void move(SolidState& state) const;   ///< x ← x̂ + τ v; prescribed components go where they must
 
-  /// How far the force of a contact, of which a step was told, changed while the body moved: what to add
-  /// along its normal [N] for the force that acted.
-  double compute_contact_change(const PointStiffness& contact) const;
+  /// How the force of contact i, of which a step was told, changed while the body moved: what to add [N] for
+  /// the force that acted.
+  Vec3 compute_contact_change(std::span<const PointStiffness> contacts, std::size_t i) const;
+
+  /// Did contacts of this group act in the last step?
+  bool acts(int group) const { return group < 0 || m_contact_acts[static_cast<std::size_t>(group)] != 0; }
 
   /// Turns the contact forces that were given to the step into those that acted: an implicit step takes them
-  /// at its end, f − k n n·(x' − x); newmark takes the mean of both ends.
+  /// at its end, f − k n n·(x' − x), or 0 where it let them go; newmark takes the mean of both ends.
   void apply_contact_stiffness(std::span<const PointStiffness> contacts, Points& force) const;
 
   /// Static equilibrium under `loads` from state.x on, by Newton's method. Loads and prescribed displacements
@@ -162,10 +169,17 @@ class Solid {
   Mat3 volume_gradient(int tet) const;
   Mat3 kept_rotation(int point) const;
   void gather(Points& force) const;
-  void add_contact_change(const Points& to, const Points& from, std::span<const PointStiffness> contacts,
-                          double scale, Points& force) const;
-  static double compute_gap_change(const PointStiffness& contact, const Points& to, const Points& from);
   void clear_held(Points& u) const;
+
+  // contacts.cpp
+  void start_contacts(std::size_t count);
+  bool exchange_contacts(std::span<const PointStiffness> contacts);
+  Vec3 compute_contact_fall(std::span<const PointStiffness> contacts, std::size_t i) const;
+  double compute_contact_potential(std::span<const PointStiffness> contacts, std::size_t i) const;
+  void add_contact_product(const Points& u, std::span<const PointStiffness> contacts, double scale,
+                           Points& force) const;
+  static void spread(const PointStiffness& contact, const Vec3& f, Points& force);
+  static Vec3 compute_mean_way(const PointStiffness& contact, const Points& to, const Points& from);
 
   // matrix.cpp
   bool needs_tangents() const;
@@ -255,7 +269,10 @@ class Solid {
   double m_rounding = 0.0;      // what rounding alone leaves of a residual
   double m_potential = 0.0, m_potential_scale = 0.0, m_potential_rounding = 0.0;
   StepCounters m_counters;
-  int m_iterations = 0;  // Newton's, of the present step or share of the load
+  int m_iterations = 0;                 // Newton's, of the present step or share of the load
+  std::vector<char> m_contact_acts;     // at the number of each group's first entry
+  std::vector<double> m_contact_force;  // likewise: Σ n·f − k n·(x − x₀)
+  int m_contact_exchanges = 0;
 };
 
 }  // namespace argil::solid

@@ -25,7 +25,7 @@ class Solid::Product final : public linear::Operator {
     force.setZero(3, u.cols());
     m_solid.compute_stiffness_product(u, share.kept, share.exact, force);
     if (!m_solid.m_is_static && m_solid.m_params.implicit_contact)
-      m_solid.add_contact_change(u, m_solid.m_zero, m_contacts, m_solid.m_tau * m_solid.m_tau, force);
+      m_solid.add_contact_product(u, m_contacts, m_solid.m_tau * m_solid.m_tau, force);
     for (int row = 0; row < m_solid.num_free(); ++row) {
       const int n = m_solid.m_node_of_row[static_cast<std::size_t>(row)];
       y.col(row) = share.mass * m_solid.m_mass(n) * x.col(row) + force.col(n);
@@ -77,6 +77,8 @@ StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
                                report.relative_residual, m_params.solver.tolerance});
   if (!is_newton()) {
     set_iterate(1.0);
+    solved = !exchange_contacts(loads.contacts);
+    if (!solved) set_iterate(0.0);  // the same step anew
     return StepStatus::ok();
   }
   if (m_iterations > m_params.newton_max_iterations)
@@ -85,10 +87,10 @@ StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
   return search_line(loads, tick);
 }
 
-/// A δ = r. First guess: the body goes on as before.
+/// A δ = r. First guess: the body goes on as before; when contacts were exchanged, the step with the others.
 linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
   if (num_free() == 0) return {true, 0, 0.0};
-  for (int row = 0; row < num_free(); ++row) {
+  for (int row = 0; (is_first || is_newton()) && row < num_free(); ++row) {
     const int n = m_node_of_row[static_cast<std::size_t>(row)];
     for (int k = 0; k < 3; ++k)
       m_delta(k, row) = is_first && m_constraints.support(k, n) < 0 ? m_v_start(k, n) - m_v(k, n) : 0.0;

@@ -31,6 +31,7 @@ StepStatus Solid::begin_step(const SolidState& state, const StepLoads& loads, do
   m_load_share = 1.0;
   m_counters = {};
   m_iterations = 0;
+  start_contacts(loads.contacts.size());
   m_plastic_strain = &state.plastic_strain;
   m_x_start = state.x;
   m_v_start = state.v;
@@ -131,7 +132,8 @@ double Solid::compute_rounding_force() const {
   }));
 }
 
-/// r = M (v̂ − v) + τ (f_ext + M g − f_int − D v − Σ k n n·(x − x₀)); statics: the forces alone.
+/// r = M (v̂ − v) + τ (f_ext + M g − f_int − D v) less the fall of the contacts' forces; statics: the forces
+/// alone.
 void Solid::compute_residual(const StepLoads& loads) {
   assemble_internal_force();
   m_corner_scale = is_newton() ? m_corner_force.squaredNorm() : 0.0;
@@ -139,7 +141,8 @@ void Solid::compute_residual(const StepLoads& loads) {
   m_product.setZero(3, m_elements.num_nodes());
   if (is_viscous) compute_stiffness_product(m_v, m_params.rayleigh_stiffness, 0.0, m_product);
   if (!m_is_static && m_params.implicit_contact)
-    add_contact_change(m_x, m_x_start, loads.contacts, 1.0, m_product);
+    for (std::size_t i = 0; i < loads.contacts.size(); ++i)
+      spread(loads.contacts[i], compute_contact_fall(loads.contacts, i), m_product);
   const double a = m_is_static ? 0.0 : m_params.rayleigh_mass;
   const double inertia = m_is_static ? 0.0 : 1.0;
   double scale = 0.0;
@@ -174,7 +177,11 @@ bool Solid::assemble(const StepLoads& loads) {
   compute_residual(loads);
   if (is_explicit()) return false;
   if (is_newton()) {
-    if (compute_norm(m_rhs) <= m_params.newton_tolerance * m_residual_scale + m_rounding) return true;
+    if (compute_norm(m_rhs) <= m_params.newton_tolerance * m_residual_scale + m_rounding) {
+      if (!exchange_contacts(loads.contacts)) return true;
+      m_iterations = 1;  // of the next round; not the step's first
+      compute_residual(loads);
+    }
     m_potential = compute_potential(loads);
   }
   m_is_projected = !is_newton();
@@ -182,7 +189,7 @@ bool Solid::assemble(const StepLoads& loads) {
   return false;
 }
 
-/// Φ with ∂Φ/∂v = −r: ½(v−v̂)M(v−v̂) + ½τ vDv + W(x) − (f_ext + M g)·(x − X) + ½ Σ k (n·(x − x₀))².
+/// Φ with ∂Φ/∂v = −r: ½(v−v̂)M(v−v̂) + ½τ vDv + W(x) − (f_ext + M g)·(x − X) and the contacts'.
 double Solid::compute_potential(const StepLoads& loads) {
   const double elastic = compute_elastic_energy(*m_plastic_strain);
   double sum = elastic;
@@ -206,8 +213,8 @@ double Solid::compute_potential(const StepLoads& loads) {
       add(0.5 * m_tau * sum_products(m_v, m_product));
     }
     if (m_params.implicit_contact)
-      for (const PointStiffness& contact : loads.contacts)
-        add(0.5 * contact.stiffness * std::pow(compute_gap_change(contact, m_x, m_x_start), 2));
+      for (std::size_t i = 0; i < loads.contacts.size(); ++i)
+        add(compute_contact_potential(loads.contacts, i));
   }
   m_potential_scale = magnitude;
   return sum;
@@ -284,6 +291,7 @@ StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
   m_v_start.setZero(3, m_elements.num_nodes());
   m_x_start = state.x;
   m_counters = {};
+  start_contacts(loads.contacts.size());
   double done = 0.0;
   for (double step = 1.0; done < 1.0;) {
     m_load_share = std::min(1.0, done + step);

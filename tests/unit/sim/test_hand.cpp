@@ -57,6 +57,45 @@ TEST(HandForce, IsTheOppositeOfWhatActedOnTheBody) {
   }
 }
 
+TEST(HandForce, NeverDrawsOnABodyThatLeaves) {
+  // A mass m on a spring K that the plate presses by k and that flies ahead of it, or that the plate leaves:
+  // m (v' − v)/h = max(0, f − k (d' − d)) − K d', d' = d + h v', f = k (D − d) at the depth D of the plate.
+  // A force that fell in proportion would draw in such steps.
+  Params params = test::make_one_node_params();
+  const double K = test::compute_apex_stiffness(params.elastic);
+  for (const int period : {1, 14}) {
+    params.rates.physics_period_ticks = period;
+    params.solid.density = 7e3 * period * period;  // the penalty's frequency is about half a radian a step
+    const double h = 1e-3 * period;
+    Simulation simulation = test::make_one_node_simulation(params);
+    const double m = simulation.solid().mass()(3);
+    double d = 0.0, v = 0.0;
+    int num_let_go = 0, num_pressing = 0;
+    for (int frame = 1; frame <= 3000; ++frame) {
+      const double depth = 4e-4 * (1.0 + std::sin(2.3 * frame) + std::sin(0.11 * frame * frame));
+      for (int k = 0; k < period; ++k) go_to(simulation, depth);
+      const double before = kPenalty * std::max(0.0, depth - d);
+      const double pressed = before > 0.0 ? before + kPenalty * d : 0.0;  // force at d' = 0
+      const double stiffness = before > 0.0 ? kPenalty : 0.0;
+      double v_next = (m * v + h * (pressed - (K + stiffness) * d)) / (m + h * h * (K + stiffness));
+      double force = pressed - stiffness * (d + h * v_next);
+      if (force < 0.0) {
+        ++num_let_go;
+        v_next = (m * v - h * K * d) / (m + h * h * K);
+        force = 0.0;
+      }
+      num_pressing += force > 0.0 ? 1 : 0;
+      v = v_next;
+      d += h * v;
+      ASSERT_NEAR(simulation.state().hand_force.z(), force, 1e-6) << frame;
+      ASSERT_NEAR(test::kHeight - simulation.state().solid.x(2, 3), d, 1e-9) << frame;
+      ASSERT_GE(simulation.state().hand_force.z(), -1e-15);
+    }
+    EXPECT_GT(num_let_go, 10);
+    EXPECT_GT(num_pressing, 1000);
+  }
+}
+
 TEST(Compliant, IsTwoSpringsInSeriesBetweenPhysicsSteps) {
   // Of the apex's stiffness K and the penalty k, whatever the hand does between two physics steps, also when
   // it draws back faster than the penalty alone reaches. Against the surface as it was: k on top of the last
