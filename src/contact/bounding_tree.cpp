@@ -67,13 +67,13 @@ Bounds BoundingTree::fit_triangle(int triangle, const Points& x_t0, const Points
 void BoundingTree::visit(int index, const Bounds& query, const Points& x_t0, const Points& x_t1,
                          std::vector<int>& triangles) {
   Node& node = m_nodes[static_cast<std::size_t>(index)];
-  if (!current(node).overlaps(query)) return;
+  if (!node.bounds.overlaps(query, margin(node))) return;
   if (node.count > 0) {
     fit_leaf(node, x_t0, x_t1);
-    if (!node.bounds.overlaps(query)) return;
+    if (!node.bounds.overlaps(query, 0.0)) return;
     for (auto i = static_cast<std::size_t>(node.first); i < static_cast<std::size_t>(node.first + node.count);
          ++i)
-      if (m_triangle_bounds[i].overlaps(query)) triangles.push_back(m_order[i]);
+      if (m_triangle_bounds[i].overlaps(query, 0.0)) triangles.push_back(m_order[i]);
   } else {
     visit(node.first, query, x_t0, x_t1, triangles);
     visit(node.first + 1, query, x_t0, x_t1, triangles);

@@ -24,8 +24,19 @@ struct Bounds {
   bool overlaps(const Bounds& other) const {
     return (low.array() <= other.high.array()).all() && (high.array() >= other.low.array()).all();
   }
-  double squared_distance(const Vec3& p) const {
-    return (low - p).cwiseMax(p - high).cwiseMax(0.0).squaredNorm();
+  /// The same of this box grown by a margin; axis by axis, as most boxes are told apart by the first.
+  bool overlaps(const Bounds& other, double margin) const {
+    for (Eigen::Index k = 0; k < 3; ++k)
+      if (low(k) - margin > other.high(k) || high(k) + margin < other.low(k)) return false;
+    return true;
+  }
+  double squared_distance(const Vec3& p, double margin = 0.0) const {
+    double sum = 0.0;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const double d = std::max(std::max(low(k) - margin - p(k), p(k) - (high(k) + margin)), 0.0);
+      sum += d * d;
+    }
+    return sum;
   }
 };
 
@@ -71,10 +82,12 @@ class BoundingTree {
     int first = 0;  // leaf: first triangle in m_order; inner: index of the left child, right is next
     int count = 0;  // leaf: number of triangles; inner: 0
   };
-  Bounds current(const Node& node) const {
+  /// By how much a node's box must be grown for the motion since its fit.
+  double margin(const Node& node) const {
     // The factor takes up the rounding of the sum of many motions.
-    return node.bounds.grown((m_motion - node.motion) * (1.0 + 1e-9) + 1e-12 * m_motion);
+    return (m_motion - node.motion) * (1.0 + 1e-9) + 1e-12 * m_motion;
   }
+  Bounds current(const Node& node) const { return node.bounds.grown(margin(node)); }
   void split(int node, int first, int count, const Points& centroids);
   Bounds fit_triangle(int triangle, const Points& x_t0, const Points& x_t1) const;
   void fit_leaf(Node& node, const Points& x_t0, const Points& x_t1);
@@ -84,18 +97,24 @@ class BoundingTree {
   template <class Visit>
   void visit_node(int index, const Vec3& p, double& least, const Points& x_t0, const Points& x_t1,
                   Visit& visit) {
+    // Equal distances are visited too, so that the answer does not depend on the tree; see find_nearest.
+    constexpr double kRounding = 1.0 + 1e-12;
     Node& node = m_nodes[static_cast<std::size_t>(index)];
     if (node.count > 0) {
       fit_leaf(node, x_t0, x_t1);
-      for (int i = node.first; i < node.first + node.count; ++i)
-        least = std::min(least, visit(m_order[static_cast<std::size_t>(i)]));
+      for (auto i = static_cast<std::size_t>(node.first);
+           i < static_cast<std::size_t>(node.first + node.count); ++i)
+        if (m_triangle_bounds[i].squared_distance(p) <= least * kRounding)
+          least = std::min(least, visit(m_order[i]));
       return;
     }
     const int l = node.first;
-    const double left = current(m_nodes[static_cast<std::size_t>(l)]).squared_distance(p);
-    const double right = current(m_nodes[static_cast<std::size_t>(l) + 1]).squared_distance(p);
-    // Equal distances are visited too, so that the answer does not depend on the tree; see find_nearest.
-    constexpr double kRounding = 1.0 + 1e-12;
+    const auto distance = [&](int child) {
+      const Node& of_child = m_nodes[static_cast<std::size_t>(child)];
+      return of_child.bounds.squared_distance(p, margin(of_child));
+    };
+    const double left = distance(l);
+    const double right = distance(l + 1);
     const int first = left <= right ? l : l + 1;
     if (std::min(left, right) <= least * kRounding) visit_node(first, p, least, x_t0, x_t1, visit);
     if (std::max(left, right) <= least * kRounding)

@@ -67,6 +67,17 @@ void ContactDetector::Impl::place_tool(const Pose& pose, Points& out) const {
   for (Eigen::Index v = 0; v < tool_rest.cols(); ++v) out.col(v) = R * tool_rest.col(v) + pose.position;
 }
 
+/// Intervals join, so that the start is most often where the tool was placed last.
+void ContactDetector::Impl::place_tool(const Pose& pose_t0, const Pose& pose_t1) {
+  if (placed && placed->position == pose_t0.position &&
+      placed->orientation.coeffs() == pose_t0.orientation.coeffs())
+    tool_t0.swap(tool_t1);
+  else
+    place_tool(pose_t0, tool_t0);
+  place_tool(pose_t1, tool_t1);
+  placed = pose_t1;
+}
+
 /// Box around the bounding sphere on its way. Vertices move linearly between places within the spheres at
 /// both ends, and the box is convex.
 Bounds ContactDetector::Impl::tool_bounds() const {
@@ -108,8 +119,7 @@ void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, cons
     return;
   }
 
-  impl.place_tool(pose_t0, impl.tool_t0);
-  impl.place_tool(pose_t1, impl.tool_t1);
+  impl.place_tool(pose_t0, pose_t1);
   const Motion motion{x_t0, x_t1, impl.tool_t0, impl.tool_t1};
   impl.find_entries(motion, tool_bounds);
   impl.press_vertices(impl.tool_vertex_motion(motion), contacts);

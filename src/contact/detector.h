@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -111,6 +112,7 @@ struct ContactDetector::Impl {
   double tool_reach = 0.0;                  // largest distance of a vertex from the hand's point
   Points tool_t0, tool_t1;                  // in the world
   Vec3 centre_t0, centre_t1;                // of the sphere
+  std::optional<Pose> placed;               // where tool_t1 is
   std::unique_ptr<BoundingTree> body_tree;  // made at the first call, where the body's shape is known
   BoundingTree tool_tree;
 
@@ -128,6 +130,7 @@ struct ContactDetector::Impl {
        const ContactParams& p);
 
   void place_tool(const Pose& pose, Points& out) const;
+  void place_tool(const Pose& pose_t0, const Pose& pose_t1);
   Bounds tool_bounds() const;
   VertexFaceMotion tool_vertex_motion(const Motion& m) {
     return {tool_vertices, m.tool_t0, m.tool_t1, {body, m.body_t0, m.body_t1, 1.0}, *body_tree, true};
@@ -138,8 +141,8 @@ struct ContactDetector::Impl {
 
   // entries.cpp
   void find_entries(const Motion& motion, const Bounds& tool_bounds);
-  void test_vertices(int body_face, int tool_face, const Motion& motion);
-  void test_edges(int body_face, int tool_face, const Motion& motion);
+  void test_vertices(int body_face, int tool_face, const Bounds& swept_body, const Motion& motion);
+  void test_edges(int body_edge, const Motion& motion);
 
   // press.cpp
   void press_vertices(const VertexFaceMotion& m, Contacts& out) const;

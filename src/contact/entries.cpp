@@ -7,11 +7,28 @@
 namespace argil::contact {
 namespace {
 
-/// Do both parameters of compute_line_parameters lie in [0, 1]? Without its divisions.
-bool are_nearest_within(const std::array<Vec3, 4>& p) {
-  const Vec3 a = p[1] - p[0];
-  const Vec3 b = p[3] - p[2];
-  const Vec3 w = p[2] - p[0];
+/// An edge on its way.
+struct EdgePath {
+  std::array<Vec3, 2> t0, t1;
+  Bounds swept;
+
+  EdgePath(const Points& x_t0, const Points& x_t1, const Eigen::Vector2i& v)
+      : t0{x_t0.col(v(0)), x_t0.col(v(1))}, t1{x_t1.col(v(0)), x_t1.col(v(1))} {
+    for (std::size_t k = 0; k < 2; ++k) {
+      swept.include(t0[k]);
+      swept.include(t1[k]);
+    }
+  }
+};
+
+/// Do the edges cross in penetration at one end of the interval? Both parameters of compute_line_parameters
+/// lie in [0, 1] (here without its divisions), the common normal points out of the body and into the tool,
+/// and along it the tool's edge lies deeper than the body's.
+bool is_crossed(const std::array<Vec3, 2>& tool_at, const std::array<Vec3, 2>& body_at, const SurfaceAt& tool,
+                int tool_edge, const SurfaceAt& body, int body_edge) {
+  const Vec3 a = tool_at[1] - tool_at[0];
+  const Vec3 b = body_at[1] - body_at[0];
+  const Vec3 w = body_at[0] - tool_at[0];
   const double aa = a.squaredNorm();
   const double bb = b.squaredNorm();
   const double ab = a.dot(b);
@@ -20,16 +37,10 @@ bool are_nearest_within(const std::array<Vec3, 4>& p) {
   const double wb = w.dot(b);
   const double s = wa * bb - wb * ab;
   const double r = wa * ab - wb * aa;
-  return (s >= 0.0 && s <= det && r >= 0.0 && r <= det) || !(det > kParallel * aa * bb);
-}
-
-/// Do the edges cross in penetration at one end of the interval? Both parameters lie in [0, 1], the common
-/// normal points out of the body and into the tool, and along it the tool's edge lies deeper than the body's.
-bool is_crossed(const std::array<Vec3, 4>& p, const SurfaceAt& tool, int tool_edge, const SurfaceAt& body,
-                int body_edge) {
-  if (!are_nearest_within(p)) return false;
-  Vec3 n = (p[1] - p[0]).cross(p[3] - p[2]);
-  if (n.dot(p[0] - p[2]) > 0.0) n = -n;  // now the tool's edge lies behind the body's along n
+  const bool is_within = s >= 0.0 && s <= det && r >= 0.0 && r <= det;
+  if (!is_within && det > kParallel * aa * bb) return false;
+  Vec3 n = a.cross(b);
+  if (n.dot(w) < 0.0) n = -n;  // now the tool's edge lies behind the body's along n
   return is_in_normal_cone(body, body_edge, n) && is_in_normal_cone(tool, tool_edge, -n);
 }
 
@@ -59,10 +70,9 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
     if (swept.squared_distance(centre_t0) > reach * reach) continue;
     tool_candidates.clear();
     tool_tree.find_overlaps(swept, motion.tool_t0, motion.tool_t1, tool_candidates);
-    for (const int tool_face : tool_candidates) {
-      test_vertices(body_face, tool_face, motion);
-      test_edges(body_face, tool_face, motion);
-    }
+    for (const int tool_face : tool_candidates) test_vertices(body_face, tool_face, swept, motion);
+    for (const int body_edge : body.triangle_edges.col(body_face))
+      if (body.edge_owner[static_cast<std::size_t>(body_edge)] == body_face) test_edges(body_edge, motion);
   }
   sort_entries(tool_vertices.entries);
   sort_entries(body_vertices.entries);
@@ -70,40 +80,49 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
             [](const EdgePair& a, const EdgePair& b) { return a.key() < b.key(); });
 }
 
-void ContactDetector::Impl::test_vertices(int body_face, int tool_face, const Motion& motion) {
+void ContactDetector::Impl::test_vertices(int body_face, int tool_face, const Bounds& swept_body,
+                                          const Motion& motion) {
   const auto test = [](const VertexFaceMotion& m, int v, int face) {
     if (const auto time = find_time_of_impact(PairKind::vertex_face, m.path(v, face)))
       m.side.entries.push_back({v, *time, face});
   };
-  const VertexFaceMotion of_tool = tool_vertex_motion(motion);
-  const VertexFaceMotion of_body = body_vertex_motion(motion);
   for (int k = 0; k < 3; ++k) {
     const int v = tool.triangles(k, tool_face);
     const auto i = static_cast<std::size_t>(v);
-    if (tool.vertex_owner[i] == tool_face && tool_vertices.face_of_vertex[i] < 0) test(of_tool, v, body_face);
+    if (tool.vertex_owner[i] == tool_face && tool_vertices.face_of_vertex[i] < 0) {
+      Bounds way;
+      way.include(Vec3(motion.tool_t0.col(v)));
+      way.include(Vec3(motion.tool_t1.col(v)));
+      if (way.overlaps(swept_body, 0.0)) test(tool_vertex_motion(motion), v, body_face);
+    }
     const int w = body.triangles(k, body_face);
     const auto j = static_cast<std::size_t>(w);
-    if (body.vertex_owner[j] == body_face && body_vertices.face_of_vertex[j] < 0) test(of_body, w, tool_face);
+    if (body.vertex_owner[j] == body_face && body_vertices.face_of_vertex[j] < 0)
+      test(body_vertex_motion(motion), w, tool_face);
   }
 }
 
-void ContactDetector::Impl::test_edges(int body_face, int tool_face, const Motion& motion) {
-  for (int i = 0; i < 3; ++i) {
-    const int tool_edge = tool.triangle_edges(i, tool_face);
-    if (tool.edge_owner[static_cast<std::size_t>(tool_edge)] != tool_face) continue;
-    for (int j = 0; j < 3; ++j) {
-      const int body_edge = body.triangle_edges(j, body_face);
-      if (body.edge_owner[static_cast<std::size_t>(body_edge)] != body_face) continue;
-      const PairPath path = make_edge_path(motion, tool.edges.col(tool_edge), body.edges.col(body_edge));
+/// An edge of the body against those of the present tool candidates.
+void ContactDetector::Impl::test_edges(int body_edge, const Motion& motion) {
+  const EdgePath b(motion.body_t0, motion.body_t1, body.edges.col(body_edge));
+  const SurfaceAt body_t0{body, motion.body_t0, motion.body_t0},
+      body_t1{body, motion.body_t1, motion.body_t1};
+  const SurfaceAt tool_t0_at{tool, motion.tool_t0, motion.tool_t0};
+  const SurfaceAt tool_t1_at{tool, motion.tool_t1, motion.tool_t1};
+  for (const int tool_face : tool_candidates)
+    for (const int tool_edge : tool.triangle_edges.col(tool_face)) {
+      if (tool.edge_owner[static_cast<std::size_t>(tool_edge)] != tool_face) continue;
+      const EdgePath a(motion.tool_t0, motion.tool_t1, tool.edges.col(tool_edge));
       EdgePair pair{tool_edge, body_edge};
-      pair.inside_t0 = is_crossed(path.t0, {tool, motion.tool_t0, motion.tool_t0}, tool_edge,
-                                  {body, motion.body_t0, motion.body_t0}, body_edge);
-      pair.inside_t1 = is_crossed(path.t1, {tool, motion.tool_t1, motion.tool_t1}, tool_edge,
-                                  {body, motion.body_t1, motion.body_t1}, body_edge);
-      if (pair.inside_t0 || pair.inside_t1 || find_time_of_impact(PairKind::edge_edge, path))
-        edge_pairs.push_back(pair);
+      pair.inside_t0 = is_crossed(a.t0, b.t0, tool_t0_at, tool_edge, body_t0, body_edge);
+      pair.inside_t1 = is_crossed(a.t1, b.t1, tool_t1_at, tool_edge, body_t1, body_edge);
+      bool is_hit = pair.inside_t0 || pair.inside_t1;
+      if (!is_hit && a.swept.overlaps(b.swept, 0.0))
+        is_hit = find_time_of_impact(PairKind::edge_edge, {{a.t0[0], a.t0[1], b.t0[0], b.t0[1]},
+                                                           {a.t1[0], a.t1[1], b.t1[0], b.t1[1]}})
+                     .has_value();
+      if (is_hit) edge_pairs.push_back(pair);
     }
-  }
 }
 
 }  // namespace argil::contact

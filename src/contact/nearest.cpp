@@ -155,8 +155,11 @@ SurfacePoint walk_to_nearest(const SurfaceAt& surface, const Vec3& p, int face) 
     moved = false;
     const auto from = static_cast<std::size_t>(nearest.face);
     for (int i = features.ring_begin[from]; i < features.ring_begin[from + 1]; ++i) {
-      const SurfacePoint other =
-          compute_nearest_on_face(surface, features.ring[static_cast<std::size_t>(i)], p);
+      const int near = features.ring[static_cast<std::size_t>(i)];
+      Bounds box;
+      for (int k = 0; k < 3; ++k) box.include(surface.corner(near, k));
+      if (box.squared_distance(p) > nearest.squared_distance) continue;
+      const SurfacePoint other = compute_nearest_on_face(surface, near, p);
       if (!(other.squared_distance < kNearer * nearest.squared_distance)) continue;
       nearest = other;
       moved = true;
