@@ -59,13 +59,11 @@ struct DepthVector {
   Vec3 offset_t0, offset_t1;
 
   DepthVector(PairKind kind, const PairPath& path) {
-    const std::size_t base = kind == PairKind::vertex_face ? 1 : 0;   // e₁ = p[base+1] − p[base]
-    const std::size_t other = kind == PairKind::vertex_face ? 1 : 2;  // e₂ = p[3] − p[other]
-    const auto edge1 = [&](const std::array<Vec3, 4>& p) -> Vec3 { return p[base + 1] - p[base]; };
-    const auto edge2 = [&](const std::array<Vec3, 4>& p) -> Vec3 { return p[3] - p[other]; };
-    normal_t0 = edge1(path.t0).cross(edge2(path.t0));
-    normal_t1 = edge1(path.t1).cross(edge2(path.t1));
-    normal_middle = 0.5 * (edge1(path.t0).cross(edge2(path.t1)) + edge1(path.t1).cross(edge2(path.t0)));
+    const std::array<Vec3, 3> n = compute_normals(kind, path);
+    normal_t0 = n[0];
+    normal_middle = n[1];
+    normal_t1 = n[2];
+    const std::size_t other = kind == PairKind::vertex_face ? 1 : 2;
     offset_t0 = path.t0[0] - path.t0[other];
     offset_t1 = path.t1[0] - path.t1[other];
   }
