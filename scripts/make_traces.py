@@ -45,6 +45,9 @@ class Stroke(NamedTuple):
 
 HAUNCH = Place(contact=(-6.0, -30.4, 62.0), normal=(0.0, -1.0, 0.0), slide=(0.35, 0.0, -0.94), tool_radius=8.0)
 
+BLOCK = Place(contact=(0.0, 0.0, 30.0), normal=(0.0, 0.0, 1.0), slide=(1.0, 0.0, 0.0), tool_radius=24.0)
+POST = Place(contact=(-25.0, 0.0, 85.0), normal=(-1.0, 0.0, 0.0), slide=(0.0, 0.0, 1.0), tool_radius=8.0)
+
 START = Stroke("push", 0.0, 25.0, 0.0, 0.0)  # where every motion begins
 
 PRESS = [  # three presses, each deeper and held, a slide, and away
@@ -101,12 +104,44 @@ PULL = [  # touch, draw outward while sliding up, and away
     Stroke("pull", 0.60, 25.0, 0.0, 0.0),
 ]
 
+LIGHT = [  # come, press, hold and let go
+    Stroke("push", 0.10, 1.0, 0.0, 0.0),
+    Stroke("push", 0.12, -2.0, 0.0, 0.0),
+    Stroke("push", 0.08, -2.0, 0.0, 0.0),
+    Stroke("push", 0.10, 1.0, 0.0, 0.0),
+]
+
+BEND = [  # push a post over
+    Stroke("push", 0.10, 1.0, 0.0, 0.0),
+    Stroke("push", 0.30, -25.0, 0.0, 0.0),
+    Stroke("push", 0.10, -25.0, 0.0, 0.0),
+]
+
+WET_LIGHT = [  # wet a place, then press it
+    Stroke("wet", 0.10, 1.0, 0.0, 0.0),
+    Stroke("wet", 0.05, -0.5, 0.0, 0.0),
+    Stroke("wet", 0.25, -0.5, 0.0, 0.0),
+    Stroke("push", 0.05, 1.0, 0.0, 0.0),
+    *LIGHT[1:],
+]
+
+SLIDE = [  # press and slide, to and fro
+    Stroke("push", 0.10, 1.0, -7.0, 0.0),
+    Stroke("push", 0.08, -1.5, -7.0, 0.0),
+    Stroke("push", 0.20, -1.5, 7.0, 0.0),
+    Stroke("push", 0.08, 1.0, 7.0, 0.0),
+]
+
 DRY = [stroke._replace(mode="dry") for stroke in WET]
 
 TRACES = {  # file: place, strokes before time zero of the tremor, strokes from there on
     "press_flank.csv": (HAUNCH, [], PRESS),
     "wet_press_flank.csv": (HAUNCH, WET, PRESS),
     "poke.csv": (HAUNCH, [], POKE),
+    "block_light.csv": (BLOCK, [], LIGHT),
+    "block_wet.csv": (BLOCK, [], WET_LIGHT),
+    "block_slide.csv": (BLOCK, [], SLIDE),
+    "post_bend.csv": (POST, [], BEND),
     "long_session.csv": (HAUNCH, [], WET + PRESS + PULL + DRY + PRESS),
 }
 

@@ -15,8 +15,10 @@
 #include "output/info.h"
 #include "scenario/build.h"
 #include "scenario/probe.h"
+#include "study/chart.h"
 #include "study/files.h"
 #include "study/run.h"
+#include "study/stability.h"
 
 namespace {
 
@@ -144,6 +146,32 @@ int main(int argc, char** argv) {
   cage->add_option("--tets", target_tets, "wanted number of tets")->check(CLI::Range(50, 5000000));
   cage->add_option("--scale", scale, "metres per unit of the file")->check(CLI::PositiveNumber);
   cage->callback([&] { code = make_cage_file(first, second, target_tets, scale); });
+
+  study::StudyOptions study_options;
+  const auto add_study = [&](CLI::App* command) {
+    command->add_option("STUDY", study_options.study, "study (JSON)")->required();
+    command->add_option("-o,--output", study_options.output,
+                        "table without suffix (default: the study's name)");
+    command->add_option("--runs", study_options.cases.folder,
+                        "folder of results (default: the table's name.runs)");
+    command->add_option("--jobs", study_options.cases.jobs, "runs at a time")->check(CLI::Range(1, 256));
+    command->add_flag("-q,--quiet", study_options.cases.quiet, "print errors only");
+  };
+  double budget = 0.0;
+  CLI::App* chart = app.add_subcommand("chart", "accuracy against cost over methods and settings");
+  add_study(chart);
+  chart
+      ->add_option("--budget", budget,
+                   "print the most accurate setting of at most so many CPU seconds a second")
+      ->check(CLI::PositiveNumber);
+  chart->callback([&] {
+    code = budget > 0.0 ? study::chart_budget(study_options, budget) : study::chart(study_options);
+  });
+
+  CLI::App* stability = app.add_subcommand("stability", "where methods fail, over one or two parameters");
+  add_study(stability);
+  stability->add_option("--failures", second, "folder for the smallest scenario of each failure");
+  stability->callback([&] { code = study::map_stability(study_options, second); });
 
   try {
     app.parse(argc, argv);

@@ -245,8 +245,8 @@ void ResultFile::append_timing(const std::vector<std::pair<std::string, double>>
     for (const auto& [name, value] : stages) {
       constexpr std::uint64_t kChunk = 16;
       if (!timing.has(name)) {
-        const hdf5::Label label{ends_with_hz(name) ? "Hz" : "s",
-                                "measured by the wall clock; differs from run to run"};
+        const char* unit = ends_with_hz(name) ? "Hz" : name == "instructions" ? "1" : "s";
+        const hdf5::Label label{unit, "measured while the program ran; differs from run to run"};
         timing.create_series(name, hdf5::Element::real64, {}, kChunk, label);
       }
       timing.open_dataset(name).append(&value, 1);

@@ -10,6 +10,9 @@ namespace argil::study {
 /// read for any other reason is an IoError of its reader.)
 void require_input_file(const std::string& file, const std::string& place = "");
 
+/// SHA-256 of a file's bytes.
+std::string hash_file(const std::string& file);
+
 /// The XDMF that is written beside a result.
 std::string name_xdmf(const std::string& result);
 

@@ -21,6 +21,7 @@
 #include "scenario/build.h"
 #include "sim/simulation.h"
 #include "study/build_info.h"
+#include "study/cost_meter.h"
 #include "study/files.h"
 #include "study/progress.h"
 
@@ -55,13 +56,6 @@ class StageClock final : public sim::StageObserver {
   std::chrono::steady_clock::time_point m_begin;
   std::array<double, static_cast<std::size_t>(sim::Stage::count)> m_seconds = {};
 };
-
-std::string hash_file(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << stream.rdbuf();
-  return Sha256().add(bytes.str()).hex_digest();
-}
 
 output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulation& simulation,
                                  const scenario::Scene& scene, const mesh::TriangleMesh& tool) {
@@ -119,12 +113,16 @@ Tick count_ticks(const scenario::Scenario& s, const device::Trace& trace) {
 
 /// The loop over the ticks. Appends records as they come; returns the failure, if any.
 std::optional<Failure> run_ticks(const scenario::Scenario& s, const device::Trace& trace, Tick num_ticks,
-                                 sim::Simulation& simulation, output::ResultFile& file, bool quiet) {
+                                 sim::Simulation& simulation, output::ResultFile& file, CostMeter& cost,
+                                 bool quiet) {
   Progress progress(num_ticks, !quiet);
   file.append(simulation.make_frame());
   Tick last_frame = 0;
   for (Tick k = 1; k <= num_ticks && !g_interrupted; ++k) {
-    const StepStatus status = simulation.tick(sample_at(s, trace, k));
+    const device::DeviceSample sample = sample_at(s, trace, k);
+    cost.begin();
+    const StepStatus status = simulation.tick(sample);
+    cost.end();
     if (!status.is_ok()) {
       if (last_frame != simulation.clock().tick) file.append(simulation.make_frame());  // the last good state
       return status.failure();
@@ -249,10 +247,14 @@ int run(const RunOptions& options) {
   StageClock clock;
   simulation.observe_stages(&clock);
   const auto start = std::chrono::steady_clock::now();
+  CostMeter cost;
   const std::optional<Failure> failure =
-      run_ticks(s, scene.trace, num_ticks, simulation, file, options.quiet);
+      run_ticks(s, scene.trace, num_ticks, simulation, file, cost, options.quiet);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  file.append_timing(clock.seconds(seconds, simulation.clock().tick));
+  auto timing = clock.seconds(seconds, simulation.clock().tick);
+  timing.emplace_back("cpu", cost.cpu_seconds());
+  if (const auto instructions = cost.instructions()) timing.emplace_back("instructions", *instructions);
+  file.append_timing(timing);
   file.finish(failure, g_interrupted != 0 && !failure);
   output::write_xdmf(result, name_xdmf(result));
   if (failure) return print_failure(*failure);

@@ -1,0 +1,103 @@
+#!/usr/bin/python3
+"""Draws a chart of `argil chart`: error against cost, a curve a method, the Pareto front marked, failed runs along the top.
+
+Usage: plot_chart.py TABLE.csv [-o STEM] [--error force_error] [--title TITLE]      writes STEM.png, STEM.pdf
+"""
+import argparse
+import csv
+import math
+from pathlib import Path
+
+import argil_plot as ap
+from argil_plot import COLOURS, DASHES, GREY, MILLIMETRES, plt
+
+LABELS = {"force_error": "error of the hand force, relative L²", "peak_force_error": "error of the largest hand force",
+          "displacement_error": "error of the displacement, relative L²", "dissipation_error": "error of the dissipation",
+          "skin_error": "error of the skin, relative L²", "saturation_error": "error of the saturation, relative L²"}
+MARKS = "osD^vP*X"
+STABLE = ("accurate", "wrong")
+JND = (0.07, 0.10)  # just noticeable difference of force
+
+
+def read_table(file):
+    with open(file, encoding="utf-8") as lines:
+        return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def number(row, key):
+    return float(row[key]) if row[key] else math.nan
+
+
+def find_front(points):
+    """Of (cost, error) those that no other beats in both, in the order of cost."""
+    front = []
+    for cost, error in sorted(points):
+        if not front or error < front[-1][1]:
+            front.append((cost, error))
+    return front
+
+
+def draw_curve(axes, rows, name, place, error, top):
+    style = {"color": COLOURS[place % len(COLOURS)], "marker": MARKS[place % len(MARKS)], "markersize": 4.5}
+    good = [(number(row, "cpu_s_per_s"), number(row, error)) for row in rows if row["outcome"] in STABLE]
+    shaky = [(number(row, "cpu_s_per_s"), number(row, error)) for row in rows
+             if row["outcome"] in ("chatter", "growing_energy")]
+    ended = [number(row, "cpu_s_per_s") for row in rows if row["outcome"] not in STABLE + ("chatter", "growing_energy")]
+    whole = [(number(row, "cpu_s_per_s"), number(row, error)) for row in rows if number(row, error) > 0.0]
+    dashes = DASHES[place // len(COLOURS) % 2 * 2]
+    axes.loglog(*zip(*whole) if whole else ([], []), linestyle=dashes, linewidth=1.0, color=style["color"])
+    axes.loglog(*zip(*good) if good else ([], []), linestyle="none", label=name, **style)
+    axes.loglog(*zip(*shaky) if shaky else ([], []), linestyle="none", markerfacecolor="white", **style)
+    ended = [cost for cost in ended if cost > 0.0]
+    axes.loglog(ended, [top] * len(ended), linestyle="none", color=style["color"], marker="x", clip_on=False)
+    return good
+
+
+def draw(rows, error, title):
+    reference, rest = rows[0], rows[2:]
+    figure, axes = plt.subplots(figsize=(175 * MILLIMETRES, 105 * MILLIMETRES))
+    values = [number(row, error) for row in rest if number(row, error) > 0.0]
+    top = 2.0 * max(values)
+    names = list(dict.fromkeys(row["curve"] for row in rest))
+    points = []
+    for place, name in enumerate(names):
+        points += draw_curve(axes, [row for row in rest if row["curve"] == name], name, place, error, top)
+    front = find_front(points)
+    axes.loglog(*zip(*front), color="black", linewidth=3.5, alpha=0.18, zorder=1, label="best at its cost")
+    if error.endswith("force_error"):
+        axes.axhspan(*JND, color=GREY, alpha=0.15, linewidth=0)
+        axes.annotate("just noticeable", (axes.get_xlim()[0], JND[0]), color=GREY, fontsize=7, va="bottom",
+                      xytext=(3, 1), textcoords="offset points")
+    own = number(reference, error)
+    if own > 0.0:
+        axes.axhline(own, color=GREY, linewidth=0.8, linestyle=":")
+        axes.annotate("the reference's own error", (axes.get_xlim()[1], own), color=GREY, fontsize=7, ha="right",
+                      va="bottom", xytext=(-3, 1), textcoords="offset points")
+    axes.axvline(1.0, color=GREY, linewidth=0.8)
+    axes.annotate("real time", (1.0, axes.get_ylim()[0]), color=GREY, fontsize=7, rotation=90, va="bottom", ha="right",
+                  xytext=(-2, 3), textcoords="offset points")
+    axes.plot([], [], linestyle="none", marker="o", markerfacecolor="white", color=GREY, label="hollow: chatters or gains energy")
+    if any(row["outcome"] not in STABLE + ("chatter", "growing_energy") and row["cpu_s_per_s"] for row in rest):
+        axes.plot([], [], linestyle="none", marker="x", color=GREY, label="ended early")
+    axes.set_xlabel("CPU seconds a simulated second, one thread")
+    axes.set_ylabel(LABELS.get(error, error))
+    axes.set_title(title)
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7)
+    return figure
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
+    parser.add_argument("table", type=Path, metavar="TABLE.csv")
+    parser.add_argument("-o", "--output", type=Path, metavar="STEM")
+    parser.add_argument("--error", default="force_error", choices=LABELS)
+    parser.add_argument("--title", default="")
+    options = parser.parse_args()
+    rows = read_table(options.table)
+    if len(rows) < 3 or "cpu_s_per_s" not in rows[0]:
+        ap.refuse(f"{options.table}: is not a table of argil chart")
+    ap.save(draw(rows, options.error, options.title), options.output or options.table.with_suffix(""))
+
+
+if __name__ == "__main__":
+    main()

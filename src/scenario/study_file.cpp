@@ -1,0 +1,226 @@
+#include "scenario/study_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "base/error.h"
+#include "scenario/json_document.h"
+
+namespace argil::scenario {
+namespace {
+
+/// An object of a study file, read key by key; a key that no one asked for is an error.
+class Reader {
+ public:
+  Reader(const Json& json, std::string file, std::string place)
+      : m_json(json), m_file(std::move(file)), m_place(std::move(place)) {
+    if (!json.is_object()) refuse("", "is not an object", "give {…}");
+  }
+
+  const Json* find(const std::string& key) {
+    m_known.push_back(key);
+    return m_json.contains(key) ? &m_json[key] : nullptr;
+  }
+  const Json& get(const std::string& key, const std::string& meaning) {
+    const Json* value = find(key);
+    if (!value) refuse(key, "is missing", "add it: " + meaning);
+    return *value;
+  }
+  std::string text(const std::string& key, const std::string& meaning) {
+    const Json& value = get(key, meaning);
+    if (!value.is_string()) refuse(key, value.dump() + " is not a text", "give " + meaning);
+    return value.get<std::string>();
+  }
+  double number(const std::string& key, double fallback, double least, double most) {
+    const Json* value = find(key);
+    if (!value) return fallback;
+    if (!value->is_number() || !(value->get<double>() >= least && value->get<double>() <= most))
+      refuse(key, value->dump() + " is outside [" + Json(least).dump() + ", " + Json(most).dump() + "]",
+             "give a number in it");
+    return value->get<double>();
+  }
+  bool flag(const std::string& key, bool fallback) {
+    const Json* value = find(key);
+    if (!value) return fallback;
+    if (!value->is_boolean()) refuse(key, value->dump() + " is neither true nor false", "give one of them");
+    return value->get<bool>();
+  }
+  std::vector<double> numbers(const std::string& key, const Json& list) const {
+    std::vector<double> values;
+    if (!list.is_array() || list.empty())
+      refuse(key, "is not a list of numbers", "give for instance [1, 2, 5]");
+    for (const Json& value : list) {
+      if (!value.is_number()) refuse(key, value.dump() + " is not a number", "give numbers only");
+      values.push_back(value.get<double>());
+    }
+    return values;
+  }
+  /// {"/pointer": value, …}
+  std::vector<Setting> settings(const std::string& key) {
+    const Json* object = find(key);
+    std::vector<Setting> list;
+    if (!object) return list;
+    if (!object->is_object()) refuse(key, "is not an object", "give {\"/json/pointer\": value, …}");
+    for (const auto& [pointer, value] : object->items()) {
+      check_pointer(key, pointer);
+      list.push_back({pointer, value.dump()});
+    }
+    return list;
+  }
+  void check_pointer(const std::string& key, const std::string& pointer) const {
+    if (pointer.empty() || pointer[0] != '/')
+      refuse(key, "\"" + pointer + "\" is no JSON pointer", "begin it with /, as in /dynamics/model");
+  }
+  /// After all keys were asked for.
+  void finish() const {
+    for (const auto& [key, value] : m_json.items())
+      if (std::find(m_known.begin(), m_known.end(), key) == m_known.end()) {
+        const std::string near = find_nearest(key, m_known);
+        refuse(key, "is not a known key", near.empty() ? "remove it" : "did you mean " + near + "?");
+      }
+  }
+  [[noreturn]] void refuse(const std::string& key, const std::string& problem,
+                           const std::string& remedy) const {
+    throw InputError(m_file, m_place + (key.empty() ? "" : "/" + escape_key(key)), problem, remedy);
+  }
+  std::string place(const std::string& key) const { return m_place + "/" + escape_key(key); }
+
+ private:
+  const Json& m_json;
+  std::string m_file;
+  std::string m_place;
+  std::vector<std::string> m_known;
+};
+
+std::string resolve(const std::string& study, const std::string& scenario) {
+  return (std::filesystem::path(study).parent_path() / scenario).lexically_normal().string();
+}
+
+/// "along": {"/pointer": [values…], …}, lists of one length, taken together.
+std::vector<std::vector<Setting>> read_points(Reader& reader) {
+  const Json* along = reader.find("along");
+  if (!along) return {{}};
+  if (!along->is_object() || along->empty())
+    reader.refuse("along", "is not an object of lists", "give {\"/json/pointer\": [values], …}");
+  std::vector<std::vector<Setting>> points;
+  for (const auto& [pointer, values] : along->items()) {
+    reader.check_pointer("along", pointer);
+    if (!values.is_array() || values.empty())
+      reader.refuse("along", pointer + " has no list of values", "give for instance [1, 2, 5]");
+    if (points.empty()) points.resize(values.size());
+    if (points.size() != values.size())
+      reader.refuse("along",
+                    pointer + " has " + std::to_string(values.size()) + " values, the first key " +
+                        std::to_string(points.size()),
+                    "give lists of one length; they are taken together");
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].push_back({pointer, values[i].dump()});
+  }
+  return points;
+}
+
+Curve read_curve(const Json& json, const std::string& file, const std::string& place) {
+  Reader reader(json, file, place);
+  Curve curve;
+  curve.name = reader.text("name", "what the legend calls it");
+  curve.settings = reader.settings("settings");
+  curve.points = read_points(reader);
+  reader.finish();
+  return curve;
+}
+
+MapAxis read_axis(const Json& json, const std::string& file, const std::string& place) {
+  Reader reader(json, file, place);
+  MapAxis axis;
+  axis.name = reader.text("name", "what the axis is called, with its unit");
+  const Json& pointers = reader.get("pointers", "the keys that take the value");
+  if (!pointers.is_array() || pointers.empty())
+    reader.refuse("pointers", "is not a list", "give [\"/json/pointer\", …]");
+  for (const Json& pointer : pointers) {
+    if (!pointer.is_string())
+      reader.refuse("pointers", pointer.dump() + " is not a text", "give JSON pointers");
+    axis.pointers.push_back(pointer.get<std::string>());
+    reader.check_pointer("pointers", axis.pointers.back());
+  }
+  axis.is_logarithmic = reader.flag("logarithmic", false);
+  axis.is_integer = reader.flag("integers", false);
+  axis.values = reader.numbers("values", reader.get("values", "increasing numbers"));
+  if (std::adjacent_find(axis.values.begin(), axis.values.end(), std::greater_equal<>()) != axis.values.end())
+    reader.refuse("values", "do not increase", "sort them and leave out what stands twice");
+  if (axis.is_logarithmic && !(axis.values.front() > 0.0))
+    reader.refuse("values", "hold a number that has no logarithm",
+                  "give positive ones, or logarithmic false");
+  reader.finish();
+  return axis;
+}
+
+MapLimit read_limit(const Json& json, const std::string& file, const std::string& place, bool has_y) {
+  Reader reader(json, file, place);
+  MapLimit limit;
+  limit.name = reader.text("name", "what the limit is called, and its source");
+  limit.x = reader.numbers("x", reader.get("x", "places of the line's points"));
+  if (has_y) limit.y = reader.numbers("y", reader.get("y", "places of the line's points"));
+  if (has_y && limit.x.size() != limit.y.size())
+    reader.refuse("y", "has another length than x", "give a pair for every point");
+  reader.finish();
+  return limit;
+}
+
+}  // namespace
+
+ChartStudy read_chart_study(const std::string& file) {
+  const Json json = read_json(file);
+  Reader reader(json, file, "");
+  ChartStudy study;
+  study.file = file;
+  study.about = reader.text("about", "what the chart is to show");
+  study.scenario = resolve(file, reader.text("scenario", "the scene's file"));
+  study.settings = reader.settings("settings");
+  study.reference = reader.settings("reference");
+  study.refined = reader.settings("refined");
+  if (study.refined.empty())
+    reader.refuse("refined", "is missing",
+                  "add what refines the reference once more, so that its own error is known");
+  study.repeats = static_cast<int>(reader.number("repeats", 3, 1, 99));
+  const Json& curves = reader.get("curves", "the methods to compare");
+  if (!curves.is_array() || curves.empty())
+    reader.refuse("curves", "is not a list", "give [{\"name\": …}, …]");
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    study.curves.push_back(read_curve(curves[i], file, reader.place("curves") + "/" + std::to_string(i)));
+  reader.finish();
+  return study;
+}
+
+StabilityStudy read_stability_study(const std::string& file) {
+  const Json json = read_json(file);
+  Reader reader(json, file, "");
+  StabilityStudy study;
+  study.file = file;
+  study.about = reader.text("about", "what the map is to show");
+  study.scenario = resolve(file, reader.text("scenario", "the scene's file"));
+  study.settings = reader.settings("settings");
+  study.x = read_axis(reader.get("x", "the axis along which boundaries are found"), file, reader.place("x"));
+  if (const Json* y = reader.find("y")) study.y = read_axis(*y, file, reader.place("y"));
+  study.reference = reader.settings("reference");
+  study.wrong_above = reader.number("wrong_above", study.wrong_above, 0.0, 1e6);
+  study.bisect_to = reader.number("bisect_to", study.bisect_to, 0.0, 1.0);
+  if (const Json* limits = reader.find("limits")) {
+    if (!limits->is_array()) reader.refuse("limits", "is not a list", "give [{\"name\": …, \"x\": […]}, …]");
+    for (std::size_t i = 0; i < limits->size(); ++i)
+      study.limits.push_back(read_limit((*limits)[i], file, reader.place("limits") + "/" + std::to_string(i),
+                                        !study.y.values.empty()));
+  }
+  reader.finish();
+  return study;
+}
+
+std::string print_patch(const std::vector<Setting>& settings) {
+  Json patch = Json::object();
+  for (const Setting& setting : settings)
+    patch[Json::json_pointer(setting.pointer)] =
+        Json::accept(setting.value) ? Json::parse(setting.value) : Json(setting.value);
+  return patch.dump(2) + "\n";
+}
+
+}  // namespace argil::scenario

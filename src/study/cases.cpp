@@ -1,0 +1,256 @@
+#include "study/cases.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "output/result_reader.h"
+#include "study/files.h"
+#include "study/run.h"
+
+extern char** environ;
+
+namespace argil::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+RunOptions make_run_options(const Case& c) {
+  RunOptions options;
+  options.scenario = c.scenario;
+  for (const scenario::Setting& setting : c.settings)
+    options.settings.push_back(setting.pointer + "=" + setting.value);
+  return options;
+}
+
+/// Names the bits that a case gives. Throws InputError when the scenario is refused.
+std::string make_id(const Case& c) {
+  const scenario::Scenario s = load(make_run_options(c));
+  Sha256 hash;
+  hash.add(describe_build());
+  hash.add(scenario::print_portable(s));
+  for (const scenario::InputFile& input : scenario::list_input_files(s))
+    if (!input.pointer.empty()) hash.add(hash_file(input.file));
+  return hash.hex_digest().substr(0, 16);
+}
+
+/// The result of one case as it is kept beside its file: a line a figure, the reason last.
+void write_result(const CaseResult& result, const std::string& file) {
+  const std::string part = file + ".part";
+  std::ofstream out(part);
+  out.precision(17);
+  out << "exit " << result.exit_code << "\nmemory " << result.peak_memory_MiB << "\ninstructions "
+      << result.instructions << "\ncpu";
+  for (const double seconds : result.cpu_seconds) out << ' ' << seconds;
+  out << "\nreason " << result.reason << '\n';
+  out.close();
+  std::error_code error;
+  fs::rename(part, file, error);
+  if (!out || error) throw IoError(file, "could not be written");
+}
+
+bool read_result(const std::string& file, CaseResult& result) {
+  std::ifstream in(file);
+  std::string word, line;
+  if (!(in >> word >> result.exit_code >> word >> result.peak_memory_MiB >> word >> result.instructions))
+    return false;
+  std::getline(in, line);
+  std::getline(in, line);
+  std::istringstream list(line);
+  list >> word;
+  for (double seconds = 0.0; list >> seconds;) result.cpu_seconds.push_back(seconds);
+  if (!std::getline(in, line) || line.rfind("reason ", 0) != 0) return false;
+  result.reason = line.substr(7);
+  return true;
+}
+
+/// Last line that says something of what a process wrote, without the program's name.
+std::string read_last_words(const std::string& log) {
+  std::ifstream in(log);
+  std::string line, last;
+  while (std::getline(in, line))
+    if (!line.empty()) last = line;
+  constexpr std::string_view kName = "argil: ";
+  return last.rfind(kName, 0) == 0 ? last.substr(kName.size()) : last;
+}
+
+/// One case under way.
+struct Job {
+  std::size_t place = 0;  // in the list of cases
+  int repeat = 0;
+};
+
+/// Starts, awaits and keeps the runs of a list of cases.
+class Runner {
+ public:
+  Runner(const std::vector<Case>& cases, const CaseOptions& options)
+      : m_cases(cases), m_options(options), m_results(cases.size()) {}
+
+  std::vector<CaseResult> run() {
+    std::error_code error;
+    fs::create_directories(m_options.folder, error);
+    if (error) throw IoError(m_options.folder, "cannot be made (" + error.message() + ")");
+    std::vector<std::size_t> waiting;
+    for (std::size_t i = 0; i < m_cases.size(); ++i)
+      if (prepare(i)) waiting.push_back(i);
+    for (const std::size_t i : waiting) {
+      while (m_running.size() >= static_cast<std::size_t>(m_options.jobs)) await();
+      start({i, 0});
+    }
+    while (!m_running.empty()) await();
+    for (std::size_t i = 0; i < m_cases.size(); ++i)  // what stands twice in the list has run once
+      if (const auto first = m_first.find(m_results[i].id); first != m_first.end() && first->second != i)
+        m_results[i] = m_results[first->second];
+    return std::move(m_results);
+  }
+
+ private:
+  std::string path(std::size_t i, const char* suffix) const {
+    return (fs::path(m_options.folder) / (m_results[i].id + suffix)).string();
+  }
+
+  /// True when the case must run.
+  bool prepare(std::size_t i) {
+    CaseResult& result = m_results[i];
+    try {
+      result.id = make_id(m_cases[i]);
+    } catch (const InputError& refused) {
+      result.exit_code = kInputRefused;
+      result.reason = refused.what();
+      return false;
+    }
+    if (!m_first.emplace(result.id, i).second) return false;
+    CaseResult kept;
+    kept.id = result.id;
+    const bool is_kept = read_result(path(i, ".case"), kept) &&
+                         static_cast<int>(kept.cpu_seconds.size()) >= m_cases[i].repeats;
+    const bool has_file = fs::exists(path(i, ".h5"));
+    if (!(is_kept && has_file) && !(read_result(path(i, ".case"), kept) && kept.exit_code == kInputRefused))
+      return true;
+    result = kept;
+    result.file = has_file ? path(i, ".h5") : "";
+    return false;
+  }
+
+  void start(const Job& job) {
+    const std::size_t i = job.place;
+    std::vector<std::string> words = {
+        m_options.program, "run", m_cases[i].scenario, "--quiet",
+        "--threads",       "1",   "--output",          path(i, job.repeat == 0 ? ".part.h5" : ".again.h5")};
+    for (const std::string& text : make_run_options(m_cases[i]).settings) {
+      words.emplace_back("--set");
+      words.push_back(text);
+    }
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    const std::string log = path(i, ".log");
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    pid_t child = 0;
+    const int error =
+        posix_spawn(&child, m_options.program.c_str(), &files, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&files);
+    if (error != 0)
+      throw IoError(m_options.program, std::string("could not be started (") + std::strerror(error) + ")");
+    m_running.emplace(child, job);
+  }
+
+  void await() {
+    int status = 0;
+    rusage usage = {};
+    const pid_t child = wait4(-1, &status, 0, &usage);
+    if (child < 0 && errno == EINTR) return;
+    const auto found = m_running.find(child);
+    if (found == m_running.end()) return;
+    const Job job = found->second;
+    m_running.erase(found);
+    CaseResult& result = m_results[job.place];
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    result.peak_memory_MiB = static_cast<double>(usage.ru_maxrss) / 1024.0;
+    take(job, result);
+    const bool is_over = result.exit_code == kInputRefused || job.repeat + 1 >= m_cases[job.place].repeats;
+    if (!is_over) return start({job.place, job.repeat + 1});
+    write_result(result, path(job.place, ".case"));
+    std::error_code ignored;
+    fs::remove(path(job.place, ".log"), ignored);
+    print(job.place);
+  }
+
+  /// Reads what a run left and puts its first file in its place.
+  void take(const Job& job, CaseResult& result) {
+    std::error_code error;
+    const std::string stem = path(job.place, job.repeat == 0 ? ".part" : ".again");
+    fs::remove(stem + ".xdmf", error);  // it names a file that moves
+    const std::string file = stem + ".h5";
+    if (!fs::exists(file)) {
+      result.reason = read_last_words(path(job.place, ".log"));
+      return;
+    }
+    try {
+      const output::ResultReader reader(file);
+      for (const auto& [name, value] : reader.read_timing()) {
+        if (name == "cpu") result.cpu_seconds.push_back(value);
+        if (name == "instructions") result.instructions = value;
+      }
+      if (const auto failure = reader.read_failure()) result.reason = to_string(*failure);
+    } catch (const std::runtime_error& broken) {  // a killed run's file
+      result.reason = broken.what();
+    }
+    if (result.exit_code > 128) result.reason = "killed by signal " + std::to_string(result.exit_code - 128);
+    if (job.repeat > 0) {
+      fs::remove(file, error);
+      return;
+    }
+    result.file = path(job.place, ".h5");
+    fs::rename(file, result.file, error);
+    if (error) throw IoError(result.file, "could not be written (" + error.message() + ")");
+  }
+
+  void print(std::size_t i) {
+    ++m_ended;
+    if (m_options.quiet) return;
+    const CaseResult& result = m_results[i];
+    std::fprintf(stderr, "argil: run %d of %zu (%s): %s\n", m_ended, m_first.size(), result.id.c_str(),
+                 result.reason.empty() ? "done" : result.reason.c_str());
+  }
+
+  const std::vector<Case>& m_cases;
+  const CaseOptions& m_options;
+  std::vector<CaseResult> m_results;
+  std::map<std::string, std::size_t> m_first;  // place of each id's first case
+  std::map<pid_t, Job> m_running;
+  int m_ended = 0;
+};
+
+}  // namespace
+
+std::vector<CaseResult> run_cases(const std::vector<Case>& cases, const CaseOptions& options) {
+  return Runner(cases, options).run();
+}
+
+double compute_median_cpu(const CaseResult& result) {
+  std::vector<double> sorted = result.cpu_seconds;
+  if (sorted.empty()) return 0.0;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+}  // namespace argil::study

@@ -1,0 +1,183 @@
+#include "study/chart.h"
+
+#include <cstdio>
+#include <optional>
+
+#include "output/study_table.h"
+#include "scenario/study_file.h"
+#include "study/measure.h"
+#include "study/outcome.h"
+#include "study/run.h"
+
+namespace argil::study {
+namespace {
+
+/// One row to be: which curve, what it adds to the scenario, and what came out.
+struct Row {
+  std::string curve;
+  Settings settings;  // on top of the study's own
+  Settings point;     // of these, what sets it apart on its curve
+  CaseResult result;
+  Outcome outcome = Outcome::killed;
+  RunFigures figures;
+  RunErrors errors;
+  double cost() const {
+    return figures.simulated_seconds > 0.0 ? compute_median_cpu(result) / figures.simulated_seconds
+                                           : kUnknown;
+  }
+};
+
+constexpr std::size_t kReference = 0;  // places in the list of rows
+constexpr std::size_t kRefined = 1;
+
+std::vector<Row> list_rows(const scenario::ChartStudy& study) {
+  std::vector<Row> rows(2);
+  rows[kReference] = {"reference", study.reference, {}, {}, {}, {}, {}};
+  rows[kRefined] = {"reference refined", join(study.reference, study.refined), {}, {}, {}, {}, {}};
+  for (const scenario::Curve& curve : study.curves)
+    for (const Settings& point : curve.points)
+      rows.push_back({curve.name, join(curve.settings, point), point, {}, {}, {}, {}});
+  return rows;
+}
+
+std::vector<Row> run_rows(const scenario::ChartStudy& study, const CaseOptions& options) {
+  std::vector<Row> rows = list_rows(study);
+  std::vector<Case> cases;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    cases.push_back(
+        {study.scenario, join(study.settings, rows[i].settings), i > kRefined ? study.repeats : 1});
+  std::vector<CaseResult> results = run_cases({cases.begin(), cases.begin() + 2}, options);
+  if (results[kReference].exit_code != kDone) cases.resize(2);  // nothing to compare with
+  rows.resize(cases.size());
+  results = run_cases(cases, options);
+  std::optional<output::ResultReader> truth, refined;
+  if (results[kReference].exit_code == kDone) truth.emplace(results[kReference].file);
+  if (results[kRefined].exit_code == kDone) refined.emplace(results[kRefined].file);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Row& row = rows[i];
+    row.result = results[i];
+    if (!row.result.file.empty() && row.result.exit_code <= 128) {
+      const output::ResultReader reader(row.result.file);
+      row.figures = compute_figures(reader);
+      const auto& other = i == kReference ? refined : truth;  // the reference's own error: to the finer one
+      if (row.result.exit_code == kDone && i != kRefined && other)
+        row.errors = compute_errors(reader, *other);
+    }
+    row.outcome = classify(row.result, row.figures, row.errors, {});
+  }
+  return rows;
+}
+
+output::StudyTable make_table(const scenario::ChartStudy& study, const std::vector<Row>& rows) {
+  output::StudyTable table;
+  table.columns = {
+      {"curve", "-", "method"},
+      {"point", "-", "what sets the run apart on its curve"},
+      {"outcome", "-", "what became of the run"},
+      {"force_error", "1", "relative L2 error of the hand force; of the reference: against the refined one"},
+      {"peak_force_error", "1", "of the largest force"},
+      {"above_7_percent", "1", "share of the ticks in touch whose force errs by more than 7 %"},
+      {"above_10_percent", "1", "the same for 10 %: the just noticeable difference is 7 to 10 %"},
+      {"displacement_error", "1", "relative L2 over the body and all frames"},
+      {"skin_error", "1", "relative L2 over the skin's vertices and all frames"},
+      {"saturation_error", "1", "relative L2 over the body and all frames"},
+      {"dissipation_error", "1", "of the plastic dissipation"},
+      {"cpu_s_per_s", "1", "CPU seconds a simulated second, one thread, median of the repeats"},
+      {"simulated_s", "s", "simulated time"},
+      {"steps", "1", "physics steps"},
+      {"linearisations", "1", "systems of equations solved"},
+      {"iterations", "1", "of the linear solver"},
+      {"factorisations", "1", "of its matrix"},
+      {"instructions", "1", "in user mode, of the ticks; empty: not counted on this machine"},
+      {"peak_memory_MiB", "MiB", "of the process"},
+      {"peak_force_N", "N", "largest hand force"},
+      {"energy_gain", "1", "mechanical energy beyond what the hand gave, relative"},
+      {"chatter", "1", "rms of the hand force above 50 Hz over its rms"},
+      {"settings", "-", "on top of the study's own"},
+      {"run", "-", "name of the result in the folder of runs"},
+      {"reason", "-", "why the run ended early"},
+  };
+  for (const Row& row : rows) {
+    const RunErrors& e = row.errors;
+    const RunFigures& f = row.figures;
+    const double instructions = row.result.instructions > 0.0 ? row.result.instructions : kUnknown;
+    table.rows.push_back({row.curve,
+                          print_settings(row.point),
+                          to_string(row.outcome),
+                          e.force,
+                          e.peak_force,
+                          e.above_7_percent,
+                          e.above_10_percent,
+                          e.displacement,
+                          e.skin,
+                          e.saturation,
+                          e.dissipation,
+                          row.cost(),
+                          f.simulated_seconds,
+                          f.steps,
+                          f.solves,
+                          f.iterations,
+                          f.factorisations,
+                          instructions,
+                          row.result.peak_memory_MiB,
+                          f.peak_force,
+                          f.energy_gain,
+                          f.chatter,
+                          print_settings(row.settings),
+                          row.result.id,
+                          row.result.reason});
+  }
+  table.provenance = describe_study(study.file, study.about, study.scenario, study.settings);
+  return table;
+}
+
+int print_reference_failure(const Row& row) {
+  std::fprintf(stderr, "argil: the %s run did not end well: %s\n", row.curve.c_str(),
+               row.result.reason.c_str());
+  return kRunFailed;
+}
+
+/// Runs the study and writes its table; the rows.
+std::vector<Row> make_chart(const scenario::ChartStudy& study, StudyOptions& options) {
+  name_outputs(options);
+  const std::vector<Row> rows = run_rows(study, options.cases);
+  const output::StudyTable table = make_table(study, rows);
+  output::write_csv(table, options.output + ".csv");
+  output::write_hdf5(table, options.output + ".h5");
+  return rows;
+}
+
+}  // namespace
+
+int chart(StudyOptions options) {
+  const scenario::ChartStudy study = scenario::read_chart_study(options.study);
+  const std::vector<Row> rows = make_chart(study, options);
+  for (const std::size_t i : {kReference, kRefined})
+    if (rows[i].result.exit_code != kDone) return print_reference_failure(rows[i]);
+  if (!options.cases.quiet)
+    std::printf("%s.csv: %zu runs, the reference's own force error %.2g\n", options.output.c_str(),
+                rows.size(), rows[kReference].errors.force);
+  return kDone;
+}
+
+int chart_budget(StudyOptions options, double budget) {
+  const scenario::ChartStudy study = scenario::read_chart_study(options.study);
+  const std::vector<Row> rows = make_chart(study, options);
+  if (rows[kReference].result.exit_code != kDone) return print_reference_failure(rows[kReference]);
+  const Row* best = nullptr;
+  for (std::size_t i = kRefined + 1; i < rows.size(); ++i)
+    if (is_stable(rows[i].outcome) && rows[i].cost() <= budget &&
+        (!best || rows[i].errors.force < best->errors.force))
+      best = &rows[i];
+  if (!best) {
+    std::fprintf(stderr, "argil: no run of %s costs at most %g CPU seconds a second\n", study.file.c_str(),
+                 budget);
+    return kRunFailed;
+  }
+  std::fprintf(stderr, "argil: %s %s: force error %.2g at %.2g CPU seconds a second\n", best->curve.c_str(),
+               print_settings(best->point).c_str(), best->errors.force, best->cost());
+  std::fputs(scenario::print_patch(join(study.settings, best->settings)).c_str(), stdout);
+  return kDone;
+}
+
+}  // namespace argil::study

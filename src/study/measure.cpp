@@ -1,0 +1,231 @@
+#include "study/measure.h"
+
+#include <unsupported/Eigen/FFT>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+
+#include "base/error.h"
+#include "embed/tet_locator.h"
+
+namespace argil::study {
+namespace {
+
+constexpr double kChatterHz = 50.0;    // above it the hand does not move by itself
+constexpr double kTouchShare = 0.05;   // of the peak force: below, relative errors say nothing
+constexpr double kSameTime = 1e-9;     // [s]
+constexpr double kLeastCovered = 0.9;  // of the truth's volume that a mesh must share with it
+
+/// Σ|a − b|² and Σ|b|², weighted.
+struct Squares {
+  double difference = 0.0;
+  double truth = 0.0;
+  void add(double weight, double difference_squared, double truth_squared) {
+    difference += weight * difference_squared;
+    truth += weight * truth_squared;
+  }
+  double relative() const { return truth > 0.0 ? std::sqrt(difference / truth) : kUnknown; }
+};
+
+/// The truth's records at the times of a run's; none when one is missing.
+std::vector<sim::HapticRecord> find_records(const std::vector<sim::HapticRecord>& run,
+                                            const std::vector<sim::HapticRecord>& truth) {
+  std::vector<sim::HapticRecord> found;
+  std::size_t k = 0;
+  for (const sim::HapticRecord& record : run) {
+    while (k < truth.size() && truth[k].time < record.time - kSameTime) ++k;
+    if (k == truth.size() || truth[k].time > record.time + kSameTime) return {};
+    found.push_back(truth[k]);
+  }
+  return found;
+}
+
+void compare_forces(const std::vector<sim::HapticRecord>& run, const std::vector<sim::HapticRecord>& truth,
+                    RunErrors& errors) {
+  Squares all;
+  double peak = 0.0;
+  double true_peak = 0.0;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    all.add(1.0, (run[k].force - truth[k].force).squaredNorm(), truth[k].force.squaredNorm());
+    peak = std::max(peak, run[k].force.norm());
+    true_peak = std::max(true_peak, truth[k].force.norm());
+  }
+  if (!(true_peak > 0.0)) return;
+  errors.force = all.relative();
+  errors.peak_force = std::abs(peak - true_peak) / true_peak;
+  double touched = 0.0;
+  double above_7 = 0.0;
+  double above_10 = 0.0;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const double force = truth[k].force.norm();
+    if (!(force > kTouchShare * true_peak)) continue;
+    const double error = (run[k].force - truth[k].force).norm() / force;
+    touched += 1.0;
+    above_7 += error > 0.07 ? 1.0 : 0.0;
+    above_10 += error > 0.10 ? 1.0 : 0.0;
+  }
+  errors.above_7_percent = above_7 / touched;
+  errors.above_10_percent = above_10 / touched;
+}
+
+/// The truth's tets, and where their centroids lie in a run's mesh.
+class Samples {
+ public:
+  Samples(const output::ResultHeader& run, const output::ResultHeader& truth)
+      : m_run(run),
+        m_truth(truth),
+        m_volume(truth.tets.cols()),
+        m_place(static_cast<std::size_t>(truth.tets.cols())) {
+    const embed::TetLocator locator({run.rest_position, run.tets, {}});
+    double covered = 0.0;
+    for (Eigen::Index t = 0; t < truth.tets.cols(); ++t) {
+      const auto corner = [&](int i) -> Vec3 { return truth.rest_position.col(truth.tets(i, t)); };
+      m_volume(t) = mesh::compute_tet_volume(corner(0), corner(1), corner(2), corner(3));
+      m_place[static_cast<std::size_t>(t)] =
+          locator.find(0.25 * (corner(0) + corner(1) + corner(2) + corner(3)));
+      if (m_place[static_cast<std::size_t>(t)].tet >= 0) covered += m_volume(t);
+    }
+    m_is_comparable = covered >= kLeastCovered * m_volume.sum();
+  }
+  bool is_comparable() const { return m_is_comparable; }
+
+  void compare(const sim::Frame& run, const sim::Frame& truth, Squares& displacement,
+               Squares& saturation) const {
+    for (Eigen::Index t = 0; t < m_volume.size(); ++t) {
+      const embed::TetLocator::Place& place = m_place[static_cast<std::size_t>(t)];
+      if (place.tet < 0) continue;
+      Vec3 u = Vec3::Zero();
+      Vec3 u_true = Vec3::Zero();
+      for (int i = 0; i < 4; ++i) {
+        const int v = m_run.tets(i, place.tet);
+        const int w = m_truth.tets(i, t);
+        u += place.weights(i) * (run.position.col(v) - m_run.rest_position.col(v));
+        u_true += 0.25 * (truth.position.col(w) - m_truth.rest_position.col(w));
+      }
+      displacement.add(m_volume(t), (u - u_true).squaredNorm(), u_true.squaredNorm());
+      const double S = truth.saturation(t);
+      saturation.add(m_volume(t), std::pow(run.saturation(place.tet) - S, 2), S * S);
+    }
+  }
+
+ private:
+  const output::ResultHeader& m_run;
+  const output::ResultHeader& m_truth;
+  Field m_volume;
+  std::vector<embed::TetLocator::Place> m_place;
+  bool m_is_comparable = false;
+};
+
+std::optional<output::FrameInfo> find_frame(const std::vector<output::FrameInfo>& list, double time) {
+  for (const output::FrameInfo& info : list)
+    if (std::abs(info.time - time) <= kSameTime) return info;
+  return {};
+}
+
+void compare_frames(const output::ResultReader& run, const output::ResultReader& truth, RunErrors& errors) {
+  const output::ResultHeader run_header = run.read_header();
+  const output::ResultHeader true_header = truth.read_header();
+  const Samples samples(run_header, true_header);
+  const std::vector<output::FrameInfo> frames = run.read_frame_list();
+  Squares displacement, saturation, skin;
+  std::optional<Points> rest_run, rest_true;
+  for (const output::FrameInfo& info : truth.read_frame_list()) {
+    const auto same = find_frame(frames, info.time);
+    if (!same) continue;
+    const sim::Frame a = run.read_frame(*same);
+    const sim::Frame b = truth.read_frame(info);
+    if (!rest_true) {
+      rest_run = a.skin_position;
+      rest_true = b.skin_position;
+    }
+    if (samples.is_comparable()) samples.compare(a, b, displacement, saturation);
+    if (rest_run->cols() == rest_true->cols() && rest_true->cols() > 0)
+      skin.add(1.0, (a.skin_position - *rest_run - b.skin_position + *rest_true).squaredNorm(),
+               (b.skin_position - *rest_true).squaredNorm());
+  }
+  errors.displacement = displacement.relative();
+  errors.saturation = saturation.relative();
+  errors.skin = skin.relative();
+}
+
+}  // namespace
+
+RunErrors compute_errors(const output::ResultReader& run, const output::ResultReader& truth) {
+  RunErrors errors;
+  const auto haptic = run.read_haptic();
+  const auto records = find_records(haptic, truth.read_haptic());
+  if (records.size() != haptic.size())
+    throw InputError(run.file(), "/haptic", "has ticks that " + truth.file() + " has not",
+                     "compare runs of one motion, the truth's period a whole part of the other's");
+  compare_forces(haptic, records, errors);
+  compare_frames(run, truth, errors);
+  const auto run_physics = run.read_physics();
+  const auto true_physics = truth.read_physics();
+  if (!run_physics.empty() && !true_physics.empty() && true_physics.back().plastic_dissipation > 0.0)
+    errors.dissipation =
+        std::abs(run_physics.back().plastic_dissipation / true_physics.back().plastic_dissipation - 1.0);
+  return errors;
+}
+
+double compute_share_above(const Points& force, double period, double frequency) {
+  const Eigen::Index n = force.cols();
+  if (n < 2) return 0.0;
+  Eigen::FFT<double> fft;
+  double above = 0.0;
+  double all = 0.0;
+  std::vector<double> series(static_cast<std::size_t>(n));
+  std::vector<std::complex<double>> spectrum;
+  for (int k = 0; k < 3; ++k) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double window = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (static_cast<double>(i) + 0.5) /
+                                                 static_cast<double>(n));
+      series[static_cast<std::size_t>(i)] = window * force(k, i);
+    }
+    fft.fwd(spectrum, series);
+    for (std::size_t i = 0; i < spectrum.size(); ++i) {
+      const double cycles = static_cast<double>(std::min(i, spectrum.size() - i));
+      const double power = std::norm(spectrum[i]);
+      all += power;
+      above += cycles / (static_cast<double>(n) * period) > frequency ? power : 0.0;
+    }
+  }
+  return all > 0.0 ? std::sqrt(above / all) : 0.0;
+}
+
+RunFigures compute_figures(const output::ResultReader& run) {
+  RunFigures figures;
+  const auto haptic = run.read_haptic();
+  Points force(3, static_cast<Eigen::Index>(haptic.size()));
+  for (std::size_t k = 0; k < haptic.size(); ++k) {
+    force.col(static_cast<Eigen::Index>(k)) = haptic[k].force;
+    figures.peak_force = std::max(figures.peak_force, haptic[k].force.norm());
+  }
+  if (!haptic.empty()) {
+    figures.simulated_seconds = haptic.back().time;
+    figures.chatter =
+        compute_share_above(force, haptic.back().time / static_cast<double>(haptic.size()), kChatterHz);
+  }
+  const auto physics = run.read_physics();
+  if (physics.empty()) return figures;
+  const auto energy = [](const sim::PhysicsRecord& r) {
+    return r.kinetic_energy + r.elastic_energy + r.plastic_dissipation;
+  };
+  double scale = physics.front().kinetic_energy + physics.front().elastic_energy;
+  double gain = 0.0;
+  for (const sim::PhysicsRecord& r : physics) {
+    figures.solves += std::max(1, r.newton_iterations);
+    figures.iterations += r.iterations;
+    scale = std::max(scale, std::abs(r.contact_work));
+    gain =
+        std::max(gain, energy(r) - energy(physics.front()) - (r.contact_work - physics.front().contact_work));
+  }
+  figures.steps = static_cast<double>(physics.size());
+  figures.factorisations = physics.back().factorisations;
+  figures.energy_gain = scale > 0.0 ? gain / scale : 0.0;
+  return figures;
+}
+
+}  // namespace argil::study

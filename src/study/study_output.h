@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenario/scenario.h"
+#include "study/cases.h"
+
+namespace argil::study {
+
+using Settings = std::vector<scenario::Setting>;
+
+/// How a study was called.
+struct StudyOptions {
+  std::string study;   ///< STUDY.json
+  std::string output;  ///< table without suffix; empty: the study's name in the working folder
+  CaseOptions cases;   ///< folder empty: the table's name with .runs
+};
+
+/// Fills in the names that the user left out.
+void name_outputs(StudyOptions& options);
+
+/// Provenance of a study's table: what was asked, of which scene, by which build, on which machine.
+std::vector<std::pair<std::string, std::string>> describe_study(const std::string& study,
+                                                                const std::string& about,
+                                                                const std::string& scenario,
+                                                                const Settings& settings);
+
+/// a, then b, which wins.
+Settings join(const Settings& a, const Settings& b);
+
+/// "/a/b=1 /c=2"
+std::string print_settings(const Settings& settings);
+
+}  // namespace argil::study
