@@ -143,7 +143,7 @@ int main(int argc, char** argv) {
   CLI::App* cage = app.add_subcommand("cage", "make a tetrahedral cage that encloses a surface");
   cage->add_option("SURFACE", first, "OBJ, STL or PLY, clean or not")->required();
   cage->add_option("-o,--output", second, "cage (Gmsh, .msh)")->required();
-  cage->add_option("--tets", target_tets, "wanted number of tets")->check(CLI::Range(50, 5000000));
+  cage->add_option("--tets", target_tets, "wanted number of tets")->check(CLI::Range(100, 5000000));
   cage->add_option("--scale", scale, "metres per unit of the file")->check(CLI::PositiveNumber);
   cage->callback([&] { code = make_cage_file(first, second, target_tets, scale); });
 

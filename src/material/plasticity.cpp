@@ -53,9 +53,9 @@ Vec6 compute_plastic_strain(const Vec6& strain, const Vec6& plastic_strain, cons
                             const Plasticity& law, double step_s) {
   Vec6 elastic = strain - plastic_strain;
   const bool is_j2 = law.form == FlowForm::j2;
-  const bool follows_stress = law.deviatoric && !is_j2 && point.direction;
-  if (follows_stress)
-    elastic = *point.direction * elastic;
+  const bool is_driven = (law.deviatoric || is_j2) && point.drive;
+  if (is_driven)
+    elastic = *point.drive;
   else if (law.deviatoric || is_j2)
     elastic = deviator(elastic);
   const double elastic_norm = compute_norm(elastic, is_j2 ? StrainNorm::frobenius : law.norm);
@@ -64,17 +64,19 @@ Vec6 compute_plastic_strain(const Vec6& strain, const Vec6& plastic_strain, cons
   Vec6 after = plastic_strain + flow * elastic;
   const double norm = compute_norm(after, law.norm);
   if (!(norm > law.max)) return after;
-  if (follows_stress)
-    return plastic_strain + shorten_to_cap(plastic_strain, elastic, law.max, flow) * elastic;
+  if (is_driven) return plastic_strain + shorten_to_cap(plastic_strain, elastic, law.max, flow) * elastic;
   return after * (law.max / norm);
 }
 
-Mat6 make_flow_direction(const Mat6& C) {
-  Mat6 direction;
-  for (int k = 0; k < 6; ++k) direction.col(k) = deviator(C.col(k));
-  Mat6 shape = direction;  // dev C dev
-  for (int k = 0; k < 6; ++k) shape.row(k) = deviator(Vec6(direction.row(k).transpose())).transpose();
-  return direction / Eigen::SelfAdjointEigenSolver<Mat6>(shape, Eigen::EigenvaluesOnly).eigenvalues()(5);
+double compute_shape_stiffness(const Mat6& C) {
+  Mat6 shape;  // dev C dev
+  for (int k = 0; k < 6; ++k) shape.col(k) = deviator(C.col(k));
+  for (int k = 0; k < 6; ++k) shape.row(k) = deviator(Vec6(shape.row(k).transpose())).transpose();
+  return Eigen::SelfAdjointEigenSolver<Mat6>(shape, Eigen::EigenvaluesOnly).eigenvalues()(5);
+}
+
+Vec6 compute_stress_drive(const Vec6& stress, double shape_stiffness) {
+  return deviator(stress) / shape_stiffness;
 }
 
 double compute_clay_weight(double r, const ClayKernel& kernel) {

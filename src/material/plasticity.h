@@ -6,8 +6,9 @@ namespace argil::material {
 
 /// What flow knows of a point beside its strain.
 struct FlowPoint {
-  double yield = 0.0;               ///< elastic strain norm at which flow starts [–]
-  const Mat6* direction = nullptr;  ///< see make_flow_direction; none: isotropic elasticity
+  double yield = 0.0;           ///< elastic strain norm at which flow starts [–]
+  const Vec6* drive = nullptr;  ///< what flows and yields in the place of dev ε_e, when `deviatoric`: along
+                                ///< it elasticity that is not isotropic and linear loses energy
 };
 
 /// Plastic strain (Mandel) after a step of `step_s` seconds at held total strain [Mueller2004; rate forms and
@@ -24,17 +25,19 @@ struct FlowPoint {
 ///                  hardening, tensile strength σ_y = √6 μ·yield, whatever the step
 /// Norm: `frobenius` √(ε:ε), the same in every frame; `voigt6`, the original's
 /// √(ε₁₁²+ε₂₂²+ε₃₃²+ε₂₃²+ε₁₃²+ε₁₂²) with tensor shears, which counts a shear by 1/√2 of what it counts when
-/// the axes are turned by 45°. Deviatoric flow with `direction`: q = B ε_e takes the place of ε_e (not for
-/// j2), and flow ends where it reaches the cap. With c h ≤ 2, deviatoric flow in the Frobenius norm never
-/// raises the elastic energy ½ ε_e:C:ε_e, cap included. `strain`, `plastic_strain` (6, Mandel): total and
+/// the axes are turned by 45°. Flow with a `drive` ends where it reaches the cap.
+/// Deviatoric flow in the Frobenius norm never raises the elastic energy ½ ε_e:C:ε_e, cap included, where C
+/// is isotropic or the drive is compute_stress_drive's. `strain`, `plastic_strain` (6, Mandel): total and
 /// plastic strain in the same (turned) frame.
 Vec6 compute_plastic_strain(const Vec6& strain, const Vec6& plastic_strain, const FlowPoint& point,
                             const Plasticity& law, double step_s);
 
-/// B with q = B ε_e = dev(C ε_e)/(2μ*): the stress deviator as a strain, along which deviatoric flow in an
-/// anisotropic stiffness C (Mandel) [Pa] loses energy, which along dev ε_e it may gain. 2μ* is the largest
-/// stiffness against a change of shape, so that B = dev for an isotropic C.
-Mat6 make_flow_direction(const Mat6& C);
+/// 2μ*, the largest stiffness of C (Mandel) against a change of shape [Pa]: that of dev C dev; 2μ when
+/// isotropic.
+double compute_shape_stiffness(const Mat6& C);
+
+/// dev σ/(2μ*): the stress deviator as a strain, dev ε_e when isotropic. `stress` (6, Mandel) [Pa].
+Vec6 compute_stress_drive(const Vec6& stress, double shape_stiffness);
 
 /// G_d(r), eq. 9, without overflow. r, radius [m]; k1, k2 [1/m].
 double compute_clay_weight(double r, const ClayKernel& kernel);

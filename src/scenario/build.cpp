@@ -143,8 +143,9 @@ void fix_and_load(const Scenario& s, sim::Body& body) {
 
 /// An equilibrium has no mass to lean on: the supports alone must hold every part of the body.
 void check_supports(const Scenario& s, const sim::Body& body) {
-  const std::string motion = solid::find_rigid_motion(
-      body.mesh, body.topology, solid::find_constraints(body.mesh.vertices, body.supports));
+  const solid::Elements elements = solid::make_elements(body.mesh, body.topology, s.params.solid.element);
+  const std::string motion = solid::find_rigid_motion(elements, body.topology,
+                                                      solid::find_constraints(elements.rest, body.supports));
   if (!motion.empty())
     throw InputError(s.file, "/body/fixed", "does not hold the body: " + motion,
                      "hold at least three vertices of it that are not on a line");

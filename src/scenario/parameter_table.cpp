@@ -86,7 +86,7 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
   b.number("/body/shape/size_m", body.shape.size, positive(), "m",
            "Diameter, height, edge or length of the shape.")
       .applies = only(BodyKind::shape);
-  b.integer("/body/shape/target_tets", body.target_tets, between(50, 5e6),
+  b.integer("/body/shape/target_tets", body.target_tets, between(100, 5e6),
             "Wanted number of tets, reached within 15 %.")
       .applies = only(BodyKind::shape);
   b.integer("/body/shape/skin_triangles", body.skin_triangles, between(0, 5e6),
@@ -99,7 +99,7 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
       only(BodyKind::surface);
   b.path("/body/surface/cage", body.cage_file, folder, "Cage made before by `argil cage`; empty: made now.")
       .applies = only(BodyKind::surface);
-  b.integer("/body/surface/target_tets", body.target_tets, between(50, 5e6),
+  b.integer("/body/surface/target_tets", body.target_tets, between(100, 5e6),
             "Wanted number of tets of a cage made now.")
       .applies = only(BodyKind::surface);
   b.number("/body/initial_saturation", p.water.initial_saturation, between(0, 1), "",

@@ -1,5 +1,8 @@
 #include "scenario/probe.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
 #include <array>
 #include <cmath>
 #include <functional>
@@ -213,6 +216,9 @@ Json probe_element(Case& c) {
                                                   StrainModel::neo_hookean};
   const StrainModel model = kModels[c.word("model", {"corotational", "linear", "neo_hookean"}, 0)];
   const Vec6 plastic = c.tensor("plastic_strain", true);
+  if (model == StrainModel::neo_hookean &&
+      !(Eigen::SelfAdjointEigenSolver<Mat3>(from_mandel(plastic)).eigenvalues()(0) > -1.0))
+    c.refuse_range("plastic_strain", "strains that leave a stretch, eigenvalues above -1, for neo_hookean");
   const solid::TetGeometry tet = solid::make_tet_geometry(rest);
   if (!(tet.volume > 0.0)) c.refuse_range("rest", "tets of positive volume");
   const solid::PointMotion motion =
@@ -246,7 +252,17 @@ Json probe_plastic_update(Case& c) {
   law.form = kForms[c.word("form", {"rate", "rate_to_yield", "literal", "j2"}, 0)];
   law.norm = c.word("norm", {"frobenius", "voigt6"}, 0) == 0 ? material::StrainNorm::frobenius
                                                              : material::StrainNorm::voigt6;
-  const material::FlowPoint point{c.not_negative("yield"), nullptr};
+  material::FlowPoint point{c.not_negative("yield")};
+  Vec6 drive;
+  if (const std::vector<double> C = c.numbers("stiffness_mandel", 36, true); !C.empty()) {
+    const Mat6 stiffness = Eigen::Map<const Mat6>(C.data());
+    if (!(Eigen::LLT<Mat6>(stiffness).info() == Eigen::Success &&
+          stiffness.isApprox(stiffness.transpose(), 1e-9)))
+      c.refuse_range("stiffness_mandel", "symmetric positive definite matrices");
+    drive = material::compute_stress_drive(stiffness * (strain - plastic),
+                                           material::compute_shape_stiffness(stiffness));
+    point.drive = &drive;
+  }
   const Vec6 after =
       material::compute_plastic_strain(strain, plastic, point, law, c.not_negative("step_s", "s"));
   if (as_matrix) return {{"plastic_strain", to_json(from_mandel(after))}};

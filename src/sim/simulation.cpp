@@ -36,8 +36,11 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
   m_x_before = m_state.solid.x;
   m_v_before = m_state.solid.v;
   m_dissipation.setZero(m_solid.elements().num_points());
-  if (!m_moisture.is_isotropic() && params.plasticity.enabled)
-    m_flow_direction.resize(static_cast<std::size_t>(m_body.mesh.num_tets()));
+  const bool keeps_volume = params.plasticity.enabled && params.plasticity.deviatoric;
+  if (!m_moisture.is_isotropic() && keeps_volume)
+    m_shape_stiffness.resize(static_cast<std::size_t>(m_body.mesh.num_tets()));
+  m_is_flow_driven =
+      keeps_volume && (!m_moisture.is_isotropic() || params.solid.model == solid::StrainModel::neo_hookean);
   m_is_moved = std::any_of(m_body.supports.begin(), m_body.supports.end(),
                            [](const solid::Support& s) { return s.displacement.norm() > 0.0; });
   StepStatus rest = m_solid.update_kinematics(m_state.solid.x, 0);
@@ -70,23 +73,44 @@ void Simulation::apply_clay_kernel(double step_s) {
   });
 }
 
+/// ε_p of a point after a step's flow.
+Vec6 Simulation::compute_flow(int point, double step_s) const {
+  const int tet = m_solid.elements().tet_of_point(point);
+  const Vec6 before = m_state.solid.plastic_strain.col(point);
+  material::FlowPoint at{m_solid.material(tet).yield};
+  Vec6 drive;
+  if (m_is_flow_driven) {
+    const double shape_stiffness = m_shape_stiffness.empty()
+                                       ? 2.0 * m_solid.material(tet).mu
+                                       : m_shape_stiffness[static_cast<std::size_t>(tet)];
+    drive = m_solid.compute_flow_drive(point, before, shape_stiffness);
+    at.drive = &drive;
+  }
+  return material::compute_plastic_strain(m_solid.strain().col(point), before, at, m_params.plasticity,
+                                          step_s);
+}
+
+/// Trial flow of every point, committed at once. At fixed strain, the elastic energy that flow releases is
+/// what it dissipates. The neo-Hookean law bends within a long step of flow: there the step ends by halves
+/// where it releases energy.
 void Simulation::apply_plastic_flow(double step_s) {
   if (!m_params.plasticity.enabled) return;
+  constexpr int kHalvings = 10;
+  const bool is_bent = m_params.solid.model == solid::StrainModel::neo_hookean;
   TensorField& plastic = m_state.solid.plastic_strain;
   parallel_for(plastic.cols(), m_params.threads, [&](std::ptrdiff_t p) {
     const int point = static_cast<int>(p);
-    const int tet = m_solid.elements().tet_of_point(point);
-    const material::FlowPoint flow{
-        m_solid.material(tet).yield,
-        m_flow_direction.empty() ? nullptr : &m_flow_direction[static_cast<std::size_t>(tet)]};
     const Vec6 before = plastic.col(p);
-    const Vec6 after =
-        material::compute_plastic_strain(m_solid.strain().col(p), before, flow, m_params.plasticity, step_s);
+    Vec6 after = compute_flow(point, step_s);
     m_dissipation(p) = 0.0;
     if ((after.array() == before.array()).all()) return;
-    // At fixed strain, the elastic energy that flow releases is what it dissipates.
-    m_dissipation(p) =
-        m_solid.compute_elastic_energy(point, before) - m_solid.compute_elastic_energy(point, after);
+    const double energy = m_solid.compute_elastic_energy(point, before);
+    double released = energy - m_solid.compute_elastic_energy(point, after);
+    for (int k = 0; is_bent && released < 0.0 && k < kHalvings; ++k) {
+      after = k + 1 < kHalvings ? Vec6(0.5 * (before + after)) : before;
+      released = energy - m_solid.compute_elastic_energy(point, after);
+    }
+    m_dissipation(p) = released;
     plastic.col(p) = after;
   });
   m_state.plastic_dissipation +=
@@ -112,8 +136,8 @@ void Simulation::refresh_material(int tet) {
       m_body.pore_axis.cols() > 0 ? Vec3(m_body.pore_axis.col(tet)) : m_params.moisture.medium.axis;
   const Mat6 C = has_own_modulus ? m_moisture.stiffness_at(S, axis, E) : m_moisture.stiffness_at(S, axis);
   m_solid.set_anisotropic_stiffness(tet, C);
-  if (!m_flow_direction.empty())
-    m_flow_direction[static_cast<std::size_t>(tet)] = material::make_flow_direction(C);
+  if (!m_shape_stiffness.empty())
+    m_shape_stiffness[static_cast<std::size_t>(tet)] = material::compute_shape_stiffness(C);
 }
 
 /// Brings the solid up to date with every tet whose saturation moved by more than `tolerance` since last

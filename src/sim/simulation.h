@@ -59,6 +59,7 @@ class Simulation {
   StepStatus water_step();
   StepStatus physics_step();
   void apply_clay_kernel(double step_s);
+  Vec6 compute_flow(int point, double step_s) const;
   void apply_plastic_flow(double step_s);
 
   // Between contacts, body and hand: hand.cpp.
@@ -122,9 +123,10 @@ class Simulation {
   Points m_load_force;  // 3×n, constant
   Points m_external_force;
   Points m_x_before, m_v_before;
-  std::vector<Mat6> m_flow_direction;  // per tet: B of plastic flow; empty: isotropic stiffness
-  Field m_dissipation;                 // of each point in the last physics step [J]
-  bool m_is_moved = false;             // some support moves
+  std::vector<double> m_shape_stiffness;                    // 2μ* per tet [Pa]; empty: isotropic stiffness
+  bool m_is_flow_driven = false;                            // plastic flow follows the stress, not the strain
+  Field m_dissipation;                                      // of each point in the last physics step [J]
+  bool m_is_moved = false;                                  // some support moves
   double m_rest_energy = 0.0, m_rest_plastic_strain = 0.0;  // of the body while it is at rest
   StageObserver* m_observer = nullptr;
 };

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "material/plasticity.h"
 #include "solid/polar.h"
 
 namespace argil::solid {
@@ -26,11 +27,11 @@ bool has_own_rotation(StrainModel model) {
 }
 
 /// Inverse of the plastic stretch of the multiplicative split: 1 + ε_p, scaled so that it has the volume
-/// 1 + tr ε_p. Flow that keeps the volume does so at any strain then; else, in nearly incompressible clay, it
-/// would create energy.
+/// exp(tr ε_p). Flow that keeps the volume does so at any strain then; else, in nearly incompressible clay,
+/// it would create energy.
 Mat3 compute_inverse_plastic_stretch(const Vec6& plastic_strain) {
   const Mat3 stretch = Mat3::Identity() + from_mandel(plastic_strain);
-  const double volume = 1.0 + plastic_strain.head<3>().sum();
+  const double volume = std::exp(plastic_strain.head<3>().sum());
   return std::cbrt(stretch.determinant() / volume) * stretch.inverse();
 }
 
@@ -189,6 +190,19 @@ Mat9 make_positive(const Mat9& A) {
   const Eigen::SelfAdjointEigenSolver<Mat9> modes(A);
   return modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() *
          modes.eigenvectors().transpose();
+}
+
+Vec6 compute_flow_drive(StrainModel model, const PointMotion& m, const Vec6& plastic_strain,
+                        const Elasticity& e, double shape_stiffness) {
+  if (model != StrainModel::neo_hookean)
+    return material::compute_stress_drive(compute_stress(e, compute_elastic_strain(m, plastic_strain)),
+                                          shape_stiffness);
+  const Mat3 Fe = m.F * compute_inverse_plastic_stretch(plastic_strain);
+  Mat3 M = compute_symmetric_part(Fe.transpose() * compute_neo_hookean_piola(Fe, e));
+  M.diagonal().array() -= M.trace() / 3.0;
+  const Mat3 stretch = Mat3::Identity() + from_mandel(plastic_strain);
+  return material::compute_stress_drive(to_mandel(compute_symmetric_part(M * stretch.inverse())),
+                                        shape_stiffness);
 }
 
 double compute_volume_change(StrainModel model, const PointMotion& m, const Vec6& plastic_strain) {

@@ -37,7 +37,7 @@ Vec6 compute_stress(const Elasticity& e, const Vec6& elastic_strain);
 /// Energy per rest volume [J/m³] without the excess bulk modulus.
 /// linear, corotational: ½ ε_e:C:ε_e with ε_e = ε − ε_p. neo_hookean [Smith2018, without the logarithm]:
 /// ½μ(tr FₑᵀFₑ − 3) − μ(J − 1) + ½(λ + μ)(J − 1)², J = det Fₑ, Fₑ = F F_p⁻¹, F_p = 1 + ε_p scaled to det F_p
-/// = 1 + tr ε_p.
+/// = exp(tr ε_p).
 double compute_energy_density(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
                               const Elasticity& e);
 
@@ -52,6 +52,12 @@ Mat9 compute_tangent(StrainModel model, const PointMotion& motion, const Vec6& p
 
 /// The same with its negative modes set to zero, so that a step's matrix is positive [Teran2005].
 Mat9 make_positive(const Mat9& tangent);
+
+/// What drives plastic flow that keeps the volume: −dev ∂W/∂ε_p over 2μ* [–], along which flow loses energy;
+/// dev ε_e in an isotropic linear law. With the Mandel stress M = Fₑᵀ ∂W/∂Fₑ the neo-Hookean law has −∂W/∂ε_p
+/// = sym(dev M (1 + ε_p)⁻¹) for a change without trace. shape_stiffness: 2μ* [Pa].
+Vec6 compute_flow_drive(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
+                        const Elasticity& e, double shape_stiffness);
 
 /// Relative volume change θ: tr(ε − ε_p), or J − 1 for the neo-Hookean law; and its derivative ∂θ/∂F.
 double compute_volume_change(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain);

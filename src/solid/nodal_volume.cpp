@@ -9,7 +9,6 @@ namespace argil::solid {
 
 NodalVolume::NodalVolume(const Elements& elements, const std::vector<int>& row_of_node)
     : m_nodes(elements.nodes),
-      m_volume(elements.weight),
       m_node_begin(elements.node_begin),
       m_node_corners(elements.node_corners),
       m_row_of_node(row_of_node) {
@@ -32,8 +31,8 @@ NodalVolume::NodalVolume(const Elements& elements, const std::vector<int>& row_o
   m_weight.setZero(elements.num_tets());
 }
 
-void NodalVolume::set_excess(int tet, double excess_bulk) {
-  m_weight(tet) = 0.25 * m_volume(tet) * excess_bulk;
+void NodalVolume::set_excess(int tet, double excess_bulk, double volume) {
+  m_weight(tet) = 0.25 * volume * excess_bulk;
   m_is_stale = true;
 }
 

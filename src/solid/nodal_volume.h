@@ -17,8 +17,9 @@ class NodalVolume {
   /// Bulk modulus over shear modulus that a tet keeps: that of ν = 0.3.
   static constexpr double kOwnBulkOverShear = 2.0 * 1.3 / (3.0 * 0.4);
 
-  void set_excess(int tet, double excess_bulk);  ///< κ [Pa]
-  void update_stiffness();                       ///< D_a, when any κ changed
+  /// κ [Pa] and V [m³] of a tet.
+  void set_excess(int tet, double excess_bulk, double volume);
+  void update_stiffness();  ///< D_a, when any κ changed
 
   /// θ of every tet → its mean over the tet's nodes after averaging; κ·mean is the pressure on the tet.
   void average(const Field& volume_change, Field& mean) const;
@@ -42,7 +43,6 @@ class NodalVolume {
   int num_nodes() const { return static_cast<int>(m_node_begin.size()) - 1; }
 
   Eigen::MatrixXi m_nodes;  // 4×m
-  Field m_volume;           // of the tets
   std::vector<int> m_node_begin, m_node_corners;
   std::vector<int> m_row_of_node;
   std::vector<int> m_begin, m_neighbour;    // nodes around each node, itself included

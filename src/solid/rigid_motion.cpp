@@ -34,10 +34,10 @@ struct Part {
   }
 };
 
-std::vector<Part> find_parts(const mesh::TetMesh& mesh, const mesh::Topology& topology) {
+std::vector<Part> find_parts(const Elements& elements, const mesh::Topology& topology) {
   std::vector<Part> parts;
-  std::vector<bool> is_done(static_cast<std::size_t>(mesh.num_tets()), false);
-  for (int first = 0; first < mesh.num_tets(); ++first) {
+  std::vector<bool> is_done(static_cast<std::size_t>(elements.num_tets()), false);
+  for (int first = 0; first < elements.num_tets(); ++first) {
     if (is_done[static_cast<std::size_t>(first)]) continue;
     Part& part = parts.emplace_back();
     std::vector<int> front = {first};
@@ -45,8 +45,8 @@ std::vector<Part> find_parts(const mesh::TetMesh& mesh, const mesh::Topology& to
     while (!front.empty()) {
       const int tet = front.back();
       front.pop_back();
+      for (const int node : elements.nodes.col(tet)) part.nodes.push_back(node);
       for (int k = 0; k < 4; ++k) {
-        part.nodes.push_back(mesh.tets(k, tet));
         const int next = topology.neighbours(k, tet);
         if (next < 0 || is_done[static_cast<std::size_t>(next)]) continue;
         is_done[static_cast<std::size_t>(next)] = true;
@@ -56,10 +56,10 @@ std::vector<Part> find_parts(const mesh::TetMesh& mesh, const mesh::Topology& to
     std::sort(part.nodes.begin(), part.nodes.end());
     part.nodes.erase(std::unique(part.nodes.begin(), part.nodes.end()), part.nodes.end());
     for (const int n : part.nodes)
-      part.centre += mesh.vertices.col(n) / static_cast<double>(part.nodes.size());
+      part.centre += elements.rest.col(n) / static_cast<double>(part.nodes.size());
     part.size = 0.0;
     for (const int n : part.nodes)
-      part.size = std::max(part.size, (mesh.vertices.col(n) - part.centre).norm());
+      part.size = std::max(part.size, (elements.rest.col(n) - part.centre).norm());
   }
   return parts;
 }
@@ -82,7 +82,7 @@ Mat6 compute_normal_matrix(const Part& part, const Vec3& x, const Eigen::Vector3
 }
 
 /// Marks the parts that supports, or parts already held, hold by themselves. Nearly always that is all.
-void hold_parts(const mesh::TetMesh& mesh, const Constraints& constraints,
+void hold_parts(const Elements& elements, const Constraints& constraints,
                 const std::vector<std::vector<int>>& parts_of_node, std::vector<Part>& parts) {
   for (bool has_changed = true; has_changed;) {
     has_changed = false;
@@ -93,7 +93,7 @@ void hold_parts(const mesh::TetMesh& mesh, const Constraints& constraints,
         const auto& around = parts_of_node[static_cast<std::size_t>(n)];
         const bool is_held = std::any_of(around.begin(), around.end(),
                                          [&](int p) { return parts[static_cast<std::size_t>(p)].is_held; });
-        sum += compute_normal_matrix(part, mesh.vertices.col(n), constraints.support.col(n), is_held);
+        sum += compute_normal_matrix(part, elements.rest.col(n), constraints.support.col(n), is_held);
       }
       const Eigen::SelfAdjointEigenSolver<Mat6> modes(sum);
       part.is_held = modes.eigenvalues()(0) > kZero * std::max(1.0, modes.eigenvalues()(5));
@@ -122,11 +122,11 @@ std::string describe_motion(const Part& part, const Eigen::Matrix<double, 6, 1>&
 
 }  // namespace
 
-std::string find_rigid_motion(const mesh::TetMesh& mesh, const mesh::Topology& topology,
+std::string find_rigid_motion(const Elements& elements, const mesh::Topology& topology,
                               const Constraints& constraints) {
-  std::vector<Part> parts = find_parts(mesh, topology);
-  const auto parts_of_node = find_parts_of_nodes(parts, mesh.num_vertices());
-  hold_parts(mesh, constraints, parts_of_node, parts);
+  std::vector<Part> parts = find_parts(elements, topology);
+  const auto parts_of_node = find_parts_of_nodes(parts, elements.num_nodes());
+  hold_parts(elements, constraints, parts_of_node, parts);
   std::vector<int> loose;  // parts
   std::vector<Eigen::Index> place(parts.size(), -1);
   for (std::size_t p = 0; p < parts.size(); ++p)
@@ -139,8 +139,8 @@ std::string find_rigid_motion(const mesh::TetMesh& mesh, const mesh::Topology& t
   // The loose parts may still hold each other, as the three legs of a tripod do.
   const auto size = 6 * static_cast<Eigen::Index>(loose.size());
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
-  for (int n = 0; n < mesh.num_vertices(); ++n) {
-    const Vec3 x = mesh.vertices.col(n);
+  for (int n = 0; n < elements.num_nodes(); ++n) {
+    const Vec3 x = elements.rest.col(n);
     const auto& around = parts_of_node[static_cast<std::size_t>(n)];
     const bool is_held = std::any_of(around.begin(), around.end(),
                                      [&](int p) { return parts[static_cast<std::size_t>(p)].is_held; });

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "mesh/topology.h"
+#include "solid/elements.h"
 #include "solid/supports.h"
 
 namespace argil::solid {
@@ -10,7 +11,7 @@ namespace argil::solid {
 /// A motion without strain that the constraints leave to the body, in words ("the part with node 12 can turn
 /// about …"); empty when there is none, and the stiffness of the constrained body is positive definite. Tets
 /// that share a face move as one; parts that share an edge or a vertex only are hinged there.
-std::string find_rigid_motion(const mesh::TetMesh& mesh, const mesh::Topology& topology,
+std::string find_rigid_motion(const Elements& elements, const mesh::Topology& topology,
                               const Constraints& constraints);
 
 }  // namespace argil::solid

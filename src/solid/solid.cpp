@@ -100,7 +100,7 @@ void Solid::set_material(int tet, const TetMaterial& material) {
   m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
   if (!m_stiffness.empty())
     m_stiffness[static_cast<std::size_t>(tet)] = make_isotropic_stiffness(material.lambda, material.mu);
-  if (m_nodal) m_nodal->set_excess(tet, elasticity(tet).excess_bulk);
+  if (m_nodal) m_nodal->set_excess(tet, elasticity(tet).excess_bulk, m_elements.weight(tet));
 }
 
 void Solid::set_anisotropic_stiffness(int tet, const Mat6& C) {
@@ -126,6 +126,7 @@ void Solid::set_swelling(int tet, double volume_ratio) {
       m_dry.gradient.middleCols(columns * tet, columns) / std::cbrt(volume_ratio);
   m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
   m_elements.weight.segment(Q * tet, Q) = volume_ratio * m_dry.weight.segment(Q * tet, Q);
+  if (m_nodal) m_nodal->set_excess(tet, elasticity(tet).excess_bulk, m_elements.weight(tet));
 }
 
 /// Sums each of the tet's nodes anew, so that masses are a function of the water alone, not of its history.
@@ -241,6 +242,11 @@ void Solid::update_volume_change(const TensorField& plastic_strain) {
   if (!m_nodal) return;
   m_nodal->update_stiffness();
   m_nodal->average(compute_volume_changes(plastic_strain), m_volume_change);
+}
+
+Vec6 Solid::compute_flow_drive(int point, const Vec6& plastic_strain, double shape_stiffness) const {
+  return solid::compute_flow_drive(m_params.model, motion(point), plastic_strain,
+                                   elasticity(m_elements.tet_of_point(point)), shape_stiffness);
 }
 
 double Solid::compute_elastic_energy(int point, const Vec6& plastic_strain) const {

@@ -132,6 +132,8 @@ class Solid {
 
   /// Elastic energy of one point for the given plastic strain [J], without what nodes share (p1_nodal).
   double compute_elastic_energy(int point, const Vec6& plastic_strain) const;
+  /// See solid/law.h; at one point.
+  Vec6 compute_flow_drive(int point, const Vec6& plastic_strain, double shape_stiffness) const;
   /// Of the body at the present kinematics [J].
   double compute_elastic_energy(const TensorField& plastic_strain) const;
   double compute_kinetic_energy(const SolidState& state) const;

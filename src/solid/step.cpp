@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "base/check.h"
 #include "base/ordered_sum.h"
@@ -306,7 +309,11 @@ StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
     if (step < kSmallestShare) {
       const StepStatus last_good = update_kinematics(state.x, 0);  // what records describe
       ARGIL_ASSERT(last_good.is_ok());
-      return status;
+      Failure failure = status.failure();
+      char share[16];
+      std::snprintf(share, sizeof share, "%.4g", done);
+      failure.quantity += std::string(" (the last good state carries ") + share + " of the load), which";
+      return StepStatus::failed(std::move(failure));
     }
   }
   return StepStatus::ok();

@@ -20,7 +20,8 @@ struct RunErrors {
   double dissipation = kUnknown;       ///< of the plastic dissipation at the end
 };
 
-/// Compares two results at the times of the run's ticks and frames. Throws InputError when the truth lacks a tick.
+/// Compares two results at the times of the run's ticks and frames. Throws InputError when the truth lacks a
+/// tick.
 RunErrors compute_errors(const output::ResultReader& run, const output::ResultReader& truth);
 
 /// What a run's own records say about it.

@@ -149,18 +149,28 @@ TEST_F(ScenarioFile, BodyOfTwoKindsIsRefused) {
   expect_refused("/body/mesh={\"file\": \"a.msh\"}", {"/body", "has 2 of mesh, shape and surface"});
 }
 
-TEST_F(ScenarioFile, LiteralFlowOfMoreThanTheElasticStrainIsWarnedOfAndOfTwiceThatRefused) {
-  const auto warnings = [&](const std::string& form, int creep) {
-    return count_warnings({"/material/plasticity/enabled=true", "/material/plasticity/form=" + form,
-                           "/material/plasticity/creep_per_s=" + std::to_string(creep)},
-                          "more than the whole elastic strain");
+TEST_F(ScenarioFile, LiteralFlowOfMoreThanTheElasticStrainIsRefused) {
+  const auto flow = [](const std::string& form, int creep) {
+    return std::vector<std::string>{"/material/plasticity/enabled=true", "/material/plasticity/form=" + form,
+                                    "/material/plasticity/creep_per_s=" + std::to_string(creep)};
   };
-  EXPECT_EQ(warnings("literal", 999), 0);  // c h = 0.999 at 1 ms
-  EXPECT_EQ(warnings("literal", 1001), 1);
-  EXPECT_EQ(warnings("literal", 1999), 1);
-  EXPECT_EQ(warnings("rate", 3000), 0);  // takes 1 − e^{−c h}
-  ARGIL_EXPECT_THROW_WITH(warnings("literal", 2001), InputError, "/material/plasticity/form");
-  ARGIL_EXPECT_THROW_WITH(warnings("literal", 2001), InputError, "creates energy in every step");
+  EXPECT_NO_THROW(load(flow("literal", 1000)));  // c h = 1 at 1 ms
+  EXPECT_NO_THROW(load(flow("rate", 3000)));     // takes 1 − e^{−c h}
+  ARGIL_EXPECT_THROW_WITH(load(flow("literal", 1001)), InputError, "/material/plasticity/form");
+  ARGIL_EXPECT_THROW_WITH(load(flow("literal", 1001)), InputError, "allowed: [0, 1]");
+}
+
+TEST_F(ScenarioFile, PlasticStretchOfNeoHookeanClayMustKeepItsDimensions) {
+  const auto with = [](const std::string& max, const std::string& model, const std::string& norm) {
+    return std::vector<std::string>{"/dynamics/model=" + model, "/material/plasticity/max=" + max,
+                                    "/material/plasticity/deviatoric=false",
+                                    "/material/plasticity/norm=" + norm};
+  };
+  ARGIL_EXPECT_THROW_WITH(load(with("1.0", "neo_hookean", "frobenius")), InputError,
+                          "/material/plasticity/max");
+  EXPECT_NO_THROW(load(with("0.99", "neo_hookean", "frobenius")));
+  ARGIL_EXPECT_THROW_WITH(load(with("0.71", "neo_hookean", "voigt6")), InputError, "outside [0, 0.707");
+  EXPECT_NO_THROW(load(with("5", "corotational", "frobenius")));
 }
 
 TEST_F(ScenarioFile, IntegratorsThatDoNotServeAreWarnedOf) {

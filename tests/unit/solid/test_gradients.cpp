@@ -7,12 +7,12 @@ namespace argil::solid {
 namespace {
 
 using test::Scene;
-using GradientCase = std::tuple<StrainModel, ElementKind, bool, bool>;  // is anisotropic, is plastic
+using GradientCase = std::tuple<StrainModel, ElementKind, bool, bool, bool>;  // anisotropic, plastic, swollen
 
 class Gradient : public testing::TestWithParam<GradientCase> {};
 
 TEST_P(Gradient, ForceIsTheDerivativeOfTheEnergy) {
-  const auto [model, element, is_anisotropic, is_plastic] = GetParam();
+  const auto [model, element, is_anisotropic, is_plastic, is_swollen] = GetParam();
   if (is_anisotropic && (model == StrainModel::neo_hookean || element == ElementKind::p1_nodal))
     GTEST_SKIP() << "isotropic only";
   SolidParams params;
@@ -30,6 +30,8 @@ TEST_P(Gradient, ForceIsTheDerivativeOfTheEnergy) {
   if (is_plastic)
     for (Eigen::Index i = 0; i < scene.state.plastic_strain.size(); ++i)
       scene.state.plastic_strain(i) = rng.uniform(-0.05, 0.05);
+  if (is_swollen)
+    for (int t = 0; t < scene.mesh.num_tets(); ++t) scene.solid.set_swelling(t, 1.0 + rng.uniform(0.0, 0.3));
   const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(2, 1, -2) / 3.0).toRotationMatrix();
   const auto random_points = [&](double scale) {
     Points u(3, scene.num_nodes());
@@ -58,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Gradient,
                                                           StrainModel::neo_hookean),
                                           testing::Values(ElementKind::p1, ElementKind::p1_nodal,
                                                           ElementKind::p2),
-                                          testing::Bool(), testing::Bool()));
+                                          testing::Bool(), testing::Bool(), testing::Bool()));
 
 TEST(ElasticEnergy, FollowsTheMaterialWithoutAStepBetween) {
   SolidParams params;

@@ -76,8 +76,11 @@ Support hold_box(const Vec3& lower, const Vec3& upper) {
   return support;
 }
 
-std::string find_motion(const mesh::TetMesh& mesh, const std::vector<Support>& supports) {
-  return find_rigid_motion(mesh, mesh::make_topology(mesh), find_constraints(mesh.vertices, supports));
+std::string find_motion(const mesh::TetMesh& mesh, const std::vector<Support>& supports,
+                        ElementKind element = ElementKind::p1) {
+  const mesh::Topology topology = mesh::make_topology(mesh);
+  const Elements elements = make_elements(mesh, topology, element);
+  return find_rigid_motion(elements, topology, find_constraints(elements.rest, supports));
 }
 
 /// How many motions of the free components cost no energy: zero eigenvalues of the stiffness.
@@ -148,6 +151,14 @@ TEST(FindRigidMotion, OfALooseBodyIsFoundAndOfAHeldOneNot) {
   ASSERT_EQ(count_free_motions(mesh, {first}), 6);
   EXPECT_NE(find_motion(mesh, {first}).find("node 8"), std::string::npos);  // the other cube's first
   EXPECT_EQ(find_motion(mesh, {first, hold_box(Vec3(5, 0, 0), Vec3(6, 0, 1))}), "");
+}
+
+TEST(FindRigidMotion, CountsTheMidpointsThatHoldATenNodeTet) {
+  // One vertex and the middles of the edges around it: enough for p2, a ball joint for p1.
+  const mesh::TetMesh cube = make_cubes({Vec3::Zero()});
+  const std::vector<Support> around_corner = {hold_box(Vec3::Zero(), Vec3::Constant(0.5))};
+  EXPECT_EQ(find_motion(cube, around_corner, ElementKind::p2), "");
+  EXPECT_NE(find_motion(cube, around_corner, ElementKind::p1), "");
 }
 
 }  // namespace
