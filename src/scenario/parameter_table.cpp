@@ -343,6 +343,9 @@ void bind_dynamics(Binder& b, Scenario& s) {
   b.number("/dynamics/rayleigh_stiffness_s", d.rayleigh_stiffness, not_negative(), "s",
            "b in D = a M + b K.");
   b.boolean("/dynamics/implicit_contact", d.implicit_contact, "Contact stiffness enters the implicit solve.");
+  b.number("/dynamics/energy_limit", s.params.energy_limit, not_negative(), "",
+           "Kinetic energy over what hand, loads and supports gave the body, at which the run stops; 0: no "
+           "limit.");
   b.number("/dynamics/min_volume_ratio", d.min_volume_ratio, {-1e300, 1, true, true}, "",
            "det F of a tet at or below which the run stops.");
   b.number(

@@ -49,6 +49,9 @@ struct Params {
   /// Speed of the fastest node [m/s] at which a body that nothing touches counts as at rest for two steps: it
   /// is then stopped and not solved for until something acts. 0: only a body that has not moved yet.
   double rest_speed = 0.0;
+  /// Kinetic energy over the energy that hand, loads and supports gave the body since the start, each push
+  /// counted and no recoil, beyond which the run stops. 0: no limit.
+  double energy_limit = 10.0;
   int threads = 1;
 };
 

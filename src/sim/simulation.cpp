@@ -73,6 +73,28 @@ void Simulation::apply_clay_kernel(double step_s) {
   });
 }
 
+/// Books what hand, loads and supports gave the body in the step just taken, and stops a run in which it
+/// moves with many times the energy that they ever gave it: no body does, a scheme past its limit does.
+StepStatus Simulation::check_energy() {
+  if (m_params.energy_limit == 0.0) return StepStatus::ok();
+  constexpr double kSpeed = 1e-4;  // [m/s] of a body that counts as still: there is rounding below
+  const solid::SolidState& solid = m_state.solid;
+  const Field& mass = m_solid.mass();
+  m_state.energy_given += ordered_sum(solid.x.cols(), [&](std::ptrdiff_t n) {
+    const Vec3 way = solid.x.col(n) - m_x_before.col(n);
+    const Vec3 load = m_load_force.col(n) + mass(n) * m_params.solid.gravity;
+    const Vec3 reaction = (m_solid.constraints().support.col(n).array() >= 0)
+                              .select(m_solid.internal_force().col(n), Vec3::Zero());
+    return std::max(0.0, way.dot(m_state.contact_force.col(n))) + std::abs(way.dot(load)) +
+           std::abs(way.dot(reaction));
+  });
+  const double bound = m_params.energy_limit * m_state.energy_given + 0.5 * kSpeed * kSpeed * mass.sum();
+  const double kinetic = m_solid.compute_kinetic_energy(solid);
+  if (kinetic <= bound) return StepStatus::ok();
+  return StepStatus::failed(
+      {m_clock.tick, "solid", -1, "kinetic energy [J] of a body that was given less", kinetic, bound});
+}
+
 /// ε_p of a point after a step's flow.
 Vec6 Simulation::compute_flow(int point, double step_s) const {
   const int tet = m_solid.elements().tet_of_point(point);

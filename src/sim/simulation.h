@@ -59,6 +59,7 @@ class Simulation {
   StepStatus water_step();
   StepStatus physics_step();
   void apply_clay_kernel(double step_s);
+  StepStatus check_energy();
   Vec6 compute_flow(int point, double step_s) const;
   void apply_plastic_flow(double step_s);
 

@@ -50,6 +50,7 @@ struct State {
   // ledgers
   double plastic_dissipation = 0.0;  ///< [J] since the start
   double contact_work = 0.0;         ///< [J] done on the body since the start
+  double energy_given = 0.0;         ///< [J] to the body by hand, loads and supports, recoils not taken off
   double port_energy = 0.0;          ///< [J] work of the device's force on the hand since the start
   double passivity_energy =
       0.0;  ///< [J] that the passivity controller has kept from the hand since the start

@@ -128,7 +128,8 @@ StepStatus Simulation::physics_step() {
   }
   {
     const StageScope scope(m_observer, Stage::kinematics);
-    const StepStatus status = m_solid.update_kinematics(solid.x, m_clock.tick);  // F → R → ε
+    StepStatus status = check_energy();
+    if (status.is_ok()) status = m_solid.update_kinematics(solid.x, m_clock.tick);  // F → R → ε
     if (!status.is_ok()) {
       solid.x = m_x_before;  // the last good state stays
       solid.v = m_v_before;

@@ -191,7 +191,7 @@ void write_failure(const scenario::StabilityStudy& study, const Map& map, const 
     options.settings.push_back(s.pointer + "=" + s.value);
   scenario::Scenario s = load(options);
   if (const auto failure = output::ResultReader(place.result.file).read_failure())
-    s.trace.duration = static_cast<double>(failure->tick) * s.params.rates.haptic_period;
+    s.trace.duration = static_cast<double>(failure->tick + 1) * s.params.rates.haptic_period;
   s.about = "Ends as " + to_string(place.outcome) + " by design of " +
             std::filesystem::path(study.file).filename().string() +
             (place.result.reason.empty() ? "" : ": " + place.result.reason);

@@ -1,0 +1,264 @@
+// Studies on scenes with a known answer: charts whose slope is the scheme's order, maps whose boundary is the
+// explicit limit, and each way to end called by its name.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+
+#include "base/error.h"
+#include "scenario/build.h"
+#include "solid/element.h"
+#include "solid/solid.h"
+#include "study/chart.h"
+#include "study/run.h"
+#include "study/stability.h"
+#include "support/scene_files.h"
+#include "support/temp_folder.h"
+
+namespace argil::study {
+namespace {
+
+using Row = std::map<std::string, std::string>;
+
+std::string read_text(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// Cells of a line of comma-separated values; quoted ones may hold commas.
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool is_quoted = false;
+  for (const char c : line) {
+    if (c == '"')
+      is_quoted = !is_quoted;
+    else if (c == ',' && !is_quoted)
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  }
+  return cells;
+}
+
+/// Rows of a table by column.
+std::vector<Row> read_table(const std::string& file) {
+  std::istringstream in(read_text(file));
+  std::vector<std::string> names;
+  std::vector<Row> rows;
+  for (std::string line; std::getline(in, line);) {
+    if (line[0] == '#') continue;
+    const std::vector<std::string> cells = split(line);
+    if (names.empty()) {
+      names = cells;
+      continue;
+    }
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      if (c == 0) rows.emplace_back();
+      rows.back()[names[c]] = cells.at(c);
+    }
+  }
+  return rows;
+}
+
+/// A box of clay that a small sphere pokes.
+class Study : public testing::Test {
+ protected:
+  test::TempFolder folder;
+
+  void SetUp() override {
+    test::write_press_trace(folder / "press.csv", 0.048, 0.044, 0.4, "push");
+    test::write_text(folder / "scene.json", R"({"about": "a box poked from above",
+      "body": {"shape": {"kind": "box", "size_m": 0.04, "target_tets": 150, "skin_triangles": 0},
+               "fixed": [{"kind": "plane", "normal": [0, 0, 1], "offset_m": 0}]},
+      "material": {"youngs_modulus_Pa": 2e4, "poissons_ratio": 0.3, "plasticity": {"enabled": false},
+                   "clay_kernel": {"form": "off"}},
+      "tool": {"shape": {"kind": "sphere", "radius_m": 0.006, "subdivisions": 2}, "mode": "push"},
+      "contact": {"vertex_face_stiffness_N_per_m": 20, "edge_edge_stiffness_N_per_m": 20},
+      "dynamics": {"rayleigh_stiffness_s": 0.002},
+      "haptics": {"frame_period_ticks": 50}, "trace": {"file": "press.csv"}})");
+  }
+  StudyOptions options(const std::string& json) const {
+    StudyOptions o;
+    o.study = test::write_text(folder / "study.json", json);
+    o.output = folder / "table";
+    o.cases.program = ARGIL_BINARY;
+    o.cases.quiet = true;
+    o.cases.jobs = 2;
+    return o;
+  }
+  std::vector<Row> table() const { return read_table(folder / "table.csv"); }
+
+  /// ω_max of the box at E = 1 Pa, from element stiffnesses and lumped masses by a dense eigensolver.
+  double compute_largest_frequency(double E) const {
+    scenario::Scenario s = scenario::load_scenario(folder / "scene.json", {});
+    const scenario::Scene scene = scenario::build_scene(s);
+    const mesh::TetMesh& mesh = scene.body.mesh;
+    const solid::Solid solid(mesh, scene.body.topology, scene.body.supports, s.params.solid, 1);
+    const double nu = 0.3;
+    const Mat6 C = solid::make_isotropic_stiffness(E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu)));
+    const Eigen::Index n = mesh.num_vertices();
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+    for (int t = 0; t < mesh.num_tets(); ++t) {
+      solid::Mat34 rest;
+      for (int i = 0; i < 4; ++i) rest.col(i) = mesh.vertices.col(mesh.tets(i, t));
+      const solid::Mat12 k =
+          solid::compute_element_stiffness(solid::make_tet_geometry(rest), Mat3::Identity(), C);
+      for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+          K.block<3, 3>(3 * mesh.tets(i, t), 3 * mesh.tets(j, t)) += k.block<3, 3>(3 * i, 3 * j);
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const bool is_held = mesh.vertices(2, i) < 1e-9;
+      const double scale = is_held ? 0.0 : 1.0 / std::sqrt(solid.mass()(i));
+      K.middleRows<3>(3 * i) *= scale;
+      K.middleCols<3>(3 * i) *= scale;
+    }
+    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues()(3 * n - 1));
+  }
+};
+
+TEST_F(Study, MapFindsTheExplicitLimitWithinOnePercent) {
+  // Symplectic Euler is stable for h ω_max < 2; ω_max goes with √E.
+  const double h = 1e-3;
+  const double unit = compute_largest_frequency(1.0);
+  const double limit = 4.0 / (h * h * unit * unit);
+  ASSERT_EQ(map_stability(options(R"({"about": "explicit limit", "scenario": "scene.json",
+    "settings": {"/dynamics/integrator": "symplectic_euler", "/dynamics/model": "linear",
+      "/dynamics/rayleigh_stiffness_s": 0, "/dynamics/implicit_contact": false,
+      "/contact/vertex_face_stiffness_N_per_m": 1, "/contact/edge_edge_stiffness_N_per_m": 1},
+    "x": {"name": "E [Pa]", "pointers": ["/material/youngs_modulus_Pa"], "logarithmic": true,
+          "values": [1e3, 1e6]}, "bisect_to": 0.01, "limits": [{"name": "theory", "x": [7]}]})"),
+                          folder / "failures"),
+            kDone);
+  int boundaries = 0;
+  for (const Row& row : table()) {
+    if (row.at("kind") == "limit") {
+      EXPECT_EQ(row.at("x") + row.at("outcome"), "7theory");
+    }
+    if (row.at("kind") != "boundary") continue;
+    ++boundaries;
+    EXPECT_EQ(row.at("outcome"), "accurate > growing_energy");
+    EXPECT_NEAR(std::stod(row.at("x")), limit, 0.01 * limit);
+    EXPECT_LE(std::stod(row.at("x_above")), 1.01 * std::stod(row.at("x_below")));
+  }
+  EXPECT_EQ(boundaries, 1);
+  // What failed next to it can be run again, by itself, to the same end.
+  RunOptions again;
+  again.quiet = true;
+  again.scenario = folder / "failures/study_growing_energy.json";
+  again.output = folder / "again.h5";
+  EXPECT_EQ(run(again), kRunFailed);
+}
+
+const std::string kChart = R"({"about": "orders", "scenario": "scene.json",
+  "settings": {"/dynamics/iteration": "newton", "/dynamics/solver/kind": "cholesky"},
+  "reference": {"/haptics/period_s": 0.000125, "/haptics/frame_period_ticks": 400, "/haptics/water_period_ticks": 80},
+  "refined": {"/haptics/period_s": 0.0000625, "/haptics/frame_period_ticks": 800, "/haptics/water_period_ticks": 160},
+  "repeats": 2,
+  "curves": [{"name": "euler", "along": {"/haptics/period_s": [0.001, 0.002, 0.004]}},
+             {"name": "refused", "settings": {"/material/poissons_ratio": 0.7}},
+             {"name": "ended", "settings": {"/dynamics/newton/max_iterations": 1, "/dynamics/newton/tolerance": 1e-14}}]})";
+
+TEST_F(Study, ChartHasTheOrderOfTheSchemeAndNamesWhatFailed) {
+  ASSERT_EQ(chart(options(kChart)), kDone);
+  const std::vector<Row> rows = table();
+  ASSERT_EQ(rows.size(), 7U);
+  const auto error = [&](std::size_t i) { return std::stod(rows[i].at("force_error")); };
+  // Backward Euler, with the mean force of a tick: first order.
+  EXPECT_NEAR(std::log2(error(3) / error(2)), 1.0, 0.2) << error(2) << " " << error(3);
+  EXPECT_NEAR(std::log2(error(4) / error(3)), 1.0, 0.2) << error(4);
+  EXPECT_LT(error(0), 0.2 * error(2));  // the reference's own
+  EXPECT_EQ(rows[2].at("outcome"), "accurate");
+  EXPECT_GT(std::stod(rows[2].at("cpu_s_per_s")), 0.0);
+  EXPECT_EQ(std::stod(rows[3].at("steps")), 200.0);
+  EXPECT_EQ(rows[5].at("outcome"), "refused");
+  EXPECT_NE(rows[5].at("reason").find("/material/poissons_ratio"), std::string::npos);
+  EXPECT_EQ(rows[6].at("outcome"), "not_converged");
+  EXPECT_EQ(rows[6].at("force_error"), "");
+}
+
+TEST_F(Study, ChartTakenUpAgainIsTheSame) {
+  ASSERT_EQ(chart(options(kChart)), kDone);
+  const std::string first = read_text(folder / "table.csv");
+  // One run is lost, as when the study was stopped before it ended: its bits are the same, its cost is not.
+  const std::string lost = table()[2].at("run");
+  for (const char* suffix : {".h5", ".case"})
+    ASSERT_TRUE(std::filesystem::remove(folder / ("table.runs/" + lost + suffix)));
+  const auto written =
+      std::filesystem::last_write_time(folder / ("table.runs/" + table()[3].at("run") + ".h5"));
+  ASSERT_EQ(chart(options(kChart)), kDone);
+  EXPECT_EQ(std::filesystem::last_write_time(folder / ("table.runs/" + table()[3].at("run") + ".h5")),
+            written);
+  std::istringstream a(first), b(read_text(folder / "table.csv"));
+  for (std::string x, y; std::getline(a, x) && std::getline(b, y);)
+    if (x.find(lost) == std::string::npos) {
+      EXPECT_EQ(x, y);
+    }
+  EXPECT_EQ(table()[2].at("force_error"), read_table(folder / "table.csv")[2].at("force_error"));
+}
+
+TEST_F(Study, BudgetPrintsThePatchOfTheMostAccurateRunThatFits) {
+  testing::internal::CaptureStdout();
+  ASSERT_EQ(chart_budget(options(kChart), 1e6), kDone);
+  const std::string patch = testing::internal::GetCapturedStdout();
+  EXPECT_NE(patch.find(R"("period_s": 0.001)"), std::string::npos) << patch;
+  EXPECT_NE(patch.find(R"("iteration": "newton")"), std::string::npos) << patch;
+  EXPECT_EQ(chart_budget(options(kChart), 1e-9), kRunFailed);
+}
+
+TEST_F(Study, MapNamesEachWayToEnd) {
+  const auto outcome = [&](const std::string& settings, const std::string& pointer,
+                           const std::string& value) {
+    EXPECT_EQ(
+        map_stability(options(R"({"about": "one place", "scenario": "scene.json", "settings": {)" + settings +
+                              R"(}, "x": {"name": "x", "pointers": [")" + pointer + R"("], "values": [)" +
+                              value + R"(]}, "reference": {"/dynamics/iteration": "newton"}})"),
+                      ""),
+        kDone);
+    return table().at(0).at("outcome");
+  };
+  EXPECT_EQ(outcome("", "/material/poissons_ratio", "0.3"), "accurate");
+  EXPECT_EQ(outcome("", "/material/poissons_ratio", "0.7"), "refused");
+  EXPECT_EQ(outcome("", "/dynamics/min_volume_ratio", "0.999"), "inverted");
+  EXPECT_EQ(outcome(R"("/dynamics/solver/kind": "pcg_jacobi", "/dynamics/solver/tolerance": 1e-12)",
+                    "/dynamics/solver/max_iterations", "1"),
+            "not_converged");
+}
+
+TEST_F(Study, RefusesWhatItCannotRun) {
+  const auto expect = [&](const std::string& json, const std::vector<std::string>& parts,
+                          bool is_map = false) {
+    try {
+      is_map ? map_stability(options(json), "") : chart(options(json));
+      ADD_FAILURE() << json;
+    } catch (const InputError& error) {
+      for (const std::string& part : parts)
+        EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
+            << part << " not in " << error.what();
+    }
+  };
+  const std::string head = R"({"about": "x", "scenario": "scene.json", )";
+  expect(head + R"("curves": [{"name": "a"}]})", {"/refined", "is missing"});
+  expect(head + R"("refined": {"/a": 1}, "curves": []})", {"/curves", "is not a list"});
+  expect(head + R"("refined": {"a": 1}, "curves": [{"name": "a"}]})",
+         {"/refined", "\"a\" is no JSON pointer"});
+  expect(head + R"("refined": {"/a": 1}, "curves": [{"name": "a", "along": {"/b": [1, 2], "/c": [1]}}]})",
+         {"/curves/0/along", "/c has 1 values, the first key 2"});
+  expect(head + R"("refined": {"/a": 1}, "curve": [], "curves": [{"name": "a"}]})",
+         {"/curve", "is not a known key", "did you mean curves?"});
+  expect(head + R"("x": {"name": "x", "pointers": ["/a"], "values": [2, 1]}})",
+         {"/x/values", "do not increase"}, true);
+  expect(head + R"("x": {"name": "x", "pointers": ["/a"], "logarithmic": true, "values": [0, 1]}})",
+         {"/x/values", "logarithm"}, true);
+  EXPECT_FALSE(std::filesystem::exists(folder / "table.csv"));
+}
+
+}  // namespace
+}  // namespace argil::study
