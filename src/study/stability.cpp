@@ -67,8 +67,13 @@ class Map {
   }
 
  private:
+  /// Is one accurate, wrong or unstable, and the other not? All ways to be unstable count as one.
   bool turns(std::size_t a, std::size_t b) const {
-    return is_stable(m_places[a].outcome) != is_stable(m_places[b].outcome);
+    const auto rank = [this](std::size_t i) {
+      const Outcome outcome = m_places[i].outcome;
+      return is_stable(outcome) ? static_cast<int>(outcome) : -1;
+    };
+    return rank(a) != rank(b);
   }
 
   /// Runs places of the map, with the truth of each when there is one; where they stand in the list.

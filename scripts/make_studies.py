@@ -1,0 +1,51 @@
+#!/usr/bin/python3
+"""Rebuilds the charts of accuracy against cost and the maps of where methods fail: results/chart and results/stability, from
+the studies in scenarios/studies. Runs that were finished before, by the same build, are not run again.
+
+Usage: make_studies.py [NAME ...] [--build BUILD] [--jobs N]      NAME: chart_slide, map_poisson, …; none: all
+"""
+import argparse
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+TITLES = {
+    "chart_light_press": "A light press", "chart_deep_bend": "A deep push that bends a post",
+    "chart_wet_undrained": "Wet clay whose water cannot leave", "chart_slide": "A slide with friction, on one mesh",
+    "map_explicit_step": "Explicit steps", "map_implicit_step": "Long implicit steps",
+    "map_contact_stiffness": "Contact force held over the step (the paper)",
+    "map_contact_stiffness_implicit": "Contact in the solve", "map_poisson": "Four-node tets towards ν = ½",
+    "map_poisson_p1_nodal": "Volumes averaged at nodes, towards ν = ½",
+    "map_dilute_pole": "The paper's formula for wet clay", "map_wet_dry_contrast": "Wet clay much softer than dry",
+    "map_rotation": "Linear strain under rotation", "map_creep_step": "Literal plastic flow",
+    "map_kernel_step": "Clay kernel once a step"}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
+    parser.add_argument("names", nargs="*", choices=[*TITLES, []], metavar="NAME")
+    parser.add_argument("--build", type=Path, default=ROOT / "build", metavar="BUILD")
+    parser.add_argument("--jobs", type=int, default=2, metavar="N")
+    options = parser.parse_args()
+    argil = options.build / "bin" / "argil"
+    if not argil.is_file():
+        sys.exit(f"{argil}: is not there; scripts/build makes it")
+    for name in options.names or TITLES:
+        kind, _, stem = name.partition("_")
+        command, folder, plot = (("chart", "chart", "plot_chart.py") if kind == "chart"
+                                 else ("stability", "stability", "plot_map.py"))
+        table = ROOT / "results" / folder / stem
+        table.parent.mkdir(parents=True, exist_ok=True)
+        words = [argil, command, ROOT / "scenarios" / "studies" / f"{name}.json", "--output", table, "--runs",
+                 options.build / "studies", "--jobs", str(options.jobs), "--quiet"]
+        if command == "stability":
+            words += ["--failures", ROOT / "scenarios" / "failures"]
+        print(name, flush=True)
+        subprocess.run(words, check=True)
+        subprocess.run([ROOT / "scripts" / plot, table.with_suffix(".csv"), "--title", TITLES[name]], check=True,
+                       stdout=subprocess.DEVNULL)
+
+
+if __name__ == "__main__":
+    main()
