@@ -151,6 +151,13 @@ void compare_frames(const output::ResultReader& run, const output::ResultReader&
   errors.skin = skin.relative();
 }
 
+double compute_chatter(const std::vector<sim::HapticRecord>& haptic) {
+  if (haptic.empty()) return 0.0;
+  Points force(3, static_cast<Eigen::Index>(haptic.size()));
+  for (std::size_t k = 0; k < haptic.size(); ++k) force.col(static_cast<Eigen::Index>(k)) = haptic[k].force;
+  return compute_share_above(force, haptic.back().time / static_cast<double>(haptic.size()), kChatterHz);
+}
+
 }  // namespace
 
 RunErrors compute_errors(const output::ResultReader& run, const output::ResultReader& truth) {
@@ -161,6 +168,7 @@ RunErrors compute_errors(const output::ResultReader& run, const output::ResultRe
     throw InputError(run.file(), "/haptic", "has ticks that " + truth.file() + " has not",
                      "compare runs of one motion, the truth's period a whole part of the other's");
   compare_forces(haptic, records, errors);
+  errors.true_chatter = compute_chatter(records);
   compare_frames(run, truth, errors);
   const auto run_physics = run.read_physics();
   const auto true_physics = truth.read_physics();
@@ -198,16 +206,10 @@ double compute_share_above(const Points& force, double period, double frequency)
 RunFigures compute_figures(const output::ResultReader& run) {
   RunFigures figures;
   const auto haptic = run.read_haptic();
-  Points force(3, static_cast<Eigen::Index>(haptic.size()));
-  for (std::size_t k = 0; k < haptic.size(); ++k) {
-    force.col(static_cast<Eigen::Index>(k)) = haptic[k].force;
-    figures.peak_force = std::max(figures.peak_force, haptic[k].force.norm());
-  }
-  if (!haptic.empty()) {
-    figures.simulated_seconds = haptic.back().time;
-    figures.chatter =
-        compute_share_above(force, haptic.back().time / static_cast<double>(haptic.size()), kChatterHz);
-  }
+  for (const sim::HapticRecord& record : haptic)
+    figures.peak_force = std::max(figures.peak_force, record.force.norm());
+  figures.simulated_seconds = haptic.empty() ? 0.0 : haptic.back().time;
+  figures.chatter = compute_chatter(haptic);
   const auto physics = run.read_physics();
   if (physics.empty()) return figures;
   const auto energy = [](const sim::PhysicsRecord& r) {

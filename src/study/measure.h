@@ -17,7 +17,9 @@ struct RunErrors {
   double displacement = kUnknown;      ///< L² over the truth's tets and all frames that both have
   double skin = kUnknown;              ///< the same over skin vertices; both must have the same skin
   double saturation = kUnknown;        ///< L² over the truth's tets and all common frames
-  double dissipation = kUnknown;       ///< of the plastic dissipation at the end
+  double true_chatter =
+      kUnknown;  ///< the truth's own RunFigures::chatter: a hand that pokes does what trembles
+  double dissipation = kUnknown;  ///< of the plastic dissipation at the end
 };
 
 /// Compares two results at the times of the run's ticks and frames. Throws InputError when the truth lacks a

@@ -24,7 +24,8 @@ Outcome classify(const CaseResult& result, const RunFigures& figures, const RunE
   if (result.exit_code == kRunFailed) return classify_failure(result.reason);
   if (result.exit_code != kDone) return Outcome::killed;
   if (figures.energy_gain > bounds.growing_above) return Outcome::growing_energy;
-  if (figures.chatter > bounds.chatter_above) return Outcome::chatter;
+  if (figures.chatter > bounds.chatter_above && !(figures.chatter <= 2.0 * errors.true_chatter))
+    return Outcome::chatter;
   return errors.force > bounds.wrong_above ? Outcome::wrong : Outcome::accurate;
 }
 

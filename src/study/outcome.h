@@ -24,7 +24,7 @@ enum class Outcome {
 struct OutcomeBounds {
   double wrong_above = 0.1;    ///< relative L² error of the hand force
   double growing_above = 0.1;  ///< RunFigures::energy_gain
-  double chatter_above = 0.1;  ///< RunFigures::chatter: the just noticeable difference
+  double chatter_above = 0.1;  ///< RunFigures::chatter: the just noticeable difference; and twice the truth's
 };
 
 /// `figures` and `errors` count for runs that reached their end; errors.force unknown: nothing to compare

@@ -35,6 +35,10 @@ TEST(Classify, GoesByTheWorstThatHappened) {
   figures.chatter = 0.2;
   EXPECT_EQ(classify(result, figures, errors, {}), Outcome::chatter);
   EXPECT_FALSE(is_stable(Outcome::chatter));
+  errors.true_chatter = 0.11;  // the hand itself trembles
+  EXPECT_EQ(classify(result, figures, errors, {}), Outcome::wrong);
+  errors.true_chatter = 0.09;
+  EXPECT_EQ(classify(result, figures, errors, {}), Outcome::chatter);
   figures.energy_gain = 0.2;
   EXPECT_EQ(classify(result, figures, errors, {}), Outcome::growing_energy);
   result.exit_code = kRunFailed;
