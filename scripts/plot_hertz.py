@@ -170,7 +170,8 @@ def main():
     cases = [(tool, element, cells, 1) for element, cells in meshes for tool in ("sphere", "punch", "cone")]
     cases += [("sphere", "p1", 4, stiffness) for stiffness in (0.03, 0.1, 0.3)]
     if not options.quick:
-        cases += [("sphere", "p2", 4, 1), *((tool, "p1", 8, 1) for tool in ("sphere", "punch", "cone"))]
+        cases += [(tool, element, cells, 1) for element, cells in (("p2", 4), ("p1", 8))
+                  for tool in ("sphere", "punch", "cone")]
     rows = []
     with tempfile.TemporaryDirectory() as name:
         for tool, element, cells, stiffness in cases:
@@ -190,19 +191,19 @@ def save(rows, output):
 
 
 def draw(rows):
-    figure, (mesh, penalty) = plt.subplots(1, 2, figsize=(180 * ap.MILLIMETRES, 75 * ap.MILLIMETRES), sharey=True)
+    figure, (mesh, penalty) = plt.subplots(1, 2, figsize=(180 * ap.MILLIMETRES, 90 * ap.MILLIMETRES), sharey=True)
     for i, tool in enumerate(("sphere", "punch", "cone")):
         for element, dash in (("p1", "-"), ("p2", (0, (5, 1.5)))):
             line = sorted((r[2], r[4]) for r in rows if r[0] == tool and r[1] == element and r[3] == 1)
             if line:
                 mesh.plot(*zip(*line), color=ap.COLOURS[i], linestyle=dash, marker="o", markersize=4,
-                          label=f"{tool}, {element}")
+                          markerfacecolor=None if element == "p1" else "white", label=f"{tool}, {element}")
     line = sorted((r[3], r[4]) for r in rows if r[0] == "sphere" and r[1] == "p1" and r[2] == 4)
     penalty.plot(*zip(*line), color=ap.COLOURS[0], marker="o", markersize=4, label="sphere, p1, 4 cells")
     for axes in (mesh, penalty):
         axes.axhline(1, color=ap.GREY, linewidth=0.8)
         axes.set_xscale("log")
-        axes.legend(loc="best")
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncol=3)
     mesh.set_xticks([2, 4, 8], ["2", "4", "8"])
     mesh.minorticks_off()
     mesh.set_xlabel("cells per contact radius")

@@ -45,13 +45,13 @@ int compare_files(const std::string& a, const std::string& b) {
   return report.is_equal() ? ExitCode::kDone : ExitCode::kDifferent;
 }
 
-int print_times_of_impact(const std::string& kind, const std::string& queries) {
+int print_times_of_impact(const std::string& kind, const std::string& queries, double separation) {
   const auto pair = kind == "vertex-face" ? contact::PairKind::vertex_face : contact::PairKind::edge_edge;
   study::require_input_file(queries);
   const contact::QueryFile file = contact::read_queries(queries);
   std::puts("query,hit,time_of_impact");
   for (std::size_t q = 0; q < file.paths.size(); ++q) {
-    if (const auto time = contact::find_time_of_impact(pair, file.paths[q]))
+    if (const auto time = contact::find_time_of_impact(pair, file.paths[q], separation))
       std::printf("%zu,1,%.17g\n", q, *time);
     else
       std::printf("%zu,0,\n", q);
@@ -136,7 +136,11 @@ int main(int argc, char** argv) {
       ->required()
       ->check(CLI::IsMember({"vertex-face", "edge-edge"}));
   ccd->add_option("QUERIES", first, "CSV, eight rows of rational coordinates a query")->required();
-  ccd->callback([&] { code = print_times_of_impact(second, first); });
+  double separation = 0.0;
+  ccd->add_option("--minimum-separation", separation, "report pairs that come this near, in the file's unit")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  ccd->callback([&] { code = print_times_of_impact(second, first, separation); });
 
   int target_tets = embed::CageOptions().target_tets;
   double scale = 1.0;

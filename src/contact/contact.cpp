@@ -114,7 +114,7 @@ void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, cons
   impl.centre_t1 = pose_t1.position + pose_t1.orientation * impl.tool_centre;
   const Bounds tool_bounds = impl.tool_bounds();
   const bool is_carrying = !impl.tool_vertices.inside.empty() || !impl.body_vertices.inside.empty();
-  if (!is_carrying && !tool_bounds.overlaps(impl.body_tree->bounds())) {
+  if (!is_carrying && !tool_bounds.overlaps(impl.body_tree->bounds(), impl.params.minimum_separation)) {
     impl.edge_springs.clear();
     return;
   }

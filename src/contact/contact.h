@@ -33,7 +33,8 @@ struct Contact {
       Vec3::Zero();         ///< damping and friction on the body [N]; a pull tool does not reverse them
   double damping = 0.0;     ///< c of the damping force c n·v [N s/m]
   double body_speed = 0.0;  ///< n·v of the body [m/s], which that force counted with
-  double sticking = 0.0;    ///< stiffness along the surface while the pair sticks [N/m]
+  double sticking =
+      0.0;  ///< stiffness along the surface [N/m]; −that: slides, and has it across its way alone
   Vec3 point =
       Vec3::Zero();  ///< where the force acts at the end of the tick [m], for the torque and the picture
 };

@@ -58,9 +58,10 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
   body_vertices.entries.clear();
   edge_pairs.clear();
   body_candidates.clear();
-  body_tree->find_overlaps(tool_bounds, motion.body_t0, motion.body_t1, body_candidates);
+  const double separation = params.minimum_separation;
+  body_tree->find_overlaps(tool_bounds.grown(separation), motion.body_t0, motion.body_t1, body_candidates);
   // The tool stays within its sphere, whose centre never is farther from where it began than at the end.
-  const double reach = tool_radius + (centre_t1 - centre_t0).norm() * (1.0 + 1e-9);
+  const double reach = tool_radius + separation + (centre_t1 - centre_t0).norm() * (1.0 + 1e-9);
   for (const int body_face : body_candidates) {
     Bounds swept;
     for (int k = 0; k < 3; ++k) {
@@ -68,6 +69,7 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
       swept.include(Vec3(motion.body_t1.col(body.triangles(k, body_face))));
     }
     if (swept.squared_distance(centre_t0) > reach * reach) continue;
+    swept = swept.grown(separation);
     tool_candidates.clear();
     tool_tree.find_overlaps(swept, motion.tool_t0, motion.tool_t1, tool_candidates);
     for (const int tool_face : tool_candidates) test_vertices(body_face, tool_face, swept, motion);
@@ -82,8 +84,9 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
 
 void ContactDetector::Impl::test_vertices(int body_face, int tool_face, const Bounds& swept_body,
                                           const Motion& motion) {
-  const auto test = [](const VertexFaceMotion& m, int v, int face) {
-    if (const auto time = find_time_of_impact(PairKind::vertex_face, m.path(v, face)))
+  const auto test = [this](const VertexFaceMotion& m, int v, int face) {
+    if (const auto time =
+            find_time_of_impact(PairKind::vertex_face, m.path(v, face), params.minimum_separation))
       m.side.entries.push_back({v, *time, face});
   };
   for (int k = 0; k < 3; ++k) {
@@ -117,10 +120,12 @@ void ContactDetector::Impl::test_edges(int body_edge, const Motion& motion) {
       pair.inside_t0 = is_crossed(a.t0, b.t0, tool_t0_at, tool_edge, body_t0, body_edge);
       pair.inside_t1 = is_crossed(a.t1, b.t1, tool_t1_at, tool_edge, body_t1, body_edge);
       bool is_hit = pair.inside_t0 || pair.inside_t1;
-      if (!is_hit && a.swept.overlaps(b.swept, 0.0))
-        is_hit = find_time_of_impact(PairKind::edge_edge, {{a.t0[0], a.t0[1], b.t0[0], b.t0[1]},
-                                                           {a.t1[0], a.t1[1], b.t1[0], b.t1[1]}})
-                     .has_value();
+      if (!is_hit && a.swept.overlaps(b.swept, params.minimum_separation))
+        is_hit =
+            find_time_of_impact(PairKind::edge_edge,
+                                {{a.t0[0], a.t0[1], b.t0[0], b.t0[1]}, {a.t1[0], a.t1[1], b.t1[0], b.t1[1]}},
+                                params.minimum_separation)
+                .has_value();
       if (is_hit) edge_pairs.push_back(pair);
     }
 }

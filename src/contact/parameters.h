@@ -21,6 +21,9 @@ struct ContactParams {
   /// μ [–], ≥ 0: Coulomb's coefficient. A pair sticks by a spring as stiff as its normal one, and slides when
   /// that would carry more than μ times the normal force.
   double friction = 0.0;
+  /// [m], ≥ 0: vertices and edges that come this near count as met by detection. The force stays that of
+  /// penetration.
+  double minimum_separation = 0.0;
 };
 
 }  // namespace argil::contact

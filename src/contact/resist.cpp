@@ -30,10 +30,13 @@ void ContactDetector::Impl::resist(const PairMotion& m, Vec3& stretch, Contact& 
   stretch -= n.dot(stretch) * n;
   const double limit = params.friction * normal_force / m.stiffness;
   const double length = stretch.norm();
-  if (length > limit)
+  if (length > limit) {
     stretch *= limit / length;
-  else
+    // μ N s/|s| turns with the stretch s: its derivative is μ N/|s| = k across s, and 0 along it.
+    c.sticking = limit > 0.0 ? -m.stiffness : 0.0;
+  } else {
     c.sticking = m.stiffness;
+  }
   c.resistance += m.stiffness * stretch;
 }
 

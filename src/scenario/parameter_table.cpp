@@ -288,6 +288,8 @@ void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
            "Share by which the normal force grows for each m/s of approach (Hunt and Crossley 1975).");
   b.number("/contact/friction", c.friction, between(0, 10), "",
            "Coulomb's coefficient of the tool on the body; 0: none (the paper).");
+  b.number("/contact/minimum_separation_m", c.minimum_separation, not_negative(), "m",
+           "Pairs that come this near count as met by detection; the force stays that of penetration.");
   b.number(
       "/contact/face_blend", c.face_blend, between(0, 10), "",
       "Faces farther from a vertex than its nearest by less than this share of the distance also turn its "

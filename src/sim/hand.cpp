@@ -1,5 +1,7 @@
 // Between the contacts, the body and the hand: who gets which force.
 
+#include <array>
+#include <cmath>
 #include <optional>
 
 #include "sim/simulation.h"
@@ -63,8 +65,9 @@ void Simulation::spread_contact_force(int ticks) {
 }
 
 /// How a contact's force changes as the body moves on: falls by its stiffness, by damping with the speed, and
-/// along the surface while it sticks. One that pushes lets go before it would draw. A pulling contact has
-/// negative stiffness; left out, so that the system stays positive definite.
+/// along the surface while it sticks, or across its way where it slides. One that pushes lets go before it
+/// would draw. A pulling contact has negative stiffness; left out, so that the system stays positive
+/// definite.
 void Simulation::add_contact_stiffness(const contact::Contact& c, const Vec3& force, bool pushes,
                                        double share) {
   // The damping force counted with the body's last speed; the solve finds the next, from a force without it.
@@ -81,10 +84,13 @@ void Simulation::add_contact_stiffness(const contact::Contact& c, const Vec3& fo
     piece.counts = true;
   }
   if (c.sticking == 0.0) return;
-  const Vec3 along = c.normal.unitOrthogonal();
-  for (const Vec3& direction : {along, Vec3(c.normal.cross(along))}) {
+  const bool slides = c.sticking < 0.0;
+  const Vec3 dragged = c.resistance - c.normal.dot(c.resistance) * c.normal;
+  const Vec3 along = slides ? dragged.normalized() : c.normal.unitOrthogonal();
+  const std::array<Vec3, 2> directions = {c.normal.cross(along), along};
+  for (std::size_t d = 0; d < (slides ? 1 : 2); ++d) {
     const std::size_t begin = m_contact_stiffness.size();
-    add_contact_stiffness(c, direction, share * c.sticking, 0.0);
+    add_contact_stiffness(c, directions[d], share * std::abs(c.sticking), 0.0);
     for (std::size_t i = 0; pushes && i < pieces; ++i)
       m_contact_stiffness[begin + i].group = static_cast<int>(leader + i);
   }

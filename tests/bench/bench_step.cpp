@@ -3,7 +3,8 @@
 //   build/bin/bench_step --benchmark_filter=push/tets:10000
 // Counters are microseconds per physics step of one haptic tick: `solve` is the median over the steps in
 // which the stage ran, `solve_p99` its 99th percentile; `step` is the sum of a step's stages. Push: contact
-// and solid, water every tenth step. Wet: the body feels no force, water flows in every step.
+// and solid, water every tenth step. Wet: the body feels no force, water flows in every step. Compliant: a
+// physics step every 14 ticks, and a surface that yields in between; `contact` is that of one tick.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -71,11 +72,14 @@ struct Press {
   device::ToolMode mode;
   std::unique_ptr<sim::Simulation> simulation;
 
-  Press(int tets, int threads, device::ToolMode m) : mode(m) {
+  Press(int tets, int threads, device::ToolMode m, bool is_compliant) : mode(m) {
     const std::vector<scenario::Setting> settings = {
         {"/body/shape/target_tets", std::to_string(tets)},
-        {"/haptics/physics_period_ticks", "1"},
-        {"/haptics/water_period_ticks", m == device::ToolMode::push ? "10" : "1"}};
+        {"/haptics/between_frames", is_compliant ? "compliant" : "hold"},
+        {"/haptics/physics_period_ticks", is_compliant ? "14" : "1"},
+        {"/haptics/water_period_ticks", is_compliant                  ? "14"
+                                        : m == device::ToolMode::push ? "10"
+                                                                      : "1"}};
     scenario::Scenario s =
         scenario::load_scenario(ARGIL_SOURCE_DIR "/scenarios/demo_dino_dry.json", settings);
     s.params.threads = threads;
@@ -96,8 +100,8 @@ struct Press {
   }
 };
 
-void run_steps(benchmark::State& state, device::ToolMode mode) {
-  Press press(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), mode);
+void run_steps(benchmark::State& state, device::ToolMode mode, bool is_compliant = false) {
+  Press press(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), mode, is_compliant);
   for (Tick tick = 0; tick < kApproachSteps; ++tick)
     if (const std::string fault = press.step(); !fault.empty()) {
       state.SkipWithError(fault.c_str());
@@ -133,12 +137,17 @@ void wet(benchmark::State& state) {
   run_steps(state, device::ToolMode::wet);
 }
 
+void compliant(benchmark::State& state) {
+  run_steps(state, device::ToolMode::push, true);
+}
+
 void set_sizes(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"tets", "threads"})->ArgsProduct({{2000, 10000, 40000}, {1, 2}});
   bench->Iterations(kPressSteps)->Unit(benchmark::kMicrosecond)->UseRealTime();
 }
 BENCHMARK(push)->Apply(set_sizes);
 BENCHMARK(wet)->Apply(set_sizes);
+BENCHMARK(compliant)->Apply(set_sizes);
 
 }  // namespace
 }  // namespace argil

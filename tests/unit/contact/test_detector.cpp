@@ -400,6 +400,26 @@ TEST(Cost, NoHeapAfterWarmUp) {
   EXPECT_EQ(g_num_allocations, 0);
 }
 
+TEST(Motion, AMinimumSeparationOfDetectionLeavesTheForceAsItIs) {
+  // More pairs are looked at; what does not penetrate exerts nothing.
+  const mesh::TriangleMesh tool = make_sphere_tool(kR, 2);
+  Scene plain(make_flat_slab(), tool, {0.0013, 0.0007, kR + 1e-4});
+  Scene wide(make_flat_slab(), tool, {0.0013, 0.0007, kR + 1e-4});
+  ContactParams params{kK, kK};
+  params.minimum_separation = 5e-4;
+  wide.detector = ContactDetector(wide.body.triangles, wide.body.num_vertices(), tool, params);
+  plain.detector = ContactDetector(plain.body.triangles, plain.body.num_vertices(), tool, {kK, kK});
+  double largest = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 next = plain.pose.position + Vec3(2e-5, 1e-5, i < 30 ? -5e-5 : 5e-5);
+    plain.move(next);
+    wide.move(next);
+    EXPECT_LT((plain.force() - wide.force()).norm(), 1e-12) << i;
+    largest = std::max(largest, plain.force().norm());
+  }
+  EXPECT_GT(largest, 0.1);
+}
+
 TEST(Motion, BodyPressingAgainstAToolAtRestFeelsTheSame) {
   // Only the relative motion counts: the slab rises against the tool instead of the tool coming down.
   const mesh::TriangleMesh tool = make_sphere_tool(kR, 2);

@@ -66,26 +66,35 @@ TEST_P(EverySurface, CarriesForceAndTorqueToTheNodesToRounding) {
   Points x = elements.rest;
   for (Eigen::Index v = 0; v < x.cols(); ++v)
     for (Eigen::Index k = 0; k < 3; ++k) x(k, v) += 2e-4 * (rng.uniform() - 0.5);
+  contact::ContactParams params{50.0, 50.0};
+  params.damping = 0.5;
+  params.friction = 0.4;
   contact::ContactDetector detector(surface.triangles(), surface.num_vertices(),
-                                    contact::make_sphere_tool(kToolRadius, 2), {50.0, 50.0});
+                                    contact::make_sphere_tool(kToolRadius, 2), params);
   Points places;
   surface.find_positions(x, places);
   contact::Contacts contacts;
   contact::Pose from, to;
   from.position = at_height(0.021).position;
   to.position = at_height(0.0165).position;
-  detector.find_contacts(places, places, from, to, contacts);
-  detector.find_contacts(places, places, to, to, contacts);
+  detector.find_contacts(places, places, from, to, contacts, {}, 1e-3);
+  contact::Pose aside = to;
+  aside.position += Vec3(2e-4, -1e-4, -2e-4);
+  aside.orientation = Eigen::AngleAxisd(0.02, Vec3::UnitZ());
+  detector.find_contacts(places, places, to, aside, contacts, {}, 1e-3);
+  const Vec3 on_tool = contacts.force_on_tool + contacts.resistance_on_tool;
+  const Vec3 torque_on_tool = contacts.torque_on_tool + contacts.resistance_torque_on_tool;
   ASSERT_GT(contacts.force_on_tool.norm(), 0.01);
+  ASSERT_GT(contacts.resistance_on_tool.head<2>().norm(), 0.001);
 
   Points force = Points::Zero(3, x.cols());
-  for (const contact::Contact& c : contacts.contacts) surface.add_force(c, c.force, force);
+  for (const contact::Contact& c : contacts.contacts) surface.add_force(c, c.force + c.resistance, force);
   Vec3 torque = Vec3::Zero();
-  for (Eigen::Index v = 0; v < x.cols(); ++v) torque += (x.col(v) - to.position).cross(Vec3(force.col(v)));
-  const double scale = contacts.force_on_tool.norm();
-  EXPECT_LT((force.rowwise().sum() + contacts.force_on_tool).norm(), 1e-13 * scale);
+  for (Eigen::Index v = 0; v < x.cols(); ++v) torque += (x.col(v) - aside.position).cross(Vec3(force.col(v)));
+  const double scale = on_tool.norm();
+  EXPECT_LT((force.rowwise().sum() + on_tool).norm(), 1e-13 * scale);
   // Embedded places are right to rounding of the block's size.
-  EXPECT_LT((torque + contacts.torque_on_tool).norm(), 1e-13 * scale * kSize.norm());
+  EXPECT_LT((torque + torque_on_tool).norm(), 1e-13 * scale * kSize.norm());
 
   // All the stiffness arrives, and every entry lies within one tet.
   std::vector<solid::PointStiffness> stiffness;
@@ -160,6 +169,36 @@ TEST(Skin, AFreeBodyTakesUpTheMomentumThatTheHandGives) {
     EXPECT_EQ(momentum.x() > 1e-6, friction > 0.0) << momentum.transpose();
     EXPECT_LT((momentum - impulse).norm(), 1e-12 * impulse.norm() + 1e-17) << damping << ' ' << friction;
   }
+}
+
+TEST(Skin, AFreeBodyTakesUpTheAngularMomentumThatTheHandGives) {
+  // One step from rest, into the body at once: its stiffness turns nothing about the places at rest, so that
+  // Σ X × m v' is the torque's impulse, about the hand's point and with the yield and all that resists.
+  for (const SurfaceKind kind : {SurfaceKind::cage, SurfaceKind::skin})
+    for (const auto& [damping, friction] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.5}, {1.0, 0.5}}) {
+      Body body = make_body(0.8);
+      body.supports.clear();
+      const Points X = body.mesh.vertices;
+      Params params = make_params(kind);
+      params.solid.model = solid::StrainModel::linear;
+      params.contact.damping = damping;
+      params.contact.friction = friction;
+      Simulation simulation(std::move(body), contact::make_sphere_tool(kToolRadius, 2), params,
+                            at_height(0.0201));
+      device::DeviceSample sample = at_height(0.0165);
+      sample.position += Vec3(0.004, -0.003, 0.0);
+      sample.orientation = Eigen::AngleAxisd(0.1, Vec3::UnitZ());
+      ASSERT_TRUE(simulation.tick(sample).is_ok());
+      Vec3 momentum = Vec3::Zero();
+      for (Eigen::Index v = 0; v < X.cols(); ++v)
+        momentum += simulation.solid().mass()(v) *
+                    (X.col(v) - sample.position).cross(Vec3(simulation.state().solid.v.col(v)));
+      const double h = params.rates.haptic_period;
+      const State& state = simulation.state();
+      EXPECT_GT(state.hand_torque.norm(), 1e-5);
+      EXPECT_LT((momentum + h * state.hand_torque).norm(), 1e-11 * h * state.hand_force.norm() * kSize.norm())
+          << static_cast<int>(kind) << ' ' << damping << ' ' << friction;
+    }
 }
 
 TEST(Skin, TakesUpWater) {

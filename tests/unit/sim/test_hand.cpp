@@ -96,6 +96,54 @@ TEST(HandForce, NeverDrawsOnABodyThatLeaves) {
   }
 }
 
+/// Largest change of the force for changes of `step` of how far the hand draws back in one tick, at up to
+/// 1.5 times the depth, from rest at that depth.
+double find_largest_jump(const Params& params, double depth, double step) {
+  double largest = 0.0, last = 0.0;
+  for (double back = 0.0; back <= 1.5 * depth; back += step) {
+    Simulation simulation = test::make_one_node_simulation(params);
+    for (int k = 0; k < 4 * params.rates.physics_period_ticks; ++k) go_to(simulation, depth);
+    const double force = go_to(simulation, depth - back).force.z();
+    if (back > 0.0) largest = std::max(largest, std::abs(force - last));
+    last = force;
+  }
+  return largest;
+}
+
+TEST(HandForce, IsContinuousInHowFarTheHandDrawsBackButForTheDiscretePenalty) {
+  // A penalty k presses as far as f/k deep. A hand that draws back farther in one tick than that is ahead of
+  // the surface, which follows only in the next step: it feels nothing for a tick where the surface stands
+  // still (re_evaluate), fades out where the force is the mean over the way (continuous), and loses at once,
+  // K k/(K + k) (D − f/k), what the step would have added to it where the place at the end alone counts.
+  constexpr double kDepth = 1e-3;
+  struct Case {
+    BetweenFrames between;
+    int period;
+    contact::PenaltyKind penalty;
+  };
+  for (const auto& [between, period, penalty] :
+       {Case{BetweenFrames::hold, 1, contact::PenaltyKind::continuous},
+        Case{BetweenFrames::re_evaluate, 14, contact::PenaltyKind::continuous},
+        Case{BetweenFrames::re_evaluate, 14, contact::PenaltyKind::discrete},
+        Case{BetweenFrames::compliant, 14, contact::PenaltyKind::discrete},
+        Case{BetweenFrames::hold, 1, contact::PenaltyKind::discrete}}) {
+    Params params = test::make_one_node_params();
+    params.rates.between_frames = between;
+    params.rates.physics_period_ticks = period;
+    params.contact.penalty = penalty;
+    const double coarse = find_largest_jump(params, kDepth, 2e-5);
+    const double fine = find_largest_jump(params, kDepth, 1e-5);
+    if (between == BetweenFrames::hold && penalty == contact::PenaltyKind::discrete) {
+      const double K = test::compute_apex_stiffness(params.elastic);
+      const double series = test::compute_series(kPenalty, K);
+      EXPECT_NEAR(fine, series * kDepth * (1.0 - series / kPenalty), series * 2e-5);
+    } else {
+      EXPECT_LT(coarse, 2.0 * kPenalty * 2e-5) << static_cast<int>(between);
+      EXPECT_LT(fine, 0.6 * coarse) << static_cast<int>(between);
+    }
+  }
+}
+
 TEST(Compliant, IsTwoSpringsInSeriesBetweenPhysicsSteps) {
   // Of the apex's stiffness K and the penalty k, whatever the hand does between two physics steps, also when
   // it draws back faster than the penalty alone reaches. Against the surface as it was: k on top of the last

@@ -187,6 +187,14 @@ TEST_F(BadInput, SurfaceThatYieldsBetweenFramesIsRefusedWithoutAnImplicitStep) {
   expect_refused(ball(), {"/haptics/passivity=1"}, {"/haptics/passivity", "time_domain"});
 }
 
+TEST_F(BadInput, TouchedSurfaceThatTheBodyLacksIsRefused) {
+  expect_refused(ball(), {"/contact/surface=skin"},
+                 {"/contact/surface", "the body has none", "skin_triangles", "cage"});
+  expect_refused(ball(), {"/contact/surface=skins"}, {"/contact/surface", "skins", "cage", "skin"});
+  expect_refused(ball(), {"/contact/minimum_separation_m=-1e-6"},
+                 {"/contact/minimum_separation_m", "-1e-06", "[0.0, ∞) m"});
+}
+
 TEST_F(BadInput, LockingTetsAreRefusedUnlessAllowed) {
   expect_refused(ball(), {"/material/poissons_ratio=0.49"},
                  {"/material/poissons_ratio", "lock", "allow_locking"});

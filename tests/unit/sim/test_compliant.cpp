@@ -1,0 +1,152 @@
+// The surface that yields between physics steps: with friction, on a skin, and what it takes from the heap.
+// Heap use counts Eigen's own route to it (malloc), which glibc lets a program replace; sanitizers replace it
+// themselves, so that this is left out there.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "contact/tool_shape.h"
+#include "support/block_mesh.h"
+#include "support/one_node.h"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+namespace {
+std::size_t s_allocations = 0;
+}
+extern "C" void* __libc_malloc(std::size_t size);     // NOLINT: glibc's name
+extern "C" void* malloc(std::size_t size) noexcept {  // NOLINT
+  ++s_allocations;
+  return __libc_malloc(size);
+}
+#define ARGIL_COUNTS_HEAP
+#endif
+
+namespace argil::sim {
+namespace {
+
+constexpr int kPeriod = 14;  // ticks of a physics step
+
+Params make_compliant_params() {
+  Params params = test::make_one_node_params();
+  params.rates.physics_period_ticks = kPeriod;
+  params.rates.between_frames = BetweenFrames::compliant;
+  return params;
+}
+
+TEST(CompliantFriction, OfASlidingPlateIsCoulombsForHandAndBody) {
+  // At a steady depth D the plate presses with k K/(k + K) D and drags by μ times that; the apex gives way
+  // aside by the shear stiffness V G |∇N|².
+  constexpr double kDepth = 1e-3, kFriction = 0.3, kWay = 2e-5;
+  Params params = make_compliant_params();
+  params.contact.friction = kFriction;
+  const double K = test::compute_apex_stiffness(params.elastic);
+  const double nu = params.elastic.poissons_ratio;
+  const double aside = K * (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu));  // G over λ + 2μ
+  const double normal = test::compute_series(test::kPenalty, K) * kDepth;
+  Simulation simulation = test::make_one_node_simulation(params);
+  const double x = simulation.state().solid.x(0, 3);
+  device::DeviceSample sample = test::press_apex(kDepth);
+  for (int k = 0; k < 40 * kPeriod; ++k) {
+    if (k >= 4 * kPeriod) sample.position.x() += kWay;
+    ASSERT_TRUE(simulation.tick(sample).is_ok());
+    if (k < 30 * kPeriod) continue;
+    const Vec3 felt = simulation.state().hand_force;
+    EXPECT_NEAR(felt.z(), normal, 1e-4 * normal) << k;
+    EXPECT_NEAR(felt.x(), -kFriction * normal, 1e-3 * normal) << k;
+    EXPECT_NEAR(felt.y(), 0.0, 1e-3 * normal) << k;
+  }
+  EXPECT_NEAR(aside * (simulation.state().solid.x(0, 3) - x), kFriction * normal, 1e-3 * normal);
+}
+
+/// Block on the ground whose skin is its boundary shrunk by `scale` towards the middle; 1: the boundary.
+Simulation make_block_simulation(Params params, SurfaceKind kind, double scale) {
+  const Vec3 size(0.04, 0.04, 0.02);
+  Body body;
+  body.mesh = test::make_block(6, 6, 3, size);
+  body.topology = mesh::make_topology(body.mesh);
+  solid::Support bottom;
+  bottom.region.kind = solid::Region::Kind::half_space;
+  bottom.region.offset = 1e-9;
+  body.supports.push_back(bottom);
+  body.initial_saturation = Field::Zero(body.mesh.num_tets());
+  body.skin.triangles = body.topology.boundary;
+  body.skin.vertices = ((scale * (body.mesh.vertices.colwise() - size / 2)).colwise() + size / 2).eval();
+  body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, "skin");
+  params.contact_surface = kind;
+  params.contact.penalty = contact::PenaltyKind::continuous;
+  device::DeviceSample start;
+  start.position = {0.0211, 0.0197, 0.031};
+  return Simulation(std::move(body), contact::make_sphere_tool(0.008, 2), params, start);
+}
+
+device::DeviceSample slide(double tip, double aside) {
+  device::DeviceSample sample;
+  sample.position = {0.0211 + aside, 0.0197, tip + 0.008};
+  return sample;
+}
+
+TEST(CompliantSkin, ThatIsTheBoundaryItselfGivesTheSameRunAlsoWithFriction) {
+  for (const double friction : {0.0, 0.4}) {
+    Params params = make_compliant_params();
+    params.contact.friction = friction;
+    Simulation cage = make_block_simulation(params, SurfaceKind::cage, 1.0);
+    Simulation skin = make_block_simulation(params, SurfaceKind::skin, 1.0);
+    double largest = 0.0;
+    for (int k = 1; k <= 200; ++k) {
+      const device::DeviceSample sample = slide(0.023 - 3e-5 * std::min(k, 150), 1e-5 * k);
+      ASSERT_TRUE(cage.tick(sample).is_ok() && skin.tick(sample).is_ok());
+      largest = std::max(largest, cage.state().hand_force.norm());
+      ASSERT_LE((cage.state().hand_force - skin.state().hand_force).norm(), 1e-9 * largest) << k;
+    }
+    EXPECT_GT(largest, 0.1);
+  }
+}
+
+TEST(CompliantSkin, UnderTheBoundaryGivesTheBodyWhatTheHandFeels) {
+  // Slowly, so that inertia takes nothing: what the base bears is what the hand presses, also aside.
+  for (const double friction : {0.0, 0.4}) {
+    Params params = make_compliant_params();
+    params.contact.friction = friction;
+    Simulation simulation = make_block_simulation(params, SurfaceKind::skin, 0.8);
+    for (int k = 1; k <= 100 * kPeriod; ++k)
+      ASSERT_TRUE(simulation.tick(slide(0.02 - 2e-6 * std::min(k, 1000) - 0.001, 2e-6 * k)).is_ok());
+    Vec3 borne = Vec3::Zero();  // by the held nodes of the base
+    const Points& internal = simulation.solid().internal_force();
+    for (Eigen::Index v = 0; v < internal.cols(); ++v)
+      if (simulation.solid().elements().rest(2, v) < 1e-9) borne += internal.col(v);
+    const Vec3 felt = simulation.state().hand_force;
+    EXPECT_GT(felt.z(), 0.05);
+    EXPECT_LT((borne - felt).norm(), 2e-2 * felt.norm()) << borne.transpose() << " | " << felt.transpose();
+  }
+}
+
+#ifdef ARGIL_COUNTS_HEAP
+TEST(CompliantCost, NoHeapInATickBetweenPhysicsSteps) {
+  // While the same vertices are touched: one touched anew takes three linear solves.
+  for (const double friction : {0.0, 0.4}) {
+    Params params = make_compliant_params();
+    params.contact.friction = friction;
+    Simulation simulation = make_block_simulation(params, SurfaceKind::skin, 0.8);
+    std::size_t in_ticks = 0;
+    const auto lap = [&](int count) {
+      for (int k = 0; k < count * kPeriod; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / (4 * kPeriod);
+        const device::DeviceSample sample = slide(0.0165 + 2e-5 * std::sin(angle), 2e-5 * std::cos(angle));
+        const std::size_t before = s_allocations;
+        ASSERT_TRUE(simulation.tick(sample).is_ok());
+        if (!simulation.physics_due_last_tick()) in_ticks += s_allocations - before;
+      }
+    };
+    lap(40);
+    in_ticks = 0;
+    lap(8);
+    EXPECT_EQ(in_ticks, 0U) << friction;
+    EXPECT_GT(simulation.state().hand_force.z(), 0.05);
+  }
+}
+#endif
+
+}  // namespace
+}  // namespace argil::sim
