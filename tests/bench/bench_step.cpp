@@ -77,6 +77,7 @@ struct Press {
         {"/body/shape/target_tets", std::to_string(tets)},
         {"/haptics/between_frames", is_compliant ? "compliant" : "hold"},
         {"/haptics/physics_period_ticks", is_compliant ? "14" : "1"},
+        {"/haptics/frame_period_ticks", is_compliant ? "112" : "100"},
         {"/haptics/water_period_ticks", is_compliant                  ? "14"
                                         : m == device::ToolMode::push ? "10"
                                                                       : "1"}};
