@@ -141,25 +141,39 @@ void LocalCompliance::assemble_balance(const ContactSurface& surface,
   const std::size_t m = springs.size();
   m_balance.assign(m * m, 0.0);
   m_right.assign(m, 0.0);
-  for (std::size_t d = 0; d < m; ++d) {
-    m_own.setZero();
-    for (std::size_t i = 0; i < 3 && springs[d].vertex[i] >= 0; ++i) {
-      const auto columns =
-          m_columns.middleCols<3>(3 * static_cast<Eigen::Index>(place_of(springs[d].vertex[i])));
-      for (int axis = 0; axis < 3; ++axis)
-        m_own += springs[d].weight[i] * springs[d].normal(axis) * columns.col(axis);
+  // Only where springs act: the surface as a whole has many more rows.
+  const auto mean_at = [&](const ContactSpring& spring, const auto& displacement_at) {
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) {
+      const std::span<const int> nodes = surface.nodes(spring.vertex[i]);
+      const std::span<const double> weights = surface.weights(spring.vertex[i]);
+      for (std::size_t k = 0; k < nodes.size(); ++k)
+        mean += spring.weight[i] * weights[k] *
+                displacement_at(m_row_of_node[static_cast<std::size_t>(nodes[k])]);
     }
+    return mean;
+  };
+  const auto column_block = [this](int row, std::size_t place) {
+    return m_columns.block<3, 3>(row, 3 * static_cast<Eigen::Index>(place));
+  };
+  for (std::size_t d = 0; d < m; ++d)
     for (std::size_t c = 0; c < m; ++c)
-      m_balance[c * m + d] = springs[c].normal.dot(compute_mean(surface, springs[c], m_own));
-  }
-  m_own.setZero();
-  for (std::size_t i = 0; i < m_known.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      if (m_force[i](axis) != 0.0)
-        m_own += m_force[i](axis) * m_columns.col(3 * static_cast<Eigen::Index>(i) + axis);
+      m_balance[c * m + d] = springs[c].normal.dot(mean_at(springs[c], [&](int row) {
+        Vec3 own = Vec3::Zero();
+        for (std::size_t i = 0; i < 3 && springs[d].vertex[i] >= 0; ++i)
+          own +=
+              springs[d].weight[i] * (column_block(row, place_of(springs[d].vertex[i])) * springs[d].normal);
+        return own;
+      }));
+  const auto present_at = [&](int row) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < m_known.size(); ++i)
+      if (!m_force[i].isZero(0.0)) sum += column_block(row, i) * m_force[i];
+    return sum;
+  };
   for (std::size_t c = 0; c < m; ++c) {
-    m_right[c] = springs[c].force / springs[c].stiffness +
-                 springs[c].normal.dot(compute_mean(surface, springs[c], m_own));
+    m_right[c] =
+        springs[c].force / springs[c].stiffness + springs[c].normal.dot(mean_at(springs[c], present_at));
     for (std::size_t d = 0; d < c; ++d)  // equal but for the solver's tolerance
       m_balance[c * m + d] = m_balance[d * m + c] = 0.5 * (m_balance[c * m + d] + m_balance[d * m + c]);
     m_balance[c * m + c] += 1.0 / springs[c].stiffness;
