@@ -4,11 +4,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
 #include "base/error.h"
 #include "hdf5/internal.h"
+#include "hdf5/journal.h"
 
 namespace argil::hdf5 {
 
@@ -20,12 +22,7 @@ Handle file_handle(hid_t id) {
   return {id, [](Id i) -> int { return H5Fclose(i); }};
 }
 
-const char* const kBusy =
-    "another process has this file open (a run that writes it, or a reader); wait for it or choose another "
-    "name";
-
-// Metadata leaves the cache at flush and close only, so that a process killed between two flushes leaves what
-// the first of them wrote.
+// Metadata leaves the cache at flush and close only, so that little is held back before.
 bool keep_metadata_until_flush(hid_t access) {
   H5AC_cache_config_t cache;
   cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
@@ -37,7 +34,14 @@ bool keep_metadata_until_flush(hid_t access) {
   return H5Pset_mdc_config(access, &cache) >= 0;
 }
 
-Handle access_properties(const std::string& name) {
+std::string find_real_name(const std::string& name) {
+  std::error_code ignored;  // a name that cannot be resolved fails later, with the system's reason
+  const std::filesystem::path target = std::filesystem::weakly_canonical(name, ignored);
+  return ignored ? name : target.string();
+}
+
+// `journalled`: real name of a file that is to be written; empty: it is read.
+Handle access_properties(const std::string& name, const std::string& journalled) {
   Handle access = property(H5Pcreate(H5P_FILE_ACCESS));
   // Earliest formats: superblock 0 has no "open for writing" mark, so a killed run's file opens without
   // repair.
@@ -47,6 +51,7 @@ Handle access_properties(const std::string& name) {
   ok = ok &&
        H5Pset_file_locking(access.id(), true, true) >= 0;  // true, true: go on where the system has no locks
 #endif
+  if (!journalled.empty()) ok = ok && use_commit_driver(access.id(), journalled);
   if (!ok) throw IoError(name, "cannot set up HDF5: " + take_reason());
   return access;
 }
@@ -75,6 +80,8 @@ void remove_unless_busy(const std::string& name) {
     problem = kBusy;
   else if (is_same_file(descriptor, name) && unlink(name.c_str()) != 0)
     problem = std::string("cannot be replaced: ") + std::strerror(errno);
+  else
+    unlink(name_journal(name).c_str());
   ::close(descriptor);
   if (!problem.empty()) throw IoError(name, problem);
 }
@@ -89,21 +96,24 @@ void remove_unless_busy(const std::string& name) {
 
 File File::create(const std::string& name) {
   start_library();
-  std::error_code ignored;  // a name that cannot be resolved fails below, with the system's reason
-  const std::filesystem::path target = std::filesystem::weakly_canonical(name, ignored);
-  const std::string real = ignored ? name : target.string();
+  const std::string real = find_real_name(name);
+  const std::string part = real + ".part";
   remove_unless_busy(real);
-  const Handle access = access_properties(name);
+  remove_unless_busy(part);
+  const Handle access = access_properties(name, real);
   const Handle creation = property(H5Pcreate(H5P_FILE_CREATE));
   H5Pset_obj_track_times(creation.id(), false);
-  Handle made = file_handle(H5Fcreate(real.c_str(), H5F_ACC_EXCL, creation.id(), access.id()));
+  Handle made = file_handle(H5Fcreate(part.c_str(), H5F_ACC_EXCL, creation.id(), access.id()));
   if (made.id() < 0) refuse(name, "cannot be written");
-  return {std::move(made), name};
+  File file(std::move(made), name);
+  file.m_renamed_to = real;
+  return file;
 }
 
 File File::open_for_reading(const std::string& name) {
   start_library();
-  const Handle access = access_properties(name);
+  recover(name);
+  const Handle access = access_properties(name, "");
   Handle opened = file_handle(H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()));
   if (opened.id() < 0) refuse(name, "cannot be read");
   return {std::move(opened), name};
@@ -111,7 +121,8 @@ File File::open_for_reading(const std::string& name) {
 
 File File::open_for_writing(const std::string& name) {
   start_library();
-  const Handle access = access_properties(name);
+  recover(name);
+  const Handle access = access_properties(name, find_real_name(name));
   Handle opened = file_handle(H5Fopen(name.c_str(), H5F_ACC_RDWR, access.id()));
   if (opened.id() < 0) refuse(name, "cannot be written");
   return {std::move(opened), name};
@@ -126,9 +137,22 @@ Group File::root() const {
 void File::flush() {
   if (H5Fflush(m_handle.id(), H5F_SCOPE_LOCAL) < 0)
     throw IoError(m_name, "cannot be written: " + take_reason());
+  if (m_renamed_to.empty()) return;
+  if (std::rename((m_renamed_to + ".part").c_str(), m_renamed_to.c_str()) != 0)
+    throw IoError(m_name, std::string("cannot be given its name: ") + std::strerror(errno));
+  m_renamed_to.clear();
+}
+
+File::~File() {
+  if (m_handle.id() < 0 || m_renamed_to.empty()) return;
+  try {
+    flush();
+  } catch (const IoError&) {  // already on the way out
+  }
 }
 
 void File::close() {
+  if (!m_renamed_to.empty()) flush();
   if (m_handle.reset() < 0) throw IoError(m_name, "cannot be closed: " + take_reason());
 }
 

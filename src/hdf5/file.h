@@ -155,11 +155,14 @@ class Group : public Object {
 class File {
  public:
   /// Makes a new file, replacing one that no other process is writing. Object times are off, formats as old
-  /// as the content allows; nothing but flush() and close() changes metadata on disk, so that a killed writer
-  /// leaves the file as of its last flush.
+  /// as the content allows. It appears under its name at the first flush() and changes by whole flushes: a
+  /// writer killed at any moment leaves the file of its last one (opening it may have to finish that).
   static File create(const std::string& name);
   static File open_for_reading(const std::string& name);
   static File open_for_writing(const std::string& name);  ///< existing file, exclusive
+  File(File&&) noexcept = default;
+  File& operator=(File&&) noexcept = default;
+  ~File();
 
   Group root() const;
   void flush();
@@ -171,6 +174,7 @@ class File {
   File(Handle handle, std::string name) : m_handle(static_cast<Handle&&>(handle)), m_name(std::move(name)) {}
   Handle m_handle;
   std::string m_name;
+  std::string m_renamed_to;  // at the first flush of a new file
 };
 
 /// True when the file begins as HDF5 files do; false when it cannot be read.

@@ -27,6 +27,13 @@ hid_t file_type(Element element);
 /// Element of an HDF5 type; throws IoError naming `where` when the project has none for it.
 Element element_of_type(hid_t type, const std::string& file, const std::string& where);
 
+inline constexpr const char* kBusy =
+    "another process has this file open (a run that writes it, or a reader); wait for it or choose another "
+    "name";
+
+/// Lets a file that is opened with `access` change by whole flushes, with `file`'s journal beside it.
+bool use_commit_driver(hid_t access, const std::string& file);
+
 inline Handle dataspace(hid_t id) {
   return {id, [](Id i) -> int { return H5Sclose(i); }};
 }

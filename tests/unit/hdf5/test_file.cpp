@@ -2,15 +2,19 @@
 // are named.
 #include "hdf5/file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <limits>
 
 #include "base/error.h"
+#include "hdf5/journal.h"
 #include "support/temp_folder.h"
 
 namespace argil::hdf5 {
@@ -102,6 +106,77 @@ TEST(Hdf5File, AKilledWriterLeavesTheFileOfItsLastFlush) {
   EXPECT_EQ(root.names().size(), 10U);
   for (const std::string& group : root.names())
     EXPECT_EQ(root.open_group(group).read_text("text").size(), 500U);
+}
+
+/// Adds row after row to a table and a list of groups, with a flush a row, until it is killed.
+[[noreturn]] void write_until_killed(const std::string& name, int microseconds) {
+  itimerval timer = {};
+  timer.it_value.tv_usec = microseconds;
+  File file = File::create(name);
+  const Group root = file.root();
+  Dataset rows = root.create_series("rows", Element::int64, {500}, 4, {"1", "the same number all along"});
+  file.flush();
+  setitimer(ITIMER_REAL, &timer, nullptr);
+  for (std::int64_t i = 0;; ++i) {
+    const std::vector<std::int64_t> row(500, i);
+    rows.append(row.data(), 1);
+    root.create_group("g" + std::to_string(i)).write_attribute("text", std::string(500, 'x'));
+    if (i > 3) root.remove("g" + std::to_string(i - 3));  // so that space is used again
+    file.flush();
+  }
+}
+
+TEST(Hdf5File, IsWholeAfterAKillAtAnyMoment) {
+  const TempFolder folder;
+  const std::string name = folder / "f.h5";
+  std::size_t most = 0;
+  for (int run = 0; run < 60; ++run) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) write_until_killed(name, 1 + 397 * run);
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    const Group root = File::open_for_reading(name).root();
+    const Dataset rows = root.open_dataset("rows");
+    const std::vector<std::int64_t> read = rows.read<std::int64_t>();
+    const std::size_t count = rows.shape()[0];
+    for (std::size_t i = 0; i < read.size(); ++i) ASSERT_EQ(read[i], static_cast<std::int64_t>(i / 500));
+    ASSERT_EQ(root.names().size(), 1 + std::min<std::size_t>(count, count > 4 ? 4 : count)) << count;
+    most = std::max(most, count);
+    ASSERT_FALSE(std::filesystem::exists(internal::name_journal(name)));
+  }
+  EXPECT_GT(most, 10U);
+}
+
+TEST(Journal, FinishesAWriteThatWasKilledAndKnowsATornOne) {
+  const TempFolder folder;
+  internal::Pages pages;
+  pages[1].assign(internal::kPageBytes, 'b');
+  pages[3].assign(internal::kPageBytes, 'd');  // the file grows into its half
+  const std::string old = std::string(2 * internal::kPageBytes, 'a');
+  const std::size_t size = 3 * internal::kPageBytes + 7;
+  const std::string name = folder.write("f", old);
+  const std::string journal = internal::name_journal(name);
+  const int descriptor = open(journal.c_str(), O_RDWR | O_CREAT, 0600);
+  ASSERT_TRUE(internal::write_journal(descriptor, pages, size));
+  close(descriptor);
+  const std::string whole = TempFolder::read(journal);
+  std::string flipped = whole;
+  flipped[5000] ^= 1;
+  for (const std::string& torn :
+       {std::string(), whole.substr(0, 20), whole.substr(0, whole.size() - 1), flipped}) {
+    folder.write("f.journal", torn);
+    internal::recover(name);
+    EXPECT_TRUE(TempFolder::read(name) == old) << torn.size();
+    EXPECT_FALSE(std::filesystem::exists(journal));
+  }
+  folder.write("f.journal", whole);
+  internal::recover(name);
+  const std::string page(internal::kPageBytes, 'a');
+  EXPECT_TRUE(TempFolder::read(name) == page + std::string(internal::kPageBytes, 'b') +
+                                            std::string(internal::kPageBytes, '\0') + "ddddddd");
+  EXPECT_FALSE(std::filesystem::exists(journal));
 }
 
 TEST(Hdf5File, ReplacesAnOldFileAndFollowsALink) {
