@@ -17,6 +17,7 @@
 #include "scenario/probe.h"
 #include "study/chart.h"
 #include "study/files.h"
+#include "study/identity.h"
 #include "study/run.h"
 #include "study/stability.h"
 
@@ -94,6 +95,7 @@ int main(int argc, char** argv) {
   run->add_option("-o,--output", options.output, "result file (default: the scenario's name with .h5)");
   run->add_option("--threads", options.threads, "threads; results do not depend on them")
       ->check(CLI::Range(1, 256));
+  run->add_flag("--resume", options.resume, "go on from the result's last checkpoint, if there is one");
   run->add_flag("--dry-run", options.dry_run, "check and build everything, write nothing");
   run->add_flag("-q,--quiet", options.quiet, "print errors only");
   run->callback([&] { code = study::run(options); });

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "hdf5/internal.h"
 #include "hdf5/journal.h"
@@ -33,6 +34,7 @@ struct CommitFile {
   std::uint64_t held_end = 0;  // pages before this one are changed by a flush alone
   Pages pages;
   bool has_failed = false;  // a write did: the file stays as of the last flush
+  int reason = 0;           // errno of it; the library hides some failures, so the next flush says it again
   bool is_torn = false;     // and that write was of the pages: the journal is needed
 };
 
@@ -168,6 +170,12 @@ herr_t read_bytes(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t begin, std::size_t si
   return ok ? 0 : fail("read");
 }
 
+herr_t give_up(CommitFile& f) {
+  f.has_failed = true;
+  f.reason = errno;
+  return fail("write");
+}
+
 herr_t write_bytes(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t begin, std::size_t size, const void* data) {
   CommitFile& f = self(file);
   if (f.has_failed) return 0;  // was said already; closing goes on
@@ -187,9 +195,9 @@ herr_t write_bytes(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t begin, std::size_t s
       free_begin >= begin + size ? size : static_cast<std::size_t>(free_begin - begin);
   const bool ok = for_pages(begin, num_held, hold) &&
                   write_all(f.descriptor, from + num_held, size - num_held, begin + num_held);
-  if (ok) f.size = std::max(f.size, begin + size);
-  f.has_failed = !ok;
-  return ok ? 0 : fail("write");
+  if (!ok) return give_up(f);
+  f.size = std::max(f.size, begin + size);
+  return 0;
 }
 
 /// The file's size follows what is allotted; a smaller one waits for the flush.
@@ -198,8 +206,7 @@ herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
   if (f.has_failed || f.size == f.end_of_space) return 0;
   if (f.end_of_space > f.held_end * kPageBytes &&
       ftruncate(f.descriptor, static_cast<off_t>(f.end_of_space)) != 0) {
-    f.has_failed = true;
-    return fail("truncate");
+    return give_up(f);
   }
   f.size = f.end_of_space;
   return 0;
@@ -214,13 +221,13 @@ bool commit(CommitFile& f) {
 
 herr_t flush(H5FD_t* file, hid_t, hbool_t) {
   CommitFile& f = self(file);
-  if (f.has_failed) return 0;
+  if (f.has_failed) {
+    errno = std::exchange(f.reason, 0);
+    return errno != 0 ? fail("write") : 0;
+  }
   // Without pages nothing refers to what was added, but in a new file.
   if (f.pages.empty() && f.held_end > 0) return 0;
-  if (!f.pages.empty() && !commit(f)) {
-    f.has_failed = true;
-    return fail("write");
-  }
+  if (!f.pages.empty() && !commit(f)) return give_up(f);
   f.pages.clear();
   f.held_end = count_pages(f.size);
   return 0;

@@ -33,12 +33,8 @@ class DirectSolver final : public Solver {
     const bool is_same =
         m_factorised.size() == matrix.values.size() && (m_factorised.array() == matrix.values.array()).all();
     if (!is_same) {
-      m_factorised = matrix.values;
       ++m_cost.factorisations;
-      if (!m_factor->factorise(matrix)) {
-        m_factorised.resize(3, 0);
-        return {false, 0, kNotPositive};
-      }
+      if (!factorise(matrix)) return {false, 0, kNotPositive};
     }
     m_factor->solve(b, x);
     ++m_cost.solves;
@@ -47,7 +43,25 @@ class DirectSolver final : public Solver {
     return {residual <= kUsable, 0, residual};  // a NaN is not
   }
 
+  void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
+    Solver::exchange_state(archive, prefix, pattern);
+    if (!exchange_factor(archive, prefix, m_factorised)) return;
+    if (!m_factor) m_factor.emplace(pattern, m_kind);
+    BlockMatrix matrix = pattern;
+    matrix.values = m_factorised;
+    factorise(matrix);
+  }
+
  private:
+  bool factorise(const BlockMatrix& matrix) {
+    const bool is_positive = m_factor->factorise(matrix);
+    if (is_positive)
+      m_factorised = matrix.values;
+    else
+      m_factorised.resize(3, 0);
+    return is_positive;
+  }
+
   FactorKind m_kind;
   std::optional<CholeskyFactor> m_factor;
   Eigen::Matrix3Xd m_factorised;  // values that the factor stands for
@@ -98,12 +112,30 @@ class KeptFactorSolver final : public Solver {
     return report;
   }
 
+  void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
+    Solver::exchange_state(archive, prefix, pattern);
+    archive.number(prefix + "last_iterations", m_last_iterations);
+    bool is_fresh = m_is_fresh;
+    archive.number(prefix + "is_fresh", is_fresh);
+    if (exchange_factor(archive, prefix, m_factorised)) {
+      BlockMatrix matrix = pattern;
+      matrix.values = m_factorised;
+      factorise(matrix);
+      --m_cost.factorisations;  // was counted when it was first done
+    }
+    m_is_fresh = is_fresh;
+  }
+
  private:
   bool factorise(const BlockMatrix& matrix) {
     if (!m_factor) m_factor.emplace(matrix);
     ++m_cost.factorisations;
     m_is_valid = m_factor->factorise(matrix);
     m_is_fresh = true;
+    if (m_is_valid)
+      m_factorised = matrix.values;
+    else
+      m_factorised.resize(3, 0);
     return m_is_valid;
   }
   SolveReport iterate(Operator& product, const Points& b, Points& x) {
@@ -117,6 +149,7 @@ class KeptFactorSolver final : public Solver {
 
   SolverParams m_params;
   std::optional<CholeskyFactor> m_factor;
+  Eigen::Matrix3Xd m_factorised;  // values that the factor stands for, for a checkpoint
   ConjugateGradients m_iteration;
   Points m_guess;
   bool m_is_valid = false;
@@ -125,6 +158,18 @@ class KeptFactorSolver final : public Solver {
 };
 
 }  // namespace
+
+void Solver::exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix&) {
+  archive.number(prefix + "solves", m_cost.solves);
+  archive.number(prefix + "iterations", m_cost.iterations);
+  archive.number(prefix + "factorisations", m_cost.factorisations);
+  archive.number(prefix + "multiplications", m_cost.multiplications);
+}
+
+bool Solver::exchange_factor(Archive& archive, const std::string& prefix, Eigen::Matrix3Xd& factorised) {
+  archive.any_size(prefix + "factorised", factorised);
+  return archive.is_restoring() && factorised.cols() > 0;
+}
 
 std::unique_ptr<Solver> make_solver(const SolverParams& params) {
   switch (params.kind) {

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "base/archive.h"
 #include "linear/pcg.h"
 
 namespace argil::linear {
@@ -40,7 +41,14 @@ class Solver {
 
   const SolverCost& cost() const { return m_cost; }
 
+  /// What the next solve takes from the last ones, under names that begin with `prefix`. `pattern`: any
+  /// matrix with the pattern of those to come.
+  virtual void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern);
+
  protected:
+  /// Of solvers that keep a factor: the values that it stands for, none without one. True when `factorised`
+  /// was restored and is to be factorised again.
+  bool exchange_factor(Archive& archive, const std::string& prefix, Eigen::Matrix3Xd& factorised);
   SolverCost m_cost;
 };
 

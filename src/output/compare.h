@@ -21,7 +21,7 @@ struct CompareOptions {
   /// The first that fits a dataset counts; without one, values must have the same bits. With any tolerance
   /// the frames' state_hash is not compared, because it tells of every bit.
   std::vector<Tolerance> tolerances;
-  /// Paths that are left out, * as above, with everything in them. /timing always is.
+  /// Paths that are left out, * as above, with everything in them. /timing and /checkpoint always are.
   std::vector<std::string> ignore;
 };
 
@@ -39,8 +39,8 @@ struct CompareReport {
   bool is_equal() const { return differences.empty(); }
 };
 
-/// Compares everything in two result files except /timing: names, shapes, types, attributes, values. NaN
-/// equals nothing, not even itself. Throws IoError or InputError when a file cannot be used.
+/// Compares everything in two result files except /timing and /checkpoint: names, shapes, types, attributes,
+/// values. NaN equals nothing, not even itself. Throws IoError or InputError when a file cannot be used.
 CompareReport compare_results(const std::string& file_a, const std::string& file_b,
                               const CompareOptions& options);
 

@@ -87,6 +87,11 @@ void write_failure(const Group& root, const Failure& failure) {
   group.write_attribute("bound", failure.bound);
 }
 
+std::string dotted(std::string name) {
+  std::replace(name.begin(), name.end(), '/', '.');
+  return name;
+}
+
 bool ends_with_hz(const std::string& name) {
   return name.ends_with("_Hz");
 }
@@ -110,6 +115,9 @@ struct ResultFile::Impl {
     is_broken = true;
     write();
     is_broken = false;
+  }
+  void remove_checkpoint() {
+    if (root.has(schema::kCheckpoint)) root.remove(schema::kCheckpoint);
   }
   void write_all() {
     haptic.write();
@@ -136,7 +144,7 @@ ResultFile::ResultFile(const std::string& name, const ResultHeader& header) {
                                        std::move(haptic), std::move(physics)});
 }
 
-ResultFile::ResultFile(const std::string& name, Tick last_tick) {
+ResultFile::ResultFile(const std::string& name, Tick last_tick, std::uint64_t num_frames) {
   File file = File::open_for_writing(name);
   Group root = file.root();
   if (!root.has_attribute("format") || root.read_text("format") != schema::kFormat ||
@@ -145,7 +153,7 @@ ResultFile::ResultFile(const std::string& name, Tick last_tick) {
   const Group haptic_group = root.open_group("haptic");
   const Group physics_group = root.open_group("physics");
   const std::vector<std::int64_t> ticks = haptic_group.open_dataset("tick").read<std::int64_t>();
-  if (ticks.empty() || ticks.back() < last_tick)
+  if (last_tick > 0 && (ticks.empty() || ticks.back() < last_tick))
     throw IoError(
         name, "has no records up to tick " + std::to_string(last_tick) + "; it cannot be continued there");
   Table haptic = Table::reopen(haptic_group, schema::kHaptic, schema::kHapticChunk,
@@ -153,13 +161,11 @@ ResultFile::ResultFile(const std::string& name, Tick last_tick) {
   Table physics = Table::reopen(physics_group, schema::kPhysics, schema::kPhysicsChunk,
                                 count_rows_until(physics_group, last_tick));
   Group frames = root.open_group("frames");
-  std::uint64_t num_frames = 0;
-  for (const std::string& frame : frames.names()) {
-    if (frames.open_group(frame).read_integer("tick") <= last_tick)
-      ++num_frames;
-    else
-      frames.remove(frame);
-  }
+  const std::vector<std::string> frame_names = frames.names();
+  if (frame_names.size() < num_frames)
+    throw IoError(
+        name, "has lost frames up to tick " + std::to_string(last_tick) + "; it cannot be continued there");
+  for (std::size_t i = num_frames; i < frame_names.size(); ++i) frames.remove(frame_names[i]);
   if (root.has("failure")) root.remove("failure");
   write_outcome(root, Outcome::running);
   Group timing = root.open_group("timing");
@@ -254,14 +260,21 @@ void ResultFile::append_timing(const std::vector<std::pair<std::string, double>>
   });
 }
 
-void ResultFile::flush() {
-  ARGIL_ASSERT(m_impl, "flush after finish");
-  m_impl->guarded([&] { m_impl->write_all(); });
+void ResultFile::write_checkpoint(const Snapshot& state) {
+  ARGIL_ASSERT(m_impl, "checkpoint after finish");
+  m_impl->guarded([&] {
+    m_impl->remove_checkpoint();
+    Group group = m_impl->root.create_group(schema::kCheckpoint);
+    for (const auto& [name, array] : state)
+      write_entities(group, dotted(name).c_str(), array, schema::kState);
+    m_impl->write_all();
+  });
 }
 
 void ResultFile::finish(const std::optional<Failure>& failure, bool interrupted) {
   ARGIL_ASSERT(m_impl, "finished twice");
   m_impl->guarded([&] {
+    if (!failure && !interrupted) m_impl->remove_checkpoint();
     m_impl->write_all();
     if (failure) write_failure(m_impl->root, *failure);
     write_outcome(m_impl->root, failure       ? Outcome::failed

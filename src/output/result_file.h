@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/archive.h"
 #include "base/status.h"
 #include "mesh/tet_mesh.h"
 #include "sim/record.h"
@@ -32,16 +33,17 @@ enum class Outcome {
   failed,       ///< stopped by a failure, which is in /failure
 };
 
-/// The result of one run in HDF5, appended as it goes: whole chunks, a flush per chunk, so a killed run keeps
-/// all but its last chunk. Written to FILE, with `complete` = 0 until finish(). Throws IoError, also when
-/// another process is writing FILE. A destroyed object that was not finished leaves all its records and
-/// `complete` = 0.
+/// The result of one run in HDF5, appended as it goes: whole chunks, a flush per chunk, so a run killed at
+/// any moment keeps all but its last chunk. Written to FILE, with `complete` = 0 until finish(). Throws
+/// IoError, also when another process is writing FILE. A destroyed object that was not finished leaves all
+/// its records and `complete` = 0.
 class ResultFile {
  public:
   ResultFile(const std::string& file, const ResultHeader& header);
-  /// Goes on with an unfinished file: keeps what was recorded up to and including `last_tick`, removes the
-  /// rest. Throws IoError when FILE is not a result file or lost records up to that tick.
-  ResultFile(const std::string& file, Tick last_tick);
+  /// Goes on with an unfinished file: keeps what was recorded up to and including `last_tick` and the first
+  /// `num_frames` frames, removes the rest. Throws IoError when FILE is not a result file or lost records up
+  /// to that tick.
+  ResultFile(const std::string& file, Tick last_tick, std::uint64_t num_frames);
   ~ResultFile();
   ResultFile(const ResultFile&) = delete;
   ResultFile& operator=(const ResultFile&) = delete;
@@ -52,8 +54,9 @@ class ResultFile {
   /// Wall-clock seconds per stage, total and rate; goes to /timing, the only part that may differ between
   /// equal runs. A name that ends in _Hz has that unit, any other is in seconds.
   void append_timing(const std::vector<std::pair<std::string, double>>& stages);
-  /// Writes everything that is buffered now, so that a reader or a resumed run finds it.
-  void flush();
+  /// Replaces the checkpoint by one of the state after the last record, and writes all records up to it: both
+  /// or neither are found after a kill. finish() of a run that reached its end removes it.
+  void write_checkpoint(const Snapshot& state);
   /// Writes what is buffered, the failure if there was one, the outcome, and closes. No appends after it.
   void finish(const std::optional<Failure>& failure, bool interrupted = false);
 

@@ -205,6 +205,23 @@ sim::Frame ResultReader::read_frame(const FrameInfo& info) const {
   return frame;
 }
 
+std::optional<Snapshot> ResultReader::find_checkpoint() const {
+  if (!m_root.has(schema::kCheckpoint)) return std::nullopt;
+  const Group group = m_root.open_group(schema::kCheckpoint);
+  Snapshot state;
+  for (const std::string& dotted : group.names()) {
+    const hdf5::Dataset array = group.open_dataset(dotted);
+    const hdf5::Shape shape = array.shape();
+    if (shape.size() != 2) throw IoError(file(), array.path() + " is not a table");
+    const std::vector<double> values = array.read<double>();
+    std::string name = dotted;
+    std::replace(name.begin(), name.end(), '.', '/');
+    state[name] = Eigen::Map<const Eigen::MatrixXd>(values.data(), static_cast<Eigen::Index>(shape[1]),
+                                                    static_cast<Eigen::Index>(shape[0]));
+  }
+  return state;
+}
+
 std::vector<std::pair<std::string, double>> ResultReader::read_timing() const {
   const Group timing = m_root.open_group("timing");
   std::vector<std::pair<std::string, double>> last;

@@ -35,6 +35,8 @@ class ResultReader {
   std::vector<sim::PhysicsRecord> read_physics() const;
   std::vector<FrameInfo> read_frame_list() const;  ///< in the order of ticks
   sim::Frame read_frame(const FrameInfo& info) const;
+  /// State from which an unfinished run can go on; nothing when there is none.
+  std::optional<Snapshot> find_checkpoint() const;
   /// Last value of every entry of /timing, by name.
   std::vector<std::pair<std::string, double>> read_timing() const;
 

@@ -72,6 +72,10 @@ inline constexpr std::array kPhysics = {
 inline constexpr std::uint64_t kHapticChunk = 1024;
 inline constexpr std::uint64_t kPhysicsChunk = 256;
 
+/// Group of an unfinished run's last checkpoint; its arrays are the state's by name, one entity a row.
+inline constexpr const char* kCheckpoint = "checkpoint";
+inline constexpr hdf5::Label kState{"-", "part of the state from which the run is resumed, SI units"};
+
 // Arrays of /mesh and of each frame.
 inline constexpr hdf5::Label kRestPosition{"m", "rest positions of the cage's vertices"};
 inline constexpr hdf5::Label kTets{"1", "vertex numbers of the tets, from 0, positive volume"};

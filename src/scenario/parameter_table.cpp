@@ -404,6 +404,9 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
   b.quaternion("/trace/device_to_world/rotation_xyzw", w.rotation, "Unit quaternion, device to world.");
   b.vector("/trace/device_to_world/translation_m", w.translation, "m",
            "World position of the device's origin.");
+  b.integer(
+      "/output/checkpoint_period_ticks", s.checkpoint_period_ticks, between(0, 1e9),
+      "A checkpoint for --resume at the first physics step after so many ticks; 0: none but at a signal.");
 }
 
 }  // namespace
@@ -431,7 +434,7 @@ std::vector<Parameter> make_parameter_table(Scenario& s, const std::string& file
 }
 
 bool is_of_motion(const std::string& pointer) {
-  for (const char* folder : {"/tool/", "/contact/", "/haptics/", "/trace/"})
+  for (const char* folder : {"/tool/", "/contact/", "/haptics/", "/trace/", "/output/"})
     if (pointer.rfind(folder, 0) == 0) return true;
   return false;
 }

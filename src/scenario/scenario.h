@@ -73,6 +73,7 @@ struct Scenario {
   ToolSpec tool;
   TraceSpec trace;
   sim::Params params;
+  int checkpoint_period_ticks = 1000;  ///< of runs with a trace; 0: none but where a signal ends it
   bool allow_locking = false;         ///< run nearly incompressible tets although they lock
   std::string medium_status;          ///< where eq. 6 stands at all that the run can reach; empty when it
                                       ///< takes the mesh's fields to know (then Scene has it)

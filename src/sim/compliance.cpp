@@ -111,6 +111,22 @@ void LocalCompliance::release() {
   update_displacement();
 }
 
+void LocalCompliance::exchange_state(Archive& archive) {
+  ARGIL_ASSERT(m_acting.empty());
+  archive.list("compliance/known", m_known);
+  archive.list("compliance/force", m_force);
+  archive.list("compliance/held", m_held);
+  archive.number("compliance/next_renewed", m_next_renewed);
+  const auto num_columns = 3 * static_cast<Eigen::Index>(m_known.size());
+  Eigen::MatrixXd columns = m_columns.leftCols(archive.is_restoring() ? 0 : num_columns);
+  archive.any_size("compliance/columns", columns);
+  if (!archive.is_restoring()) return;
+  m_columns = columns;
+  for (std::size_t i = 0; i < m_known.size(); ++i)
+    m_known_of_vertex.at(static_cast<std::size_t>(m_known[i])) = static_cast<int>(i);
+  update_displacement();
+}
+
 Vec3 LocalCompliance::compute_mean(const ContactSurface& surface, const ContactSpring& spring,
                                    const Eigen::VectorXd& displacement) const {
   Vec3 mean = Vec3::Zero();

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "base/archive.h"
 #include "sim/contact_surface.h"
 
 namespace argil::sim {
@@ -56,6 +57,8 @@ class LocalCompliance {
   void displace(const Points& x, Points& displaced) const;
   /// n·u where a spring acts [m].
   double compute_yield(const ContactSurface& surface, const ContactSpring& spring) const;
+  /// All that press takes from earlier ticks; right after begin_frame, or before the first.
+  void exchange_state(Archive& archive);
   int num_known() const { return static_cast<int>(m_known.size()); }
 
  private:

@@ -31,6 +31,7 @@ void Simulation::find_contacts(const Points& x, int ticks) {
   m_detector.find_contacts(m_state.contact_x, has_moved ? m_surface_x : m_state.contact_x,
                            m_state.contact_tool, m_state.tool, m_contacts,
                            has_moved ? std::optional<double>() : 0.0, m_clock.seconds(ticks));
+  m_state.num_contacts = static_cast<int>(m_contacts.contacts.size());
   if (has_moved) m_state.contact_x.swap(m_surface_x);
   m_state.has_moved = false;
   m_state.contact_tool = m_state.tool;

@@ -144,9 +144,8 @@ void Simulation::exchange_water(int sign, double step_s) {
   m_water.exchange_tets(m_touched_tet, m_touched_area, sign, step_s);
 }
 
-/// Moduli, yield, size and weight of a tet at its present saturation.
-void Simulation::refresh_material(int tet) {
-  const double S = m_water.saturation()(tet);
+/// Moduli, yield, size and weight of a tet at the saturation S.
+void Simulation::refresh_material(int tet, double S) {
   const bool has_own_modulus = m_body.youngs_modulus.size() > 0;
   const double E = has_own_modulus ? m_body.youngs_modulus(tet) : m_params.elastic.youngs_modulus;
   const material::WetState wet = has_own_modulus ? m_moisture.at(S, E) : m_moisture.at(S);
@@ -167,7 +166,7 @@ void Simulation::refresh_material(int tet) {
 StepStatus Simulation::refresh_materials(double tolerance) {
   m_water.collect_changed(tolerance, m_changed_tets);
   for (const int tet : m_changed_tets) {
-    refresh_material(tet);
+    refresh_material(tet, m_water.saturation()(tet));
     if (m_state.is_at_rest && m_solid.is_strained(tet, m_state.solid.plastic_strain))
       m_state.is_at_rest = false;  // other moduli under strain: another balance
   }
@@ -216,7 +215,7 @@ HapticRecord Simulation::haptic_record() const {
   record.device_force = m_gated.force;
   record.mode = m_state.mode;
   record.force_age = m_state.force_age;
-  record.num_contacts = static_cast<int>(m_contacts.contacts.size());
+  record.num_contacts = m_state.num_contacts;
   record.gate_events = m_gated.events;
   record.port_energy = m_state.port_energy;
   record.passivity_energy = m_state.passivity_energy;

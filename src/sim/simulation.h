@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/archive.h"
 #include "material/moisture.h"
 #include "sim/clock.h"
 #include "sim/compliance.h"
@@ -50,6 +51,13 @@ class Simulation {
   Frame make_frame() const;              ///< the body as it is now
   std::string state_hash() const;        ///< SHA-256 of everything a tick changes
 
+  /// All that a tick takes from earlier ones: bits after a return are those without. Only after a physics
+  /// step, or before the first tick.
+  Snapshot take_snapshot();
+  /// Goes on from `snapshot`, taken from a simulation of the same body, tool and parameters. `origin` is what
+  /// messages call it. Throws IoError when it does not fit.
+  void restore(const Snapshot& snapshot, const std::string& origin);
+
   void observe_stages(StageObserver* observer) { m_observer = observer; }
 
  private:
@@ -79,10 +87,16 @@ class Simulation {
   void make_springs();
   void render_force();
 
+  // Checkpoints: snapshot.cpp.
+  void exchange_state(Archive& archive);
+  void exchange_contact_state(Archive& archive);
+  void exchange_water_state(Archive& archive);
+  void exchange_springs(Archive& archive);
+
   void exchange_water(int sign, double step_s);
   TensorField mean_plastic_strain() const;
   StepStatus refresh_materials(double tolerance);
-  void refresh_material(int tet);
+  void refresh_material(int tet, double S);
   void fall_asleep();
   bool rests();
 

@@ -39,6 +39,7 @@ struct State {
   Vec3 hand_force = Vec3::Zero();      ///< [N] that the hand feels
   Vec3 hand_torque = Vec3::Zero();     ///< [N m] about the hand's point
   int force_age = 0;                   ///< [ticks] since it was computed
+  int num_contacts = 0;                ///< of the last detection
   Points contact_force;                ///< 3×n on the body, mean over the physics step [N]
   Vec3 contact_centre = Vec3::Zero();  ///< where the body is touched [m], valid while is_pressed
   bool is_touched = false;             ///< contact_force waits for the next physics step

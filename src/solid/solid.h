@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/archive.h"
 #include "base/status.h"
 #include "solid/elements.h"
 #include "solid/law.h"
@@ -116,6 +117,10 @@ class Solid {
   void prepare_response(const SolidState& state, double step_s);
   /// How far forces (3×n) move every node by the end of such a step: τ² A⁻¹ f [m].
   StepStatus find_response(const Points& force, Tick tick, Points& displacement);
+
+  /// What a step takes from the last ones besides the state, its moduli and its kinematics: what the solvers
+  /// keep, and the counters.
+  void exchange_state(Archive& archive);
 
   const Elements& elements() const { return m_elements; }
   const Constraints& constraints() const { return m_constraints; }

@@ -133,4 +133,16 @@ StepStatus Solid::find_response(const Points& force, Tick tick, Points& displace
   return StepStatus::ok();
 }
 
+void Solid::exchange_state(Archive& archive) {
+  archive.number("solid/newton_iterations", m_counters.newton_iterations);
+  archive.number("solid/linear_iterations", m_counters.linear_iterations);
+  archive.number("solid/residual", m_counters.residual);
+  m_solver->exchange_state(archive, "solver/", m_matrix);
+  bool has_response_solver = m_response_solver != nullptr;
+  archive.number("response/is_known", has_response_solver);
+  if (!has_response_solver) return;
+  if (!m_response_solver) m_response_solver = linear::make_solver(m_params.solver);
+  m_response_solver->exchange_state(archive, "response/", m_matrix);
+}
+
 }  // namespace argil::solid

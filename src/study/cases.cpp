@@ -20,6 +20,7 @@
 #include "base/hash.h"
 #include "output/result_reader.h"
 #include "study/files.h"
+#include "study/identity.h"
 #include "study/run.h"
 
 extern char** environ;

@@ -1,64 +1,32 @@
 #include "study/run.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <utility>
 
 #include "base/error.h"
-#include "base/hash.h"
 #include "base/print.h"
 #include "embed/triangle_tree.h"
 #include "output/result_file.h"
 #include "scenario/build.h"
 #include "sim/simulation.h"
-#include "study/build_info.h"
-#include "study/cost_meter.h"
 #include "study/files.h"
-#include "study/progress.h"
+#include "study/identity.h"
+#include "study/loop.h"
+#include "study/resume.h"
 
 namespace argil::study {
 namespace {
 
-volatile std::sig_atomic_t g_interrupted = 0;  // the one thing a signal handler may touch
-
-void on_signal(int) {
-  g_interrupted = 1;
-}
-
-/// Adds up wall-clock time per stage of the loop.
-class StageClock final : public sim::StageObserver {
- public:
-  void begin(sim::Stage) override { m_begin = std::chrono::steady_clock::now(); }
-  void end(sim::Stage stage) override {
-    m_seconds[static_cast<std::size_t>(stage)] +=
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - m_begin).count();
-  }
-  std::vector<std::pair<std::string, double>> seconds(double total, Tick ticks) const {
-    constexpr std::array<const char*, static_cast<std::size_t>(sim::Stage::count)> kNames = {
-        "contact", "water", "assemble", "solve", "kinematics", "plasticity"};
-    std::vector<std::pair<std::string, double>> list;
-    for (std::size_t i = 0; i < kNames.size(); ++i) list.emplace_back(kNames[i], m_seconds[i]);
-    list.emplace_back("total", total);
-    list.emplace_back("tick_rate_Hz", total > 0.0 ? static_cast<double>(ticks) / total : 0.0);
-    return list;
-  }
-
- private:
-  std::chrono::steady_clock::time_point m_begin;
-  std::array<double, static_cast<std::size_t>(sim::Stage::count)> m_seconds = {};
-};
-
 output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulation& simulation,
-                                 const scenario::Scene& scene, const mesh::TriangleMesh& tool) {
+                                 const scenario::Scene& scene, const mesh::TriangleMesh& tool,
+                                 const Identity& identity) {
   output::ResultHeader header;
   header.rest_position = simulation.body().mesh.vertices;
   header.tets = simulation.body().mesh.tets;
@@ -70,73 +38,11 @@ output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulat
   for (const std::string& note : scene.notes) notes += note + "\n";
   header.provenance = {{"about", s.about},
                        {"scenario", scenario::print_portable(s)},
-                       {"scenario_sha256", Sha256().add(scenario::print_portable(s)).hex_digest()},
                        {"trace_sha256", scene.trace.sha256},
-                       {"build", describe_build()},
                        {"effective_medium", scene.medium_status},
                        {"notes", notes}};
-  if (s.body.kind != scenario::BodyKind::shape)
-    header.provenance.emplace_back("body_sha256", hash_file(s.body.file));
+  for (const auto& [name, text] : identity.provenance()) header.provenance.emplace_back(name, text);
   return header;
-}
-
-/// The hand at the end of tick k, with the scenario's mode unless the trace decides.
-device::DeviceSample sample_at(const scenario::Scenario& s, const device::Trace& trace, Tick ticks) {
-  device::DeviceSample sample =
-      device::interpolate(trace, s.trace.start + static_cast<double>(ticks) * s.params.rates.haptic_period);
-  switch (s.tool.mode) {
-    case scenario::ModeChoice::push:
-      sample.mode = device::ToolMode::push;
-      break;
-    case scenario::ModeChoice::pull:
-      sample.mode = device::ToolMode::pull;
-      break;
-    case scenario::ModeChoice::wet:
-      sample.mode = device::ToolMode::wet;
-      break;
-    case scenario::ModeChoice::dry:
-      sample.mode = device::ToolMode::dry;
-      break;
-    case scenario::ModeChoice::trace:
-      break;
-  }
-  return sample;
-}
-
-Tick count_ticks(const scenario::Scenario& s, const device::Trace& trace) {
-  const double duration = s.trace.duration > 0.0 ? s.trace.duration : trace.duration() - s.trace.start;
-  const double ticks = duration / s.params.rates.haptic_period;
-  constexpr double kRounding =
-      1e-6;  // a duration that is a whole number of ticks up to rounding is that number
-  return static_cast<Tick>(std::floor(ticks + kRounding));
-}
-
-/// The loop over the ticks. Appends records as they come; returns the failure, if any.
-std::optional<Failure> run_ticks(const scenario::Scenario& s, const device::Trace& trace, Tick num_ticks,
-                                 sim::Simulation& simulation, output::ResultFile& file, CostMeter& cost,
-                                 bool quiet) {
-  Progress progress(num_ticks, !quiet);
-  file.append(simulation.make_frame());
-  Tick last_frame = 0;
-  for (Tick k = 1; k <= num_ticks && !g_interrupted; ++k) {
-    const device::DeviceSample sample = sample_at(s, trace, k);
-    cost.begin();
-    const StepStatus status = simulation.tick(sample);
-    cost.end();
-    if (!status.is_ok()) {
-      if (last_frame != simulation.clock().tick) file.append(simulation.make_frame());  // the last good state
-      return status.failure();
-    }
-    file.append(simulation.haptic_record());
-    if (simulation.physics_due_last_tick()) file.append(simulation.physics_record());
-    if (simulation.frame_due_last_tick()) {
-      file.append(simulation.make_frame());
-      last_frame = k;
-    }
-    progress.update(k);
-  }
-  if (last_frame != simulation.clock().tick) file.append(simulation.make_frame());
-  return {};
 }
 
 /// Deepest place of a surface's vertices in a closed surface [m]; 0 when all are outside.
@@ -176,9 +82,31 @@ int print_ready(const scenario::Scenario& s, const sim::Simulation& simulation, 
   return kDone;
 }
 
+int print_done_before(const std::string& result, const RunOptions& options) {
+  if (!options.quiet) std::printf("%s: complete already\n", result.c_str());
+  return kDone;
+}
+
 int print_failure(const Failure& failure) {
   std::fprintf(stderr, "argil: run failed: %s\n", to_string(failure).c_str());
   return kRunFailed;
+}
+
+int print_end(const std::string& result, const LoopEnd& end, Tick first, Tick last,
+              const RunOptions& options) {
+  if (end.failure) return print_failure(*end.failure);
+  if (end.is_interrupted) {
+    std::fprintf(stderr,
+                 "argil: interrupted after tick %lld; %s is readable up to there; go on with --resume\n",
+                 static_cast<long long>(last), result.c_str());
+    return kInterrupted;
+  }
+  if (options.quiet) return kDone;
+  std::printf("%s: %lld ticks in %.1f s (%.0f/s)", result.c_str(), static_cast<long long>(last - first),
+              end.seconds, static_cast<double>(last - first) / end.seconds);
+  if (first > 0) std::printf(", resumed after tick %lld", static_cast<long long>(first));
+  std::printf("\n");
+  return kDone;
 }
 
 std::string name_result(const scenario::Scenario& s, const RunOptions& options) {
@@ -192,7 +120,7 @@ int run_static(const scenario::Scenario& s, scenario::Scene& scene, const RunOpt
   print_notes(scene, options);
   if (options.dry_run) return print_ready(s, simulation, 0);
   const std::string result = name_result(s, options);
-  output::ResultFile file(result, make_header(s, simulation, scene, tool));
+  output::ResultFile file(result, make_header(s, simulation, scene, tool, find_identity(s)));
   const auto start = std::chrono::steady_clock::now();
   const StepStatus status = simulation.settle();
   const std::optional<Failure> failure =
@@ -230,52 +158,43 @@ scenario::Scenario load(const RunOptions& options) {
 
 int run(const RunOptions& options) {
   const scenario::Scenario s = load(options);
-  check_result_name(s, name_result(s, options));
+  const std::string result = name_result(s, options);
+  check_result_name(s, result);
+  if (s.mode == scenario::Mode::equilibrium && options.resume)
+    throw InputError(s.file, "/dynamics/mode", "\"static\" has no ticks to resume", "leave --resume out");
   scenario::Scene scene = scenario::build_scene(s);
   if (s.mode == scenario::Mode::equilibrium) return run_static(s, scene, options);
   const mesh::TriangleMesh tool = scene.tool;
-  const Tick num_ticks = count_ticks(s, scene.trace);
   sim::Simulation simulation(std::move(scene.body), tool, s.params, sample_at(s, scene.trace, 0));
   if (simulation.tool_overlaps_body()) refuse_start(s, options, simulation, tool);
   print_notes(scene, options);
-  if (options.dry_run) return print_ready(s, simulation, num_ticks);
-  const std::string result = name_result(s, options);
-  output::ResultFile file(result, make_header(s, simulation, scene, tool));
-  g_interrupted = 0;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  StageClock clock;
-  simulation.observe_stages(&clock);
-  const auto start = std::chrono::steady_clock::now();
-  CostMeter cost;
-  const std::optional<Failure> failure =
-      run_ticks(s, scene.trace, num_ticks, simulation, file, cost, options.quiet);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  auto timing = clock.seconds(seconds, simulation.clock().tick);
-  timing.emplace_back("cpu", cost.cpu_seconds());
-  if (const auto instructions = cost.instructions()) timing.emplace_back("instructions", *instructions);
-  file.append_timing(timing);
-  file.finish(failure, g_interrupted != 0 && !failure);
-  output::write_xdmf(result, name_xdmf(result));
-  if (failure) return print_failure(*failure);
-  if (g_interrupted) {
-    std::fprintf(stderr, "argil: interrupted after tick %lld; %s is readable up to there\n",
-                 static_cast<long long>(simulation.clock().tick), result.c_str());
-    return kInterrupted;
+  if (options.dry_run) return print_ready(s, simulation, count_ticks(s, scene.trace));
+  const Identity identity = find_identity(s);
+  ResumePoint from;
+  if (options.resume) from = find_resume_point(result, identity);
+  if (from.kind == ResumePoint::Kind::done) return print_done_before(result, options);
+  if (from.kind == ResumePoint::Kind::checkpoint) {
+    simulation.restore(from.state, result);
+    from.state.clear();
   }
-  if (!options.quiet)
-    std::printf("%s: %lld ticks in %.1f s (%.0f/s)\n", result.c_str(), static_cast<long long>(num_ticks),
-                seconds, static_cast<double>(num_ticks) / seconds);
-  return kDone;
-}
-
-std::string describe_build() {
-  std::ostringstream text;
-  text << "argil " << kVersion << "\ncommit " << kCommit << "\ncompiler " << kCompiler << "\nbuild "
-       << kBuildType << "\nflags " << kFlags << "\neigen " << EIGEN_WORLD_VERSION << '.'
-       << EIGEN_MAJOR_VERSION << '.' << EIGEN_MINOR_VERSION
-       << "\ncholesky CHOLMOD simplicial LDL'\nthreads do not change results\n";
-  return text.str();
+  const Tick first = simulation.clock().tick;
+  std::optional<output::ResultFile> file;
+  if (from.kind == ResumePoint::Kind::checkpoint)
+    file.emplace(result, first, count_frames(s, first));
+  else
+    file.emplace(result, make_header(s, simulation, scene, tool, identity));
+  LoopEnd end;
+  try {
+    end = run_loop(s, scene.trace, simulation, *file, !options.quiet);
+    file->finish(end.failure, end.is_interrupted);
+  } catch (const IoError&) {
+    std::fprintf(stderr,
+                 "argil: note: %s is readable up to its last flush; make room and go on with --resume\n",
+                 result.c_str());
+    throw;
+  }
+  output::write_xdmf(result, name_xdmf(result));
+  return print_end(result, end, first, simulation.clock().tick, options);
 }
 
 }  // namespace argil::study

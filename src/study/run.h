@@ -14,6 +14,7 @@ struct RunOptions {
   std::string output;  ///< result file; empty: the scenario's name with .h5 in the working folder
   std::vector<std::string> settings;  ///< --set texts
   int threads = 1;
+  bool resume = false;   ///< go on from the result file's checkpoint where there is one
   bool dry_run = false;  ///< check and build everything, run and write nothing
   bool quiet = false;
 };
@@ -31,12 +32,10 @@ enum ExitCode : int {
 /// Loads and checks a scenario with the options' settings and trace.
 scenario::Scenario load(const RunOptions& options);
 
-/// Runs a scenario from start to end and writes its result file and XDMF. Returns kDone, kRunFailed or
+/// Runs a scenario from start, or with `resume` from its last checkpoint, to end and writes its result file
+/// and XDMF. A resumed run leaves the same bits as one that was never killed. Returns kDone, kRunFailed or
 /// kInterrupted (the file is complete up to the last tick in each case). Throws InputError before anything is
 /// written, IoError.
 int run(const RunOptions& options);
-
-/// Name, version, commit, compiler, flags, libraries: what a numeric result depends on besides its input.
-std::string describe_build();
 
 }  // namespace argil::study

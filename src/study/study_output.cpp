@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "study/files.h"
+#include "study/identity.h"
 #include "study/run.h"
 
 namespace argil::study {

@@ -58,7 +58,8 @@ void PoreWater::restore(const WaterState& state) {
 
 void PoreWater::activate_all_wet() {
   for (int t = 0; t < static_cast<int>(m_capacity.size()); ++t) {
-    if (m_state.saturation(t) > 0.0 || m_state.carry(t) != 0.0) activate(t);
+    // A change that the moduli have not followed yet must stay in sight of collect_changed.
+    if (m_state.saturation(t) > 0.0 || m_state.carry(t) != 0.0 || m_state.collected(t) != 0.0) activate(t);
     set_potential(t, m_state.saturation(t));
     if (m_state.saturation(t) > kTrace) activate_around(t);
   }

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
 #include <cstring>
 
 #include "base/error.h"
@@ -151,7 +155,7 @@ TEST(ResultFile, ContinuedFromATickHoldsTheSameAsOneThatNeverStopped) {
     file.finish(Failure{1500, "solid", 0, "x", 0.0, 0.0});
   }
   {
-    ResultFile file(folder / "cut.h5", Tick{1234});
+    ResultFile file(folder / "cut.h5", Tick{1234}, 124);  // frames of ticks 0, 10 … 1230
     test::append_run(file, 1235, 1800);
     file.finish(std::nullopt);
   }
@@ -173,8 +177,47 @@ TEST(ResultFile, ContinuedFromATickHoldsTheSameAsOneThatNeverStopped) {
 TEST(ResultFile, IsNotContinuedPastItsRecords) {
   const TempFolder folder;
   test::write_run(folder / "r.h5", 10);
-  ARGIL_EXPECT_THROW_WITH(ResultFile(folder / "r.h5", Tick{10}), IoError, "no records up to tick 10");
+  ARGIL_EXPECT_THROW_WITH(ResultFile(folder / "r.h5", Tick{10}, 1), IoError, "no records up to tick 10");
+  ARGIL_EXPECT_THROW_WITH(ResultFile(folder / "r.h5", Tick{9}, 2), IoError, "lost frames up to tick 9");
   EXPECT_EQ(ResultReader(folder / "r.h5").read_haptic().size(), 10U);
+}
+
+TEST(ResultFile, KeepsTheLastCheckpointWithAllRecordsUpToIt) {
+  const TempFolder folder;
+  const std::string name = folder / "r.h5";
+  const auto make_state = [](int tick) {
+    return Snapshot{{"tick", Eigen::MatrixXd::Constant(1, 1, tick)},
+                    {"solid/x", Eigen::MatrixXd::Constant(3, 4 + tick % 2, 0.1 * tick)},
+                    {"solid/x_before", Eigen::MatrixXd(3, 0)}};
+  };
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ResultFile file(name, test::make_header());
+    for (int tick = 1; tick <= 7; ++tick) {
+      test::append_run(file, tick, tick + 1);
+      file.write_checkpoint(make_state(tick));
+    }
+    test::append_run(file, 8, 20);
+    raise(SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  const ResultReader reader(name);
+  EXPECT_EQ(reader.find_checkpoint(), make_state(7));
+  EXPECT_EQ(reader.read_haptic().back().tick, 7);
+}
+
+TEST(ResultFile, ARunThatReachedItsEndKeepsNoCheckpoint) {
+  const TempFolder folder;
+  const std::string name = folder / "r.h5";
+  for (const bool is_done : {true, false}) {
+    ResultFile file(name, test::make_header());
+    file.write_checkpoint({{"tick", Eigen::MatrixXd::Zero(1, 1)}});
+    file.finish(std::nullopt, !is_done);
+    EXPECT_EQ(ResultReader(name).find_checkpoint().has_value(), !is_done);
+  }
 }
 
 TEST(ResultReader, RefusesWhatIsNoResultFile) {

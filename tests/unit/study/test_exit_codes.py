@@ -6,6 +6,8 @@ Usage: test_exit_codes.py ARGIL        the program
 """
 import json
 import math
+import os
+import resource
 import signal
 import subprocess
 import sys
@@ -145,6 +147,55 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(code, 4, error)
         self.assertIn("no/such/folder/out.h5", error)
 
+    def test_4_a_folder_that_is_read_only(self):
+        self.folder.chmod(0o755)
+        place = self.folder / "closed"
+        place.mkdir(mode=0o555)
+        nobody = 65534 if os.getuid() == 0 else None  # root may write anywhere
+        done = subprocess.run([ARGIL, "run", "scene.json", "-o", "closed/out.h5"], cwd=self.folder, capture_output=True,
+                              text=True, timeout=120, user=nobody)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("closed/out.h5: cannot be written: Permission denied", done.stderr)
+
+    def test_4_a_full_disk_leaves_a_readable_file_to_resume(self):
+        def limit():  # a limit on the file's size stands for the full disk
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1100000, 1100000))
+
+        often = ["--set", "/haptics/frame_period_ticks=1", "--set", "/output/checkpoint_period_ticks=10"]
+        done = subprocess.run([ARGIL, "run", "scene.json", "-o", "out.h5", *often], cwd=self.folder, capture_output=True,
+                              text=True, timeout=120, preexec_fn=limit)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("out.h5: ", done.stderr)
+        self.assertIn("File too large", done.stderr)
+        self.assertIn("--resume", done.stderr)
+        complete, last, frames = self.read_ends("out.h5")
+        self.assertFalse(complete)
+        self.assertGreater(frames, 10)
+        self.assertGreaterEqual(last, 0.01)
+        self.assertEqual(self.call("run", "scene.json", "-o", "out.h5", "--resume", *often)[0], 0)
+        self.assertEqual(self.call("run", "scene.json", "-o", "whole.h5", *often)[0], 0)
+        self.assertEqual(self.call("compare", "whole.h5", "out.h5")[0], 0)
+
+    def test_2_another_run_is_not_resumed(self):
+        self.assertEqual(self.call("run", "scene.json", "-o", "out.h5")[0], 0)
+        code, out, _ = self.call("run", "scene.json", "-o", "out.h5", "--resume")
+        self.assertEqual((code, out), (0, "out.h5: complete already\n"))
+        code, _, error = self.call("run", "scene.json", "-o", "out.h5", "--resume", "--set", "/water/porosity=0.31")
+        self.assertEqual(code, 2)
+        self.assertIn("out.h5: /provenance/scenario_sha256: was written by another scenario", error)
+        write_press(self.folder / "press.csv", 0.1, 0.0434)
+        code, _, error = self.call("run", "scene.json", "-o", "out.h5", "--resume")
+        self.assertEqual(code, 2)
+        self.assertIn("read other files", error)
+        write_press(self.folder / "press.csv", 0.1, 0.0435)
+        with h5py.File(self.folder / "out.h5", "a") as file:
+            build = file["provenance/build"][()]
+            del file["provenance/build"]
+            file["provenance/build"] = build.replace(b"commit ", b"commit 0")
+        code, _, error = self.call("run", "scene.json", "-o", "out.h5", "--resume")
+        self.assertEqual(code, 2)
+        self.assertIn("another build of argil", error)
+
     def test_2_a_file_to_read_that_is_none(self):
         (self.folder / "folder").mkdir()
         for name, why in (("nowhere", "does not exist"), ("folder", "is a folder")):
@@ -170,16 +221,41 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(code, 5)
         self.assertIn("/haptic/force", out)
 
+    def wait_for(self, file):
+        """Until a run has made its file and is well inside its loop."""
+        for _ in range(600):
+            if (self.folder / file).exists():
+                break
+            time.sleep(0.05)
+        time.sleep(0.5)
+
+    def test_130_a_terminated_run_goes_on_where_it_was_and_has_one_writer(self):
+        write_press(self.folder / "press.csv", 6.0, 0.0435)
+        command = [ARGIL, "run", "scene.json", "-o", "out.h5", "-q", "--set", "/haptics/physics_period_ticks=5"]
+        with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True) as run:
+            self.wait_for("out.h5")
+            for more in ([], ["--resume"]):
+                code, _, error = self.call(*command[1:], *more)
+                self.assertEqual(code, 4)
+                self.assertIn("out.h5: another process has this file open", error)
+            run.send_signal(signal.SIGTERM)
+            _, error = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 130, error)
+        self.assertIn("go on with --resume", error)
+        with h5py.File(self.folder / "out.h5") as file:
+            self.assertEqual(file["checkpoint/tick"][0, 0], file["haptic/tick"][-1])
+        code, out, error = self.call(*command[1:4], "out.h5", *command[6:], "--resume")
+        self.assertEqual(code, 0, error)
+        self.assertRegex(out, r"resumed after tick \d+")
+        self.assertEqual(self.call(*command[1:4], "whole.h5", *command[6:])[0], 0)
+        self.assertEqual(self.call("compare", "whole.h5", "out.h5")[0], 0)
+
     def test_130_an_interrupted_run_is_readable_up_to_its_last_frame(self):
         write_press(self.folder / "long.csv", 60.0, 0.0435)  # minutes of work
         self.write_scene("long.json", "long.csv")
         with subprocess.Popen([ARGIL, "run", "long.json", "-o", "out.h5"], cwd=self.folder,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as run:
-            for _ in range(600):  # until it is well inside its loop
-                if (self.folder / "out.h5").exists():
-                    break
-                time.sleep(0.05)
-            time.sleep(0.5)
+            self.wait_for("out.h5")
             run.send_signal(signal.SIGINT)
             _, error = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 130, error)

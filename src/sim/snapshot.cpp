@@ -1,0 +1,142 @@
+// Everything that a tick takes from earlier ones, each field named once for both ways.
+
+#include "base/check.h"
+#include "sim/simulation.h"
+
+namespace argil::sim {
+
+Snapshot Simulation::take_snapshot() {
+  ARGIL_ASSERT(m_clock.tick % m_params.rates.physics_period_ticks == 0, m_clock.tick);
+  ARGIL_ASSERT(m_contact_stiffness.empty() && m_yields.empty() && !m_state.is_touched);
+  Snapshot snapshot;
+  Archive archive = Archive::make_saving(snapshot);
+  exchange_state(archive);
+  return snapshot;
+}
+
+/// Moduli and kinematics are functions of what was saved and are found again.
+void Simulation::restore(const Snapshot& snapshot, const std::string& origin) {
+  Archive archive = Archive::make_restoring(snapshot, origin);
+  exchange_state(archive);
+  for (int t = 0; t < m_body.mesh.num_tets(); ++t) refresh_material(t, m_water.state().collected(t));
+  const StepStatus status = m_solid.update_kinematics(m_state.solid.x, m_clock.tick);
+  ARGIL_ASSERT(status.is_ok());
+}
+
+void Simulation::exchange_state(Archive& archive) {
+  archive.number("tick", m_clock.tick);
+  archive.array("tool/position", m_state.tool.position);
+  archive.quaternion("tool/orientation", m_state.tool.orientation);
+  archive.number("tool/mode", m_state.mode);
+  archive.array("tool/path", m_state.motion.path);
+  archive.array("tool/turn", m_state.motion.turn);
+  exchange_contact_state(archive);
+  archive.array("solid/x", m_state.solid.x);
+  archive.array("solid/v", m_state.solid.v);
+  archive.array("solid/plastic_strain", m_state.solid.plastic_strain);
+  archive.any_size("solid/x_before", m_state.solid.x_before);
+  archive.any_size("solid/v_before", m_state.solid.v_before);
+  archive.number("solid/is_at_rest", m_state.is_at_rest);
+  archive.number("solid/slow_steps", m_state.slow_steps);
+  archive.number("solid/rest_energy", m_rest_energy);
+  archive.number("solid/rest_plastic_strain", m_rest_plastic_strain);
+  m_solid.exchange_state(archive);
+  exchange_water_state(archive);
+  archive.number("ledger/plastic_dissipation", m_state.plastic_dissipation);
+  archive.number("ledger/contact_work", m_state.contact_work);
+  archive.number("ledger/port_energy", m_state.port_energy);
+  archive.number("ledger/passivity_energy", m_state.passivity_energy);
+}
+
+void Simulation::exchange_contact_state(Archive& archive) {
+  archive.array("contact/tool_position", m_state.contact_tool.position);
+  archive.quaternion("contact/tool_orientation", m_state.contact_tool.orientation);
+  archive.array("contact/x", m_state.contact_x);
+  archive.number("contact/has_moved", m_state.has_moved);
+  archive.array("contact/centre", m_state.contact_centre);
+  archive.number("contact/is_pressed", m_state.is_pressed);
+  archive.number("contact/num_contacts", m_state.num_contacts);
+  archive.number("contact/force_age", m_state.force_age);
+  archive.array("hand/force", m_state.hand_force);
+  archive.array("hand/torque", m_state.hand_torque);
+  archive.array("hand/withheld_force", m_state.withheld.force);
+  archive.array("hand/withheld_torque", m_state.withheld.torque);
+  archive.array("hand/gated_force", m_gated.force);
+  archive.array("hand/gated_torque", m_gated.torque);
+  archive.number("hand/gate_events", m_gated.events);
+  Tick gate_count = m_gate.count();
+  Vec3 gate_force = m_gate.last_force();
+  archive.number("hand/gate_count", gate_count);
+  archive.array("hand/gate_last_force", gate_force);
+
+  contact::ContactState inside = m_detector.state();
+  archive.list("contact/tool_vertex", inside.tool_vertex);
+  archive.list("contact/body_face", inside.body_face);
+  archive.list("contact/body_vertex", inside.body_vertex);
+  archive.list("contact/tool_face", inside.tool_face);
+  archive.list("contact/tool_stretch", inside.tool_stretch);
+  archive.list("contact/body_stretch", inside.body_stretch);
+  std::vector<int> tool_edge, body_edge;
+  for (const auto& [of_tool, of_body] : inside.edges) {
+    tool_edge.push_back(of_tool);
+    body_edge.push_back(of_body);
+  }
+  archive.list("contact/tool_edge", tool_edge);
+  archive.list("contact/body_edge", body_edge);
+  archive.list("contact/edge_stretch", inside.edge_stretch);
+  exchange_springs(archive);
+  m_compliance.exchange_state(archive);
+  if (!archive.is_restoring()) return;
+  m_gate.restore(gate_count, gate_force);
+  inside.edges.clear();
+  for (std::size_t i = 0; i < tool_edge.size(); ++i) inside.edges.emplace_back(tool_edge[i], body_edge.at(i));
+  m_detector.restore(inside);
+}
+
+/// A spring is a column: vertices, weights, normal, stiffness, force, point.
+void Simulation::exchange_springs(Archive& archive) {
+  Eigen::Matrix<double, 14, Eigen::Dynamic> table(14, m_springs.size());
+  for (std::size_t i = 0; i < m_springs.size(); ++i) {
+    const ContactSpring& s = m_springs[i];
+    auto column = table.col(static_cast<Eigen::Index>(i));
+    for (std::size_t k = 0; k < 3; ++k) {
+      column(static_cast<Eigen::Index>(k)) = s.vertex[k];
+      column(static_cast<Eigen::Index>(3 + k)) = s.weight[k];
+    }
+    column.segment<3>(6) = s.normal;
+    column(9) = s.stiffness;
+    column(10) = s.force;
+    column.segment<3>(11) = s.point;
+  }
+  archive.any_size("contact/springs", table);
+  if (!archive.is_restoring()) return;
+  m_springs.assign(static_cast<std::size_t>(table.cols()), {});
+  for (std::size_t i = 0; i < m_springs.size(); ++i) {
+    const auto column = table.col(static_cast<Eigen::Index>(i));
+    ContactSpring& s = m_springs[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      s.vertex[k] = static_cast<int>(column(static_cast<Eigen::Index>(k)));
+      s.weight[k] = column(static_cast<Eigen::Index>(3 + k));
+    }
+    s.normal = column.segment<3>(6);
+    s.stiffness = column(9);
+    s.force = column(10);
+    s.point = column.segment<3>(11);
+  }
+}
+
+void Simulation::exchange_water_state(Archive& archive) {
+  water::WaterState water = m_water.state();
+  archive.array("water/saturation", water.saturation);
+  archive.array("water/carry", water.carry);
+  archive.array("water/collected", water.collected);
+  archive.number("water/initial", water.initial);
+  archive.number("water/added", water.added.sum);
+  archive.number("water/added_error", water.added.error);
+  archive.number("water/removed", water.removed.sum);
+  archive.number("water/removed_error", water.removed.error);
+  archive.number("water/nothing_collected", water.nothing_collected);
+  if (archive.is_restoring()) m_water.restore(water);
+}
+
+}  // namespace argil::sim

@@ -1,0 +1,145 @@
+#include "study/loop.h"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+
+#include "study/cost_meter.h"
+#include "study/progress.h"
+
+namespace argil::study {
+namespace {
+
+volatile std::sig_atomic_t g_interrupted = 0;  // the one thing a signal handler may touch
+
+void on_signal(int) {
+  g_interrupted = 1;
+}
+
+void watch_signals() {
+  g_interrupted = 0;
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error of the write, like a full disk
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Adds up wall-clock time per stage of the loop.
+class StageClock final : public sim::StageObserver {
+ public:
+  void begin(sim::Stage) override { m_begin = std::chrono::steady_clock::now(); }
+  void end(sim::Stage stage) override {
+    m_seconds[static_cast<std::size_t>(stage)] += seconds_since(m_begin);
+  }
+  std::vector<std::pair<std::string, double>> seconds(double total, Tick ticks) const {
+    constexpr std::array<const char*, static_cast<std::size_t>(sim::Stage::count)> kNames = {
+        "contact", "water", "assemble", "solve", "kinematics", "plasticity"};
+    std::vector<std::pair<std::string, double>> list;
+    for (std::size_t i = 0; i < kNames.size(); ++i) list.emplace_back(kNames[i], m_seconds[i]);
+    list.emplace_back("total", total);
+    list.emplace_back("tick_rate_Hz", total > 0.0 ? static_cast<double>(ticks) / total : 0.0);
+    return list;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point m_begin;
+  std::array<double, static_cast<std::size_t>(sim::Stage::count)> m_seconds = {};
+};
+
+/// Appends what a tick gave.
+void append_records(const sim::Simulation& simulation, output::ResultFile& file) {
+  file.append(simulation.haptic_record());
+  if (simulation.physics_due_last_tick()) file.append(simulation.physics_record());
+  if (simulation.frame_due_last_tick()) file.append(simulation.make_frame());
+}
+
+/// The ticks themselves. Returns the failure, if any.
+std::optional<Failure> run_ticks(const scenario::Scenario& s, const device::Trace& trace,
+                                 sim::Simulation& simulation, output::ResultFile& file, CostMeter& cost,
+                                 Progress& progress) {
+  const Tick num_ticks = count_ticks(s, trace);
+  Tick last_checkpoint = simulation.clock().tick;
+  for (Tick k = simulation.clock().tick + 1; k <= num_ticks; ++k) {
+    const device::DeviceSample sample = sample_at(s, trace, k);
+    cost.begin();
+    const StepStatus status = simulation.tick(sample);
+    cost.end();
+    if (!status.is_ok()) return status.failure();
+    append_records(simulation, file);
+    progress.update(k);
+    if (!simulation.physics_due_last_tick()) continue;
+    const bool is_due = s.checkpoint_period_ticks > 0 && k - last_checkpoint >= s.checkpoint_period_ticks;
+    if ((is_due || g_interrupted) && k < num_ticks) {
+      file.write_checkpoint(simulation.take_snapshot());
+      last_checkpoint = k;
+      if (g_interrupted) break;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+device::DeviceSample sample_at(const scenario::Scenario& s, const device::Trace& trace, Tick ticks) {
+  device::DeviceSample sample =
+      device::interpolate(trace, s.trace.start + static_cast<double>(ticks) * s.params.rates.haptic_period);
+  switch (s.tool.mode) {
+    case scenario::ModeChoice::push:
+      sample.mode = device::ToolMode::push;
+      break;
+    case scenario::ModeChoice::pull:
+      sample.mode = device::ToolMode::pull;
+      break;
+    case scenario::ModeChoice::wet:
+      sample.mode = device::ToolMode::wet;
+      break;
+    case scenario::ModeChoice::dry:
+      sample.mode = device::ToolMode::dry;
+      break;
+    case scenario::ModeChoice::trace:
+      break;
+  }
+  return sample;
+}
+
+Tick count_ticks(const scenario::Scenario& s, const device::Trace& trace) {
+  const double duration = s.trace.duration > 0.0 ? s.trace.duration : trace.duration() - s.trace.start;
+  const double ticks = duration / s.params.rates.haptic_period;
+  constexpr double kRounding =
+      1e-6;  // a duration that is a whole number of ticks up to rounding is that number
+  return static_cast<Tick>(std::floor(ticks + kRounding));
+}
+
+std::uint64_t count_frames(const scenario::Scenario& s, Tick tick) {
+  return 1 + static_cast<std::uint64_t>(tick / s.params.rates.frame_period_ticks);  // one at the start
+}
+
+LoopEnd run_loop(const scenario::Scenario& s, const device::Trace& trace, sim::Simulation& simulation,
+                 output::ResultFile& file, bool shows_progress) {
+  watch_signals();
+  Progress progress(count_ticks(s, trace), shows_progress);
+  StageClock clock;
+  simulation.observe_stages(&clock);
+  const auto start = std::chrono::steady_clock::now();
+  const Tick first = simulation.clock().tick;
+  if (first == 0) file.append(simulation.make_frame());
+  LoopEnd end;
+  CostMeter cost;
+  end.failure = run_ticks(s, trace, simulation, file, cost, progress);
+  const Tick last = simulation.clock().tick;
+  end.is_interrupted = !end.failure && last < count_ticks(s, trace);
+  if (!simulation.frame_due_last_tick()) file.append(simulation.make_frame());  // the last good state
+  end.seconds = seconds_since(start);
+  auto timing = clock.seconds(end.seconds, last - first);
+  timing.emplace_back("cpu", cost.cpu_seconds());
+  if (const auto instructions = cost.instructions()) timing.emplace_back("instructions", *instructions);
+  file.append_timing(timing);
+  simulation.observe_stages(nullptr);
+  return end;
+}
+
+}  // namespace argil::study

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+
+#include "device/trace.h"
+#include "output/result_file.h"
+#include "scenario/scenario.h"
+#include "sim/simulation.h"
+
+namespace argil::study {
+
+/// The hand at the end of tick k, with the scenario's mode unless the trace decides.
+device::DeviceSample sample_at(const scenario::Scenario& s, const device::Trace& trace, Tick ticks);
+
+/// Whole ticks of the scenario's motion.
+Tick count_ticks(const scenario::Scenario& s, const device::Trace& trace);
+
+/// Frames that a run has written when tick `tick` has ended.
+std::uint64_t count_frames(const scenario::Scenario& s, Tick tick);
+
+/// How the loop ended.
+struct LoopEnd {
+  std::optional<Failure> failure;
+  bool is_interrupted = false;  ///< by SIGINT or SIGTERM
+  double seconds = 0.0;         ///< of wall clock
+};
+
+/// Feeds the simulation the trace from its present tick to the end and appends records, frames, checkpoints
+/// and timing as they come. A signal ends it after the next physics step, with a checkpoint there.
+LoopEnd run_loop(const scenario::Scenario& s, const device::Trace& trace, sim::Simulation& simulation,
+                 output::ResultFile& file, bool shows_progress);
+
+}  // namespace argil::study
