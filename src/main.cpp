@@ -15,11 +15,13 @@
 #include "output/info.h"
 #include "scenario/build.h"
 #include "scenario/probe.h"
+#include "scenario/tolerance_file.h"
 #include "study/chart.h"
 #include "study/files.h"
 #include "study/identity.h"
 #include "study/run.h"
 #include "study/stability.h"
+#include "study/sweep.h"
 
 namespace {
 
@@ -39,9 +41,14 @@ int make_cage_file(const std::string& surface, const std::string& output, int ta
   return ExitCode::kDone;
 }
 
-int compare_files(const std::string& a, const std::string& b) {
+int compare_files(const std::string& a, const std::string& b, const std::string& tolerances) {
   for (const std::string& file : {a, b}) study::require_input_file(file);
-  const output::CompareReport report = output::compare_results(a, b, {});
+  output::CompareOptions options;
+  if (!tolerances.empty()) {
+    study::require_input_file(tolerances);
+    options = scenario::load_tolerances(tolerances);
+  }
+  const output::CompareReport report = output::compare_results(a, b, options);
   std::fputs(to_string(report).c_str(), stdout);
   return report.is_equal() ? ExitCode::kDone : ExitCode::kDifferent;
 }
@@ -120,10 +127,12 @@ int main(int argc, char** argv) {
   info->callback([&] { code = print_info(first); });
 
   CLI::App* compare =
-      app.add_subcommand("compare", "compare two result files bit by bit, all but their timing");
+      app.add_subcommand("compare", "compare two result files bit by bit, or within tolerances");
   compare->add_option("A", first, "result file")->required();
   compare->add_option("B", second, "result file")->required();
-  compare->callback([&] { code = compare_files(first, second); });
+  std::string tolerances;
+  compare->add_option("--tolerances", tolerances, "tolerances of datasets (JSON)");
+  compare->callback([&] { code = compare_files(first, second, tolerances); });
 
   CLI::App* probe = app.add_subcommand("probe", "one law at a point: JSON on standard input and output");
   probe->add_option("KERNEL", first, "the law; src/scenario/README.md lists them")->required();
@@ -178,6 +187,33 @@ int main(int argc, char** argv) {
   add_study(stability);
   stability->add_option("--failures", second, "folder for the smallest scenario of each failure");
   stability->callback([&] { code = study::map_stability(study_options, second); });
+
+  study::SweepRun sweep_run;
+  CLI::App* sweep = app.add_subcommand("sweep", "a scenario over many settings, one process a point");
+  sweep->require_subcommand(1);
+  CLI::App* expand = sweep->add_subcommand("expand", "write the points of a sweep, a line each");
+  expand->add_option("SWEEP", first, "sweep (JSON)")->required();
+  expand->add_option("-o,--output", second, "points (.jsonl)")->required();
+  expand->callback([&] { code = study::expand_sweep(first, second); });
+  const auto add_points = [&](const char* name, const char* about) {
+    CLI::App* command = sweep->add_subcommand(name, about);
+    command->add_option("POINTS", sweep_run.points, "points that expand wrote")->required();
+    return command;
+  };
+  const auto add_block = [&](CLI::App* command) {
+    command->add_option("--block", sweep_run.block, "points in a block")->check(CLI::Range(1, 1000000));
+  };
+  CLI::App* run_block = add_points("run", "run the points of a block that are not done yet");
+  run_block->add_option("--index", sweep_run.index, "number of the block (default: SLURM_ARRAY_TASK_ID)");
+  add_block(run_block);
+  run_block->callback([&] { code = study::run_sweep(sweep_run); });
+  CLI::App* missing =
+      add_points("missing", "print the blocks that have not ended, as sbatch --array takes them");
+  add_block(missing);
+  missing->callback([&] { code = study::print_missing(sweep_run.points, sweep_run.block); });
+  CLI::App* collect = add_points("collect", "write one table of settings and figures");
+  collect->add_option("-o,--output", second, "table without suffix")->required();
+  collect->callback([&] { code = study::collect_sweep(sweep_run.points, second); });
 
   try {
     app.parse(argc, argv);

@@ -51,7 +51,7 @@ bool is_same(double a, double b, const Tolerance* tolerance) {
   if (tolerance == nullptr)
     return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) && !std::isnan(a);
   if (a == b) return true;  // also equal infinities, whose difference is NaN
-  return std::abs(a - b) <= tolerance->absolute + tolerance->relative * std::abs(a);
+  return std::abs(a - b) <= tolerance->absolute + tolerance->relative * std::abs(a);  // a NaN is not
 }
 
 bool is_same(std::int64_t a, std::int64_t b, const Tolerance* tolerance) {
@@ -95,11 +95,18 @@ class Comparison {
                        [&](const std::string& pattern) { return fits(pattern, path); });
   }
 
-  const Tolerance* find_tolerance(const std::string& path) const {
+  // With what a share of the largest value comes to counted in.
+  template <class T>
+  std::optional<Tolerance> find_tolerance(const std::string& path, const std::vector<T>& values) const {
     const auto found =
         std::find_if(m_options.tolerances.begin(), m_options.tolerances.end(),
                      [&](const Tolerance& tolerance) { return fits(tolerance.dataset, path); });
-    return found == m_options.tolerances.end() ? nullptr : &*found;
+    if (found == m_options.tolerances.end()) return std::nullopt;
+    double largest = 0.0;
+    for (const T value : values) largest = std::max(largest, std::abs(static_cast<double>(value)));
+    Tolerance tolerance = *found;
+    if (std::isfinite(largest)) tolerance.absolute += tolerance.of_largest * largest;
+    return tolerance;
   }
 
   // Names that both have; those that one has alone are differences.
@@ -153,7 +160,9 @@ class Comparison {
                        const std::vector<std::int64_t>& ticks, std::optional<Tick> tick) {
     const std::vector<T> values_a = a.read<T>();
     const std::vector<T> values_b = b.read<T>();
-    const ValueDifference found = compare_values(values_a, values_b, count, find_tolerance(a.path()));
+    const std::optional<Tolerance> tolerance = find_tolerance(a.path(), values_a);
+    const ValueDifference found =
+        compare_values(values_a, values_b, count, tolerance ? &*tolerance : nullptr);
     if (found.count == 0) return;
     const std::uint64_t row = found.first / row_width;
     std::string what = std::to_string(found.count) + " of " + std::to_string(count) +
@@ -229,11 +238,11 @@ class Comparison {
 CompareReport compare_results(const std::string& file_a, const std::string& file_b,
                               const CompareOptions& options) {
   for (const Tolerance& tolerance : options.tolerances)
-    if (!(tolerance.relative >= 0.0 && tolerance.absolute >= 0.0))
-      throw InputError(
-          "", tolerance.dataset,
-          "tolerances " + print(tolerance.relative) + " relative, " + print(tolerance.absolute) + " absolute",
-          "give numbers that are not negative");
+    if (!(tolerance.relative >= 0.0 && tolerance.absolute >= 0.0 && tolerance.of_largest >= 0.0))
+      throw InputError("", tolerance.dataset,
+                       "tolerances " + print(tolerance.relative) + " relative, " + print(tolerance.absolute) +
+                           " absolute, " + print(tolerance.of_largest) + " of the largest",
+                       "give numbers that are not negative");
   const ResultReader a(file_a);
   const ResultReader b(file_b);
   return Comparison(a, b, options).take_report();

@@ -10,11 +10,12 @@
 namespace argil::output {
 
 /// How far two values a (of the first file) and b of a dataset may lie apart: |a − b| ≤ absolute +
-/// relative·|a|.
+/// relative·|a| + of_largest·max|a|.
 struct Tolerance {
-  std::string dataset;    ///< path from the root; * stands for any text: "/frames/*/position"
-  double relative = 0.0;  ///< ≥ 0
-  double absolute = 0.0;  ///< ≥ 0, in the dataset's unit
+  std::string dataset;      ///< path from the root; * stands for any text: "/frames/*/position"
+  double relative = 0.0;    ///< ≥ 0
+  double absolute = 0.0;    ///< ≥ 0, in the dataset's unit
+  double of_largest = 0.0;  ///< ≥ 0, of the dataset's largest |a|
 };
 
 struct CompareOptions {

@@ -6,93 +6,12 @@
 #include <utility>
 
 #include "base/error.h"
-#include "scenario/json_document.h"
+#include "scenario/json_reader.h"
 
 namespace argil::scenario {
 namespace {
 
-/// An object of a study file, read key by key; a key that no one asked for is an error.
-class Reader {
- public:
-  Reader(const Json& json, std::string file, std::string place)
-      : m_json(json), m_file(std::move(file)), m_place(std::move(place)) {
-    if (!json.is_object()) refuse("", "is not an object", "give {…}");
-  }
-
-  const Json* find(const std::string& key) {
-    m_known.push_back(key);
-    return m_json.contains(key) ? &m_json[key] : nullptr;
-  }
-  const Json& get(const std::string& key, const std::string& meaning) {
-    const Json* value = find(key);
-    if (!value) refuse(key, "is missing", "add it: " + meaning);
-    return *value;
-  }
-  std::string text(const std::string& key, const std::string& meaning) {
-    const Json& value = get(key, meaning);
-    if (!value.is_string()) refuse(key, value.dump() + " is not a text", "give " + meaning);
-    return value.get<std::string>();
-  }
-  double number(const std::string& key, double fallback, double least, double most) {
-    const Json* value = find(key);
-    if (!value) return fallback;
-    if (!value->is_number() || !(value->get<double>() >= least && value->get<double>() <= most))
-      refuse(key, value->dump() + " is outside [" + Json(least).dump() + ", " + Json(most).dump() + "]",
-             "give a number in it");
-    return value->get<double>();
-  }
-  bool flag(const std::string& key, bool fallback) {
-    const Json* value = find(key);
-    if (!value) return fallback;
-    if (!value->is_boolean()) refuse(key, value->dump() + " is neither true nor false", "give one of them");
-    return value->get<bool>();
-  }
-  std::vector<double> numbers(const std::string& key, const Json& list) const {
-    std::vector<double> values;
-    if (!list.is_array() || list.empty())
-      refuse(key, "is not a list of numbers", "give for instance [1, 2, 5]");
-    for (const Json& value : list) {
-      if (!value.is_number()) refuse(key, value.dump() + " is not a number", "give numbers only");
-      values.push_back(value.get<double>());
-    }
-    return values;
-  }
-  /// {"/pointer": value, …}
-  std::vector<Setting> settings(const std::string& key) {
-    const Json* object = find(key);
-    std::vector<Setting> list;
-    if (!object) return list;
-    if (!object->is_object()) refuse(key, "is not an object", "give {\"/json/pointer\": value, …}");
-    for (const auto& [pointer, value] : object->items()) {
-      check_pointer(key, pointer);
-      list.push_back({pointer, value.dump()});
-    }
-    return list;
-  }
-  void check_pointer(const std::string& key, const std::string& pointer) const {
-    if (pointer.empty() || pointer[0] != '/')
-      refuse(key, "\"" + pointer + "\" is no JSON pointer", "begin it with /, as in /dynamics/model");
-  }
-  /// After all keys were asked for.
-  void finish() const {
-    for (const auto& [key, value] : m_json.items())
-      if (std::find(m_known.begin(), m_known.end(), key) == m_known.end()) {
-        const std::string near = find_nearest(key, m_known);
-        refuse(key, "is not a known key", near.empty() ? "remove it" : "did you mean " + near + "?");
-      }
-  }
-  [[noreturn]] void refuse(const std::string& key, const std::string& problem,
-                           const std::string& remedy) const {
-    throw InputError(m_file, m_place + (key.empty() ? "" : "/" + escape_key(key)), problem, remedy);
-  }
-  std::string place(const std::string& key) const { return m_place + "/" + escape_key(key); }
-
- private:
-  const Json& m_json;
-  std::string m_file;
-  std::string m_place;
-  std::vector<std::string> m_known;
-};
+using Reader = JsonReader;
 
 std::string resolve(const std::string& study, const std::string& scenario) {
   return (std::filesystem::path(study).parent_path() / scenario).lexically_normal().string();

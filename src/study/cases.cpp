@@ -17,7 +17,6 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "base/hash.h"
 #include "output/result_reader.h"
 #include "study/files.h"
 #include "study/identity.h"
@@ -40,13 +39,7 @@ RunOptions make_run_options(const Case& c) {
 
 /// Names the bits that a case gives. Throws InputError when the scenario is refused.
 std::string make_id(const Case& c) {
-  const scenario::Scenario s = load(make_run_options(c));
-  Sha256 hash;
-  hash.add(describe_build());
-  hash.add(scenario::print_portable(s));
-  for (const scenario::InputFile& input : scenario::list_input_files(s))
-    if (!input.pointer.empty()) hash.add(hash_file(input.file));
-  return hash.hex_digest().substr(0, 16);
+  return find_identity(load(make_run_options(c))).id().substr(0, 16);
 }
 
 /// The result of one case as it is kept beside its file: a line a figure, the reason last.

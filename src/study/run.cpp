@@ -193,7 +193,7 @@ int run(const RunOptions& options) {
                  result.c_str());
     throw;
   }
-  output::write_xdmf(result, name_xdmf(result));
+  if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
   return print_end(result, end, first, simulation.clock().tick, options);
 }
 

@@ -15,6 +15,7 @@ struct RunOptions {
   std::vector<std::string> settings;  ///< --set texts
   int threads = 1;
   bool resume = false;   ///< go on from the result file's checkpoint where there is one
+  bool writes_xdmf = true;
   bool dry_run = false;  ///< check and build everything, run and write nothing
   bool quiet = false;
 };

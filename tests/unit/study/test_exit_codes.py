@@ -220,6 +220,15 @@ class ExitCodes(unittest.TestCase):
         code, out, _ = self.call("compare", "a.h5", "c.h5")
         self.assertEqual(code, 5)
         self.assertIn("/haptic/force", out)
+        for wide, expected in ((1.0, 0), (1e-9, 5)):
+            (self.folder / "near.json").write_text(json.dumps({
+                "ignore": ["/provenance", "/physics/*", "/haptic/num_contacts"],
+                "tolerances": [{"dataset": "/haptic/*", "of_largest": wide}, {"dataset": "/frames/*", "absolute": wide}]}))
+            self.assertEqual(self.call("compare", "a.h5", "c.h5", "--tolerances", "near.json")[0], expected)
+        (self.folder / "near.json").write_text('{"tolerances": [{"dataset": "/haptic/*", "relativ": 1}]}')
+        code, _, error = self.call("compare", "a.h5", "c.h5", "--tolerances", "near.json")
+        self.assertEqual(code, 2)
+        self.assertIn("near.json: /tolerances/0/relativ: is not a known key; did you mean relative?", error)
 
     def wait_for(self, file):
         """Until a run has made its file and is well inside its loop."""

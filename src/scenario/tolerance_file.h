@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "output/compare.h"
+
+namespace argil::scenario {
+
+/// Tolerances of a comparison: {"ignore": [PATH, …], "tolerances": [{"dataset": PATH, "relative": 1e-6,
+/// "absolute": 1e-9, "of_largest": 1e-6}, …]}, * in a PATH standing for any text. Throws InputError naming
+/// file, pointer, value and remedy, IoError.
+output::CompareOptions load_tolerances(const std::string& file);
+
+}  // namespace argil::scenario

@@ -1,0 +1,208 @@
+#include "study/sweep.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "base/error.h"
+#include "output/result_reader.h"
+#include "output/study_table.h"
+#include "scenario/sweep_file.h"
+#include "study/identity.h"
+#include "study/run.h"
+#include "study/sweep_figures.h"
+
+namespace argil::study {
+namespace {
+
+namespace fs = std::filesystem;
+using scenario::SweepPoint;
+
+/// Where a point's files are: FOLDER/000012 without suffix.
+std::string name_point(const std::string& points, std::int64_t index) {
+  char number[24];
+  std::snprintf(number, sizeof number, "%06lld", static_cast<long long>(index));
+  return (fs::path(points).replace_extension() / number).string();
+}
+
+RunOptions make_options(const SweepPoint& point, const std::string& points) {
+  RunOptions options;
+  options.scenario = (fs::path(points).parent_path() / point.scenario).lexically_normal().string();
+  for (const scenario::Setting& setting : point.settings)
+    options.settings.push_back(setting.pointer + "=" + setting.value);
+  options.quiet = true;
+  return options;
+}
+
+/// What of a point lies on the disk.
+struct Found {
+  bool has_ended = false;  ///< opens, has the point's id, and its run reached its end or failed
+  bool is_done = false;    ///< the former
+  std::string reason;      ///< why there is no figure
+};
+
+Found look(const SweepPoint& point, const std::string& points) {
+  const std::string name = name_point(points, point.index);
+  if (fs::exists(name + ".refused")) {
+    std::ifstream stream(name + ".refused");
+    Found found{true, false, ""};
+    std::string id;
+    std::getline(stream, id);
+    std::getline(stream, found.reason);
+    if (id == point.id) return found;
+  }
+  if (!fs::exists(name + ".h5"))
+    return {false, false, fs::exists(name + ".part.h5") ? "not finished" : "not run"};
+  try {
+    const output::ResultReader reader(name + ".h5");
+    if (reader.find_provenance("run_id") != point.id) return {false, false, "its file is of another run"};
+    if (reader.outcome() == output::Outcome::done) return {true, true, ""};
+    const std::optional<Failure> failure = reader.read_failure();
+    if (reader.outcome() == output::Outcome::failed && failure) return {true, false, to_string(*failure)};
+    return {false, false, "not finished"};
+  } catch (const std::runtime_error& error) {
+    return {false, false, std::string("its file does not open: ") + error.what()};
+  }
+}
+
+/// The bytes are on the disk before the name is, also when the machine stops.
+void publish(const std::string& part, const std::string& name) {
+  const int descriptor = open(part.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool is_synced = descriptor >= 0 && fsync(descriptor) == 0;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!is_synced || std::rename(part.c_str(), name.c_str()) != 0)
+    throw IoError(name, std::string("cannot be given its name: ") + std::strerror(errno));
+}
+
+/// Another run's leftovers are not resumed.
+void remove_foreign(const std::string& part, const std::string& id) {
+  if (!fs::exists(part)) return;
+  try {
+    if (output::ResultReader(part).find_provenance("run_id") == id) return;
+  } catch (const InputError&) {  // no result at all
+  }
+  fs::remove(part);
+}
+
+void write_refusal(const std::string& file, const std::string& id, const std::string& reason) {
+  std::ofstream(file + ".part") << id << '\n' << reason << '\n';
+  publish(file + ".part", file);
+}
+
+int run_point(const SweepPoint& point, const SweepRun& sweep) {
+  const std::string name = name_point(sweep.points, point.index);
+  if (look(point, sweep.points).is_done) return kDone;
+  RunOptions options = make_options(point, sweep.points);
+  options.output = name + ".part.h5";
+  options.threads = sweep.threads;
+  options.resume = true;
+  options.writes_xdmf = false;
+  if (find_identity(load(options)).id() != point.id)
+    throw InputError(sweep.points, "point " + std::to_string(point.index),
+                     "was expanded from other inputs or by another build of argil",
+                     "run argil sweep expand again");
+  fs::create_directories(fs::path(name).parent_path());
+  remove_foreign(options.output, point.id);
+  fs::remove(name + ".refused");
+  try {
+    const int code = run(options);
+    if (code == kDone || code == kRunFailed) publish(options.output, name + ".h5");
+    return code == kInterrupted ? kInterrupted : kDone;
+  } catch (const InputError& error) {
+    write_refusal(name + ".refused", point.id, error.what());
+    std::fprintf(stderr, "argil: point %lld refused: %s\n", static_cast<long long>(point.index),
+                 error.what());
+    return kDone;
+  }
+}
+
+std::int64_t find_index(const SweepRun& sweep) {
+  if (sweep.index) return *sweep.index;
+  const char* given = std::getenv("SLURM_ARRAY_TASK_ID");
+  if (given == nullptr || *given == '\0' || std::strspn(given, "0123456789") != std::strlen(given) ||
+      std::strlen(given) > 9)
+    throw InputError("", "--index", "is not given, nor by SLURM_ARRAY_TASK_ID", "add --index N");
+  return std::atoll(given);
+}
+
+}  // namespace
+
+int expand_sweep(const std::string& file, const std::string& points) {
+  const scenario::Sweep sweep = scenario::load_sweep(file);
+  const fs::path folder = fs::absolute(points).parent_path();
+  const std::string base = fs::absolute(sweep.scenario).lexically_relative(folder).string();
+  std::string text;
+  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+    SweepPoint point{static_cast<std::int64_t>(i), "", base, sweep.points[i]};
+    point.id = find_identity(load(make_options(point, points))).id();
+    text += print_point(point);
+  }
+  std::ofstream out(points + ".part", std::ios::binary);
+  if (!(out << text) || !out.flush())
+    throw IoError(points, std::string("cannot be written: ") + std::strerror(errno));
+  out.close();
+  publish(points + ".part", points);
+  std::printf("%s: %zu points\n", points.c_str(), sweep.points.size());
+  return kDone;
+}
+
+int run_sweep(const SweepRun& sweep) {
+  const std::vector<SweepPoint> points = scenario::load_points(sweep.points);
+  const std::int64_t count = static_cast<std::int64_t>(points.size());
+  const std::int64_t index = find_index(sweep);
+  if (index < 0 || index > (count - 1) / sweep.block)
+    throw InputError(sweep.points, "--index", std::to_string(index) + " is past the last block",
+                     "give 0 to " + std::to_string((count - 1) / sweep.block));
+  for (std::int64_t i = index * sweep.block; i < std::min((index + 1) * sweep.block, count); ++i)
+    if (const int code = run_point(points[static_cast<std::size_t>(i)], sweep); code != kDone) return code;
+  return kDone;
+}
+
+int print_missing(const std::string& file, std::int64_t block) {
+  std::vector<std::int64_t> missing;
+  for (const SweepPoint& point : scenario::load_points(file))
+    if (!look(point, file).has_ended && (missing.empty() || missing.back() != point.index / block))
+      missing.push_back(point.index / block);
+  std::string text;
+  for (std::size_t i = 0; i < missing.size();) {
+    std::size_t last = i;
+    while (last + 1 < missing.size() && missing[last + 1] == missing[last] + 1) ++last;
+    text += (text.empty() ? "" : ",") + std::to_string(missing[i]);
+    if (last > i) text += "-" + std::to_string(missing[last]);
+    i = last + 1;
+  }
+  if (!text.empty()) std::puts(text.c_str());
+  return kDone;
+}
+
+int collect_sweep(const std::string& file, const std::string& table_name) {
+  const std::vector<SweepPoint> points = scenario::load_points(file);
+  SweepTable table;
+  std::size_t num_without = 0;
+  for (const SweepPoint& point : points) {
+    const Found found = look(point, file);
+    const std::string result = name_point(file, point.index) + ".h5";
+    table.add(point,
+              found.is_done     ? "done"
+              : found.has_ended ? "failed"
+                                : "missing",
+              found.reason,
+              found.is_done ? compute_sweep_figures(output::ResultReader(result)) : SweepFigures());
+    num_without += !found.is_done;
+  }
+  const output::StudyTable written = table.take();
+  output::write_csv(written, table_name + ".csv");
+  output::write_hdf5(written, table_name + ".h5");
+  std::printf("%s.csv: %zu points, %zu without figures\n", table_name.c_str(), points.size(), num_without);
+  return kDone;
+}
+
+}  // namespace argil::study

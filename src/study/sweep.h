@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace argil::study {
+
+/// Writes points.jsonl: one line a point with its index, its id and its settings. Each point's scenario is
+/// checked. Throws InputError, IoError.
+int expand_sweep(const std::string& sweep, const std::string& points);
+
+/// What of a sweep one call runs.
+struct SweepRun {
+  std::string points;                 ///< points.jsonl
+  std::optional<std::int64_t> index;  ///< of the block; none: the scheduler's SLURM_ARRAY_TASK_ID
+  std::int64_t block = 1;             ///< points in a block: block i has the points from i·block on
+  int threads = 1;
+};
+
+/// Runs the points of a block, each into FOLDER/NNNNNN.h5 beside points.jsonl (its name without .jsonl): to a
+/// .part first, which a later call resumes, synced and renamed when it ends. A point whose file opens, is
+/// complete and has its id is skipped. A refused point leaves NNNNNN.refused with the reason. Returns
+/// kInterrupted after a signal, else kDone, also when a run failed: `collect` says so.
+int run_sweep(const SweepRun& run);
+
+/// Prints the indices of the blocks with points that did not end, in the syntax of sbatch --array.
+int print_missing(const std::string& points, std::int64_t block);
+
+/// One row a point, in the order of their indices: settings, outcome with reason, and figures; as TABLE.csv
+/// and TABLE.h5. Wall clock is left out, so that equal runs give equal tables.
+int collect_sweep(const std::string& points, const std::string& table);
+
+}  // namespace argil::study

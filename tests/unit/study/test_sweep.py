@@ -1,0 +1,144 @@
+#!/usr/bin/python3
+"""A sweep from its file to its table: order and values of the points, what counts as done, and the same table from a
+serial run, GNU parallel and blocks.
+
+Usage: test_sweep.py ARGIL        the program
+"""
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ARGIL = str(Path(sys.argv.pop(1)).resolve())
+BASE = Path(__file__).resolve().parents[2] / "golden" / "ball.json"
+SHORT = {"/trace/duration_s": [0.028]}
+
+
+class Sweep(unittest.TestCase):
+    def setUp(self):
+        self.temp = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temp.cleanup)
+        self.folder = Path(self.temp.name)
+        self.points = self.folder / "points.jsonl"
+
+    def call(self, *arguments, expected=0, **environment):
+        done = subprocess.run([ARGIL, "sweep", *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
+                              timeout=300, env={**os.environ, **environment})
+        self.assertEqual(done.returncode, expected, done.stderr)
+        return done.stdout.strip() if expected == 0 else done.stderr
+
+    def expand(self, **axes):
+        (self.folder / "sweep.json").write_text(json.dumps({"scenario": os.path.relpath(BASE, self.folder), **axes}))
+        self.call("expand", "sweep.json", "-o", self.points)
+        return [json.loads(line) for line in self.points.read_text().splitlines()]
+
+    def expand_and_run(self):
+        points = self.expand(grid={**SHORT, "/body/initial_saturation": [0.1, 0.9],
+                                   "/material/youngs_modulus_Pa": [5e4, 1e5, 2e5]})
+        for index in range(len(points)):
+            self.call("run", self.points, "--index", index)
+
+    def collect(self, name="table"):
+        self.call("collect", self.points, "-o", name)
+        with open(self.folder / f"{name}.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_points_are_all_combinations_the_last_axis_fastest(self):
+        points = self.expand(grid={"/body/initial_saturation": [0, 0.5], "/material/youngs_modulus_Pa": [1e5, 2e5]},
+                             zip={"/tool/mode": ["push", "wet"], "/trace/duration_s": [0.01, 0.02]},
+                             list=[{}, {"/contact/friction": 0.5}])
+        self.assertEqual(len(points), 16)
+        self.assertEqual([point["index"] for point in points], list(range(16)))
+        self.assertEqual(len({point["id"] for point in points}), 16)
+        settings = [list(point["settings"].values()) for point in points]
+        self.assertEqual(settings[0], [0, 1e5, "push", 0.01])
+        self.assertEqual(settings[1], [0, 1e5, "push", 0.01, 0.5])
+        self.assertEqual(settings[2], [0, 1e5, "wet", 0.02])
+        self.assertEqual(settings[4], [0, 2e5, "push", 0.01])
+        self.assertEqual(settings[15], [0.5, 2e5, "wet", 0.02, 0.5])
+
+    def test_samples_fill_the_box_by_seed(self):
+        def sample(method, seed):
+            points = self.expand(sample={"method": method, "count": 32, "seed": seed, "axes": {
+                "/body/initial_saturation": [0.25, 0.75], "/material/youngs_modulus_Pa": [1e5, 3e5]}})
+            return [list(point["settings"].values()) for point in points]
+
+        for method in ("random", "halton"):
+            values = sample(method, 1)
+            self.assertEqual(values, sample(method, 1))
+            self.assertNotEqual(values, sample(method, 2))
+            self.assertTrue(all(0.25 <= s < 0.75 and 1e5 <= e < 3e5 for s, e in values))
+        # In base 2, 32 points of the van der Corput sequence, shifted or not, have one in each 16th or two.
+        sixteenths = [int((s - 0.25) / 0.5 * 16) for s, _ in values]
+        self.assertEqual(set(sixteenths), set(range(16)))
+
+    def test_bad_sweeps_are_refused_by_name(self):
+        for axes, words in (({"grid": {"material": [1]}}, "is no JSON pointer"),
+                            ({"zip": {"/a": [1], "/b": [1, 2]}}, "2 values, the first axis 1"),
+                            ({"grid": {"/water/porosty": [0.3]}}, "porosty"),
+                            ({"grids": {}}, "did you mean grid?"),
+                            ({"grid": {f"/{k}": list(range(100)) for k in range(4)}}, "more than a million")):
+            (self.folder / "sweep.json").write_text(json.dumps({"scenario": os.path.relpath(BASE, self.folder), **axes}))
+            self.assertIn(words, self.call("expand", "sweep.json", "-o", self.points, expected=2))
+        self.points.write_text('{"index": 1, "id": "", "scenario": "x", "settings": {}}\n')
+        self.assertIn("points.jsonl, line 1: /index", self.call("run", self.points, "--index", 0, expected=2))
+
+    def test_a_point_is_done_only_when_its_file_says_so(self):
+        self.expand_and_run()
+        files = [self.folder / "points" / f"{i:06d}.h5" for i in range(6)]
+        self.assertEqual(self.call("missing", self.points), "")
+        before = [file.stat().st_mtime_ns for file in files]
+        self.call("run", self.points, "--block", "6", SLURM_ARRAY_TASK_ID="0")
+        self.assertEqual([file.stat().st_mtime_ns for file in files], before)
+        table = self.collect()
+        self.assertEqual([row["outcome"] for row in table], ["done"] * 6)
+        self.assertEqual([float(row["material.youngs_modulus_Pa"]) for row in table], [5e4, 1e5, 2e5] * 2)
+        forces = [float(row["peak_force_N"]) for row in table]
+        self.assertTrue(forces[0] < forces[1] < forces[2], forces)
+        self.assertTrue(all(abs(float(row["water_error_kg"])) < 1e-15 for row in table))
+        self.assertAlmostEqual(float(table[5]["final_saturation"]), 0.9, delta=1e-9)
+        files[1].unlink()
+        files[2].write_bytes(files[2].read_bytes()[:5000])
+        shutil.copy(files[0], files[3])
+        self.assertEqual(self.call("missing", self.points), "1-3")
+        self.assertEqual(self.call("missing", self.points, "--block", 2), "0-1")
+        reasons = [row["reason"] for row in self.collect()]
+        self.assertEqual(reasons[1], "not run")
+        self.assertIn("does not open", reasons[2])
+        self.assertEqual(reasons[3], "its file is of another run")
+        for block in (0, 1):
+            self.call("run", self.points, "--block", 2, "--index", block)
+        self.assertEqual(self.collect(), table)
+
+    def test_failed_and_refused_points_are_named_with_their_reason(self):
+        self.expand(list=[{"/trace/duration_s": 0.01}, {"/dynamics/min_volume_ratio": 0.9999},
+                          {"/trace/device_to_world/translation_m": [0, 0, -0.03]}])
+        self.call("run", self.points, "--block", 3, "--index", 0)
+        self.assertEqual(self.call("missing", self.points), "")
+        table = self.collect()
+        self.assertEqual([row["outcome"] for row in table], ["done", "failed", "failed"])
+        self.assertIn("volume ratio", table[1]["reason"])
+        self.assertIn("the tool starts in or across the body", table[2]["reason"])
+        self.assertEqual(table[1]["peak_force_N"], "")
+
+    def test_gnu_parallel_gives_the_table_of_a_serial_run(self):
+        if not shutil.which("parallel"):
+            self.skipTest("needs GNU parallel (package parallel)")
+        self.expand_and_run()
+        self.collect("serial")
+        shutil.rmtree(self.folder / "points")
+        subprocess.run(["parallel", "--will-cite", "-j2", ARGIL, "sweep", "run", self.points, "--index", "{}", ":::",
+                        *map(str, range(6))], cwd=self.folder, check=True)
+        self.collect("parallel")
+        for suffix in (".csv", ".h5"):
+            self.assertEqual((self.folder / f"serial{suffix}").read_bytes(),
+                             (self.folder / f"parallel{suffix}").read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()
