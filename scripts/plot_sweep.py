@@ -29,7 +29,7 @@ def main():
     rows = [row for row in read_table(options.table) if row["outcome"] == "done"]
     names = list(rows[0])
     settings = [name for name in names[2:names.index("peak_force_N")] if name != options.x]
-    figure, axes = plt.subplots(figsize=(120 * MILLIMETRES, 85 * MILLIMETRES))
+    figure, axes = plt.subplots(figsize=(150 * MILLIMETRES, 85 * MILLIMETRES))
     first = sorted({row[settings[0]] for row in rows}, key=float) if settings else [""]
     second = sorted({row[settings[1]] for row in rows}, key=float) if len(settings) > 1 else [""]
     for i, one in enumerate(first):
@@ -46,7 +46,7 @@ def main():
     axes.set_xlabel(LABELS.get(options.x, options.x))
     axes.set_ylabel(LABELS.get(options.y, options.y))
     axes.set_ylim(bottom=0.0)
-    axes.legend()
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     ap.save(figure, options.output or options.table.with_suffix(""))
 
 

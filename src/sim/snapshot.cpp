@@ -44,6 +44,7 @@ void Simulation::exchange_state(Archive& archive) {
   exchange_water_state(archive);
   archive.number("ledger/plastic_dissipation", m_state.plastic_dissipation);
   archive.number("ledger/contact_work", m_state.contact_work);
+  archive.number("ledger/energy_given", m_state.energy_given);
   archive.number("ledger/port_energy", m_state.port_energy);
   archive.number("ledger/passivity_energy", m_state.passivity_energy);
 }

@@ -124,7 +124,9 @@ def kill_two(slurm, job, points):
             if index in hit or not part.exists() or len(hit) == 2:
                 continue
             name = "KILL" if not hit else "TERM"
-            subprocess.run(["scancel", "--batch", f"--signal={name}", f"{job}_{index}"], check=True)
+            sent = subprocess.run(["scancel", "--batch", f"--signal={name}", f"{job}_{index}"], capture_output=True)
+            if sent.returncode != 0:  # it has just ended
+                continue
             print(f"SIG{name} to task {index}", flush=True)
             hit.append(index)
         time.sleep(0.05)
@@ -164,15 +166,20 @@ def main():
         print(sweep("collect", points, "-o", folder / "slurm"))
         if sweep("missing", points):
             raise RuntimeError("points are missing at the end")
-        shutil.rmtree(folder / "points")
-        sweep("run", points, "--index", 0, "--block", count)
-        sweep("collect", points, "-o", folder / "serial")
-        for suffix in (".csv", ".h5"):
-            if (folder / f"slurm{suffix}").read_bytes() != (folder / f"serial{suffix}").read_bytes():
-                raise RuntimeError(f"the tables differ: {suffix}")
+        engines = {"serial": [argil, "sweep", "run", points, "--index", "0", "--block", str(count)]}
+        if shutil.which("parallel"):
+            engines["parallel"] = ["parallel", "--will-cite", "-j2", argil, "sweep", "run", points, "--index", "{}", ":::",
+                                   *map(str, range(count))]
+        for name, command in engines.items():
+            shutil.rmtree(folder / "points")
+            subprocess.run(command, check=True)
+            sweep("collect", points, "-o", folder / name)
+            for suffix in (".csv", ".h5"):
+                if (folder / f"slurm{suffix}").read_bytes() != (folder / f"{name}{suffix}").read_bytes():
+                    raise RuntimeError(f"the tables differ: {name}{suffix}")
         if options.keep:
             shutil.copy(folder / "slurm.csv", options.keep / "dino_sweep.csv")
-        print(f"{count} points: the table of the job array is that of the serial run, byte for byte")
+        print(f"{count} points: the table of the job array is, byte for byte, that of {' and '.join(engines)} runs")
     return 0
 
 
