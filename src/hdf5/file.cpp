@@ -22,18 +22,6 @@ Handle file_handle(hid_t id) {
   return {id, [](Id i) -> int { return H5Fclose(i); }};
 }
 
-// Metadata leaves the cache at flush and close only, so that little is held back before.
-bool keep_metadata_until_flush(hid_t access) {
-  H5AC_cache_config_t cache;
-  cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
-  if (H5Pget_mdc_config(access, &cache) < 0) return false;
-  cache.evictions_enabled = false;
-  cache.incr_mode = H5C_incr__off;
-  cache.flash_incr_mode = H5C_flash_incr__off;
-  cache.decr_mode = H5C_decr__off;
-  return H5Pset_mdc_config(access, &cache) >= 0;
-}
-
 std::string find_real_name(const std::string& name) {
   std::error_code ignored;  // a name that cannot be resolved fails later, with the system's reason
   const std::filesystem::path target = std::filesystem::weakly_canonical(name, ignored);
@@ -45,8 +33,7 @@ Handle access_properties(const std::string& name, const std::string& journalled)
   Handle access = property(H5Pcreate(H5P_FILE_ACCESS));
   // Earliest formats: superblock 0 has no "open for writing" mark, so a killed run's file opens without
   // repair.
-  bool ok = H5Pset_libver_bounds(access.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V110) >= 0 &&
-            keep_metadata_until_flush(access.id());
+  bool ok = H5Pset_libver_bounds(access.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V110) >= 0;
 #if H5_VERSION_GE(1, 10, 7)
   ok = ok &&
        H5Pset_file_locking(access.id(), true, true) >= 0;  // true, true: go on where the system has no locks
