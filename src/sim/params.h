@@ -50,7 +50,7 @@ struct Params {
   /// is then stopped and not solved for until something acts. 0: only a body that has not moved yet.
   double rest_speed = 0.0;
   /// Kinetic energy over the energy that hand, loads and supports gave the body since the start, each push
-  /// counted and no recoil, beyond which the run stops. 0: no limit.
+  /// counted and no recoil, beyond which the run stops. 0: no limit; none where clay swells.
   double energy_limit = 10.0;
   int threads = 1;
 };

@@ -25,7 +25,8 @@ struct Body {
   embed::Embedding skin_embedding;
 };
 
-/// All that a tick changes, grouped by the stage that writes it. A checkpoint holds every field (snapshot.cpp).
+/// All that a tick changes, grouped by the stage that writes it. A checkpoint holds every field
+/// (snapshot.cpp).
 struct State {
   // device
   contact::Pose tool;  ///< at the end of the last tick

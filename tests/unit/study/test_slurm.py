@@ -113,23 +113,30 @@ class Slurm:
 
 
 def kill_two(slurm, job, points):
-    """Sends SIGKILL to one task and SIGTERM to another as soon as each has a file. Returns their indices."""
-    hit = []
+    """Sends SIGKILL to a task and SIGTERM to another, each while it writes its file, and waits until it is gone; one that
+    had just ended does not count. Returns their indices."""
+    def running():
+        return slurm.ask("squeue", "-h", "-j", job, "-t", "R", "-o", "%K").split()
+
+    hit, tried = [], set()
     while len(hit) < 2:
-        running = slurm.ask("squeue", "-h", "-j", job, "-t", "R", "-o", "%K").split()
-        if not running and not slurm.ask("squeue", "-h", "-j", job).strip():
+        fresh = [index for index in running() if index not in tried]
+        if not fresh and not slurm.ask("squeue", "-h", "-j", job).strip():
             raise RuntimeError("the array ended before two tasks could be killed")
-        for index in running:
-            part = points.with_suffix("") / f"{int(index):06d}.part.h5"
-            if index in hit or not part.exists() or len(hit) == 2:
+        for index in fresh:
+            result = points.with_suffix("") / f"{int(index):06d}.h5"
+            if not result.with_suffix(".part.h5").exists():
                 continue
-            name = "KILL" if not hit else "TERM"
-            sent = subprocess.run(["scancel", "--batch", f"--signal={name}", f"{job}_{index}"], capture_output=True)
-            if sent.returncode != 0:  # it has just ended
-                continue
-            print(f"SIG{name} to task {index}", flush=True)
-            hit.append(index)
-        time.sleep(0.05)
+            tried.add(index)
+            name = "TERM" if hit else "KILL"
+            subprocess.run(["scancel", "--batch", f"--signal={name}", f"{job}_{index}"], capture_output=True)
+            while index in running():
+                time.sleep(0.05)
+            if not result.exists():
+                print(f"SIG{name} to task {index}", flush=True)
+                hit.append(index)
+                break
+        time.sleep(0.02)
     return hit
 
 
@@ -156,12 +163,13 @@ def main():
         count = len(points.read_text().splitlines())
         with Slurm(folder) as slurm:
             job = slurm.submit(sweep("missing", points), points, argil)
-            kill_two(slurm, job, points)
+            hit = kill_two(slurm, job, points)
             slurm.finish(job)
             again = sweep("missing", points)
             print(f"missing after job {job}: {again}")
-            if not again:
-                raise RuntimeError("nothing is missing after two kills")
+            spans = [span.split("-") for span in again.split(",")]
+            if {n for span in spans for n in range(int(span[0]), int(span[-1]) + 1)} != set(map(int, hit)):
+                raise RuntimeError(f"tasks {hit} were killed")
             slurm.finish(slurm.submit(again, points, argil))
         print(sweep("collect", points, "-o", folder / "slurm"))
         if sweep("missing", points):
