@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -20,17 +21,49 @@ namespace argil {
 /// None is returned by value: how that is done depends on the processor.
 inline constexpr int kLanes = 8;
 using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
-using LaneMask = decltype(Lanes{} < Lanes{});
-template <class Real>
-using MaskOf = decltype(Real{} < Real{});
+/// Three numbers of a 3-vector; the fourth is whatever follows.
+using Quad = double __attribute__((vector_size(32)));
 
-ARGIL_INLINE bool any(bool mask) {
-  return mask;
+/// The numbers from any address on.
+ARGIL_INLINE const auto& lanes_at(const double* from) {
+  using Anywhere = double __attribute__((vector_size(kLanes * sizeof(double)), aligned(8), may_alias));
+  return *reinterpret_cast<const Anywhere*>(from);
 }
-ARGIL_INLINE bool any(const LaneMask& mask) {
-  bool found = false;
-  for (int i = 0; i < kLanes; ++i) found |= mask[i] != 0;
-  return found;
+ARGIL_INLINE const auto& quad_at(const double* from) {
+  using Anywhere = double __attribute__((vector_size(32), aligned(8), may_alias));
+  return *reinterpret_cast<const Anywhere*>(from);
+}
+
+/// Turns eight rows of eight numbers into eight columns.
+ARGIL_INLINE void transpose(Lanes (&a)[kLanes]) {
+  static_assert(kLanes == 8);
+  Lanes b[8], c[8];
+  for (int i = 0; i < 8; i += 2) {
+    b[i] = __builtin_shufflevector(a[i], a[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    b[i + 1] = __builtin_shufflevector(a[i], a[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (int i = 0; i < 8; i += 4)
+    for (int k = i; k < i + 2; ++k) {
+      c[k] = __builtin_shufflevector(b[k], b[k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      c[k + 2] = __builtin_shufflevector(b[k], b[k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int k = 0; k < 4; ++k) {
+    a[k] = __builtin_shufflevector(c[k], c[k + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    a[k + 4] = __builtin_shufflevector(c[k], c[k + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+/// Is any of them other than zero?
+ARGIL_INLINE bool any(double mask) {
+  return mask != 0.0;
+}
+ARGIL_INLINE bool any(const Lanes& mask) {
+  using Bits = long long __attribute__((vector_size(sizeof(Lanes))));
+  using Half = long long __attribute__((vector_size(sizeof(Lanes) / 2)));
+  const Bits bits = reinterpret_cast<const Bits&>(mask);  // a mask has no −0
+  const Half half =
+      __builtin_shufflevector(bits, bits, 0, 1, 2, 3) | __builtin_shufflevector(bits, bits, 4, 5, 6, 7);
+  return (half[0] | half[1] | half[2] | half[3]) != 0;
 }
 
 ARGIL_INLINE void set_root(double& root, double a) {
@@ -38,6 +71,90 @@ ARGIL_INLINE void set_root(double& root, double a) {
 }
 ARGIL_INLINE void set_root(Lanes& root, const Lanes& a) {
   for (int i = 0; i < kLanes; ++i) root[i] = __builtin_sqrt(a[i]);
+}
+
+/// The first eight of `Count` numbers of each of the items begin … last; the last one fills the lanes that
+/// are left over.
+template <int Count>
+ARGIL_INLINE void read_eight(const double* from, std::ptrdiff_t begin, std::ptrdiff_t last,
+                             Lanes (&rows)[8]) {
+#pragma GCC unroll 8
+  for (int lane = 0; lane < kLanes; ++lane)
+    rows[lane] = lanes_at(from + Count * std::min(begin + lane, last));
+  transpose(rows);
+}
+
+/// Reads `Count` numbers of each of the items begin … last; the last one fills the lanes that are left over.
+template <int Count>
+ARGIL_INLINE void read_lanes(const double* from, std::ptrdiff_t begin, std::ptrdiff_t last, Lanes* to) {
+  constexpr int kEights = Count / kLanes * kLanes;
+  Lanes rows[8];
+  if constexpr (Count >= kLanes) {
+    read_eight<Count>(from, begin, last, rows);
+    for (int k = 0; k < kLanes; ++k) to[k] = rows[k];
+  }
+  if constexpr (Count > kLanes + 2) {  // the last eight of them, some of which are known
+    read_eight<Count>(from + Count - kLanes, begin, last, rows);
+    for (int k = kEights; k < Count; ++k) to[k] = rows[k - Count + kLanes];
+  } else if constexpr (Count == 6) {
+    // Eight are read that end with the item's six; of the first item, eight that begin with them.
+    if (begin < last) {
+      const Lanes first = lanes_at(from + Count * begin);
+      rows[0] = __builtin_shufflevector(first, first, 6, 7, 0, 1, 2, 3, 4, 5);
+      for (int lane = 1; lane < kLanes; ++lane)
+        rows[lane] = lanes_at(from + Count * std::min(begin + lane, last) - 2);
+      transpose(rows);
+      for (int k = 0; k < Count; ++k) to[k] = rows[k + 2];
+      return;
+    }
+  }
+  if constexpr (Count <= kLanes + 2)
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const double* item = from + Count * std::min(begin + lane, last);
+      for (int k = kEights; k < Count; ++k) to[k][lane] = item[k];
+    }
+}
+
+/// Turns `from` into rows and stores the first `Width` numbers of each at `to`, `stride` apart.
+template <int Width>
+ARGIL_INLINE void write_rows(const Lanes (&from)[8], std::ptrdiff_t stride, double* to) {
+  using LanesAt = double __attribute__((vector_size(sizeof(Lanes)), aligned(8), may_alias));
+  using QuadAt = double __attribute__((vector_size(sizeof(Quad)), aligned(8), may_alias));
+  static_assert(Width == kLanes || Width == 6);
+  Lanes rows[8] = {from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]};
+  transpose(rows);
+#pragma GCC unroll 8
+  for (int lane = 0; lane < kLanes; ++lane) {
+    double* row = to + stride * lane;
+    if constexpr (Width == kLanes) {
+      *reinterpret_cast<LanesAt*>(row) = rows[lane];
+    } else {
+      *reinterpret_cast<QuadAt*>(row) = __builtin_shufflevector(rows[lane], rows[lane], 0, 1, 2, 3);
+      row[4] = rows[lane][4];
+      row[5] = rows[lane][5];
+    }
+  }
+}
+
+/// Writes `Count` numbers of each of the items begin … end−1, at most kLanes of them, and nothing beside.
+template <int Count>
+ARGIL_INLINE void write_lanes(const Lanes* from, std::ptrdiff_t begin, std::ptrdiff_t end, double* to) {
+  double* first = to + Count * begin;
+  if (Count > 2 && end - begin == kLanes) {
+    Lanes eight[8];
+    for (int k = 0; k < kLanes; ++k) eight[k] = from[k < Count ? k : 0];
+    write_rows<Count == 6 ? 6 : kLanes>(eight, Count, first);
+    if constexpr (Count > kLanes + 2) {  // the last eight, some of them again
+      for (int k = 0; k < kLanes; ++k) eight[k] = from[Count - kLanes + k];
+      write_rows<kLanes>(eight, Count, first + Count - kLanes);
+    } else if constexpr (Count > kLanes) {
+      for (int lane = 0; lane < kLanes; ++lane)
+        for (int k = kLanes; k < Count; ++k) first[Count * lane + k] = from[k][lane];
+    }
+    return;
+  }
+  for (int lane = 0; lane < static_cast<int>(end - begin); ++lane)
+    for (int k = 0; k < Count; ++k) first[Count * lane + k] = from[k][lane];
 }
 
 /// 3×3, column by column.

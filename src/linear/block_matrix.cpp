@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "base/parallel.h"
+#include "base/lanes.h"
 
 namespace argil::linear {
 
@@ -18,7 +18,7 @@ BlockMatrix make_block_matrix(const std::vector<std::vector<int>>& neighbours) {
     matrix.column.insert(matrix.column.end(), list.begin(), list.end());
     matrix.row_begin.push_back(static_cast<int>(matrix.column.size()));
   }
-  matrix.values.setZero(3, 3 * static_cast<Eigen::Index>(matrix.column.size()));
+  matrix.values.setZero(3, 3 * static_cast<Eigen::Index>(matrix.column.size()) + 1);
   return matrix;
 }
 
@@ -29,25 +29,42 @@ int find_block(const BlockMatrix& matrix, int row, int column) {
   return found != end && *found == column ? static_cast<int>(found - matrix.column.begin()) : -1;
 }
 
-void multiply(const BlockMatrix& matrix, const Points& x, Points& y, int threads) {
-  const double* values = matrix.values.data();
-  const double* in = x.data();
-  double* out = y.data();
-  parallel_for(matrix.num_rows(), threads, [&](std::ptrdiff_t row) {
-    const auto r = static_cast<std::size_t>(row);
-    double y0 = 0.0;
-    double y1 = 0.0;
-    double y2 = 0.0;
-    for (int b = matrix.row_begin[r]; b < matrix.row_begin[r + 1]; ++b) {
-      const double* a = values + 9 * static_cast<std::ptrdiff_t>(b);
-      const double* p = in + 3 * static_cast<std::ptrdiff_t>(matrix.column[static_cast<std::size_t>(b)]);
-      y0 += a[0] * p[0] + a[3] * p[1] + a[6] * p[2];
-      y1 += a[1] * p[0] + a[4] * p[1] + a[7] * p[2];
-      y2 += a[2] * p[0] + a[5] * p[1] + a[8] * p[2];
+namespace {
+
+/// Rows begin … end−1 of y = A x; returns their share of x·y. Blocks of even and odd places apart: no sum
+/// waits for the one before it.
+ARGIL_EVERY_PROCESSOR double multiply_rows(const BlockMatrix& matrix, const double* x, std::ptrdiff_t begin,
+                                           std::ptrdiff_t end, double* y) {
+  const int* column = matrix.column.data();
+  Quad dot = {};
+  for (std::ptrdiff_t row = begin; row < end; ++row) {
+    int b = matrix.row_begin.data()[row];
+    const int last = matrix.row_begin.data()[row + 1];
+    const double* a = matrix.values.data() + 9 * static_cast<std::ptrdiff_t>(b);
+    Quad even[3] = {}, odd[3] = {};
+    const auto add = [&](Quad * sum) __attribute__((always_inline)) {
+      const double* p = x + 3 * static_cast<std::ptrdiff_t>(column[b]);
+      for (int k = 0; k < 3; ++k) sum[k] += quad_at(a + 3 * k) * p[k];
+      a += 9;
+      ++b;
+    };
+    while (b + 1 < last) {
+      add(even);
+      add(odd);
     }
-    out[3 * row] = y0;
-    out[3 * row + 1] = y1;
-    out[3 * row + 2] = y2;
+    if (b < last) add(even);
+    const Quad sum = (even[0] + odd[0]) + (even[1] + odd[1]) + (even[2] + odd[2]);
+    for (int k = 0; k < 3; ++k) y[3 * row + k] = sum[k];
+    dot += sum * Quad{x[3 * row], x[3 * row + 1], x[3 * row + 2], 0.0};
+  }
+  return dot[0] + dot[1] + dot[2];
+}
+
+}  // namespace
+
+double multiply(const BlockMatrix& matrix, const Points& x, Points& y, OrderedRuns& rows) {
+  return rows.sum(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    return multiply_rows(matrix, x.data(), begin, end, y.data());
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/ordered_runs.h"
 #include "base/types.h"
 
 namespace argil::linear {
@@ -12,7 +13,8 @@ struct BlockMatrix {
   std::vector<int> row_begin;  ///< rows + 1
   std::vector<int> column;     ///< block column of each stored block, increasing within a row
   std::vector<int> diagonal;   ///< place of each row's diagonal block
-  Eigen::Matrix3Xd values;     ///< 3×3 blocks side by side, block b = columns 3b … 3b+2
+  Eigen::Matrix3Xd values;  ///< 3×3 blocks side by side, block b = columns 3b … 3b+2; one column more, so
+                            ///< that columns may be read four numbers at a time
 
   int num_rows() const { return static_cast<int>(row_begin.size()) - 1; }
   int num_blocks() const { return static_cast<int>(column.size()); }
@@ -26,7 +28,7 @@ BlockMatrix make_block_matrix(const std::vector<std::vector<int>>& neighbours);
 /// Place of block (row, column), or −1 when it is not stored. O(log row length).
 int find_block(const BlockMatrix& matrix, int row, int column);
 
-/// y = A x, rows shared among `threads`; bits do not depend on it.
-void multiply(const BlockMatrix& matrix, const Points& x, Points& y, int threads);
+/// y = A x; returns x·y.
+double multiply(const BlockMatrix& matrix, const Points& x, Points& y, OrderedRuns& rows);
 
 }  // namespace argil::linear

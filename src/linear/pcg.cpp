@@ -1,36 +1,67 @@
 #include "linear/pcg.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "base/ordered_sum.h"
+#include "linear/vectors.h"
 
 namespace argil::linear {
 namespace {
 
-double dot(const Points& a, const Points& b) {
-  const double* p = a.data();
-  const double* q = b.data();
-  return ordered_sum(a.size(), [=](std::ptrdiff_t i) { return p[i] * q[i]; });
+Mat3 invert(const Mat3& block) {
+  const Mat3 cofactor_transposed =
+      (Mat3() << block.col(1).cross(block.col(2)).transpose(), block.col(2).cross(block.col(0)).transpose(),
+       block.col(0).cross(block.col(1)).transpose())
+          .finished();
+  return cofactor_transposed / block.col(0).dot(block.col(1).cross(block.col(2)));
 }
 
 }  // namespace
 
 void BlockJacobi::update(const BlockMatrix& matrix) {
-  m_inverse.resize(3, 3 * static_cast<Eigen::Index>(matrix.num_rows()));
-  for (int row = 0; row < matrix.num_rows(); ++row) {
-    const Mat3 block = matrix.block(matrix.diagonal[static_cast<std::size_t>(row)]);
-    const Mat3 cofactor_transposed =
-        (Mat3() << block.col(1).cross(block.col(2)).transpose(), block.col(2).cross(block.col(0)).transpose(),
-         block.col(0).cross(block.col(1)).transpose())
-            .finished();
-    m_inverse.middleCols<3>(3 * static_cast<Eigen::Index>(row)) =
-        cofactor_transposed / block.col(0).dot(block.col(1).cross(block.col(2)));
-  }
+  m_inverse.resize(3, 3 * static_cast<Eigen::Index>(matrix.num_rows()) + 1);
+  m_inverse.rightCols<1>().setZero();
+  m_rows.each(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t row = begin; row < end; ++row)
+      m_inverse.middleCols<3>(3 * row) = invert(matrix.block(matrix.diagonal[static_cast<std::size_t>(row)]));
+  });
 }
 
-void BlockJacobi::apply(const Points& r, Points& z) {
-  for (Eigen::Index i = 0; i < r.cols(); ++i) z.col(i).noalias() = m_inverse.middleCols<3>(3 * i) * r.col(i);
+double BlockJacobi::apply(const Points& r, Points& z) {
+  return m_rows.sum(r.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    return apply_blocks(m_inverse.data(), r.data(), begin, end, z.data());
+  });
+}
+
+double StaleCholesky::apply(const Points& r, Points& z) {
+  m_factor.solve(r, z);
+  return m_rows.sum(r.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    return compute_dot(r.data(), z.data(), begin, end);
+  });
+}
+
+double ConjugateGradients::compute_squares(const Points& a) {
+  return m_rows.sum(a.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    return compute_dot(a.data(), a.data(), begin, end);
+  });
+}
+
+/// r = b − w; returns r·r.
+double ConjugateGradients::set_residual(const Points& b) {
+  return m_rows.sum(b.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    m_r.middleCols(begin, end - begin) =
+        b.middleCols(begin, end - begin) - m_w.middleCols(begin, end - begin);
+    return compute_dot(m_r.data(), m_r.data(), begin, end);
+  });
+}
+
+/// p = z + β p, q = w + β q, x += α p, r −= α q; returns r·r.
+double ConjugateGradients::advance(double alpha, double beta, Points& x) {
+  const Iterate to{m_p.data(), m_q.data(), x.data(), m_r.data()};
+  return m_rows.sum(x.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    return linear::advance(alpha, beta, m_z.data(), m_w.data(), begin, end, to);
+  });
 }
 
 SolveReport ConjugateGradients::solve(Operator& matrix, Preconditioner& preconditioner, const Points& b,
@@ -39,39 +70,33 @@ SolveReport ConjugateGradients::solve(Operator& matrix, Preconditioner& precondi
   m_z.resize(3, b.cols());
   m_p.resize(3, b.cols());
   m_q.resize(3, b.cols());
-  const double b_norm = std::sqrt(dot(b, b));
+  m_w.resize(3, b.cols());
+  constexpr double kRounding = 1e-14;  // of ‖b‖
   SolveReport report;
-  if (b_norm == 0.0) {
-    x.setZero();
-    report.converged = true;
-    return report;
-  }
-  matrix.multiply(x, m_q);
-  m_r.noalias() = b - m_q;
-  report.relative_residual = std::sqrt(dot(m_r, m_r)) / b_norm;
-  double rz = 0.0;
+  matrix.multiply(x, m_w);
+  const double first = std::sqrt(set_residual(b));
+  const double rounding = kRounding * std::sqrt(compute_squares(b));
+  const double goal = std::max(tolerance * first, rounding);
+  double residual = first;
+  m_p.setZero();
+  m_q.setZero();
+  double rz = 1.0;
+  double curvature = 0.0;  // p·A p, by the recurrence that holds while directions are conjugate
   // Written so that a NaN residual leaves the loop as not converged.
-  while (report.relative_residual > tolerance && report.iterations < max_iterations) {
-    preconditioner.apply(m_r, m_z);
-    const double rz_next = dot(m_r, m_z);
-    if (report.iterations == 0)
-      m_p = m_z;
-    else
-      m_p = m_z + (rz_next / rz) * m_p;
-    rz = rz_next;
-    matrix.multiply(m_p, m_q);
-    const double curvature = dot(m_p, m_q);
+  while (residual > goal && report.iterations < max_iterations) {
+    const double rz_next = preconditioner.apply(m_r, m_z);
+    const double beta = rz_next / rz;
+    curvature = matrix.multiply(m_z, m_w) - beta * beta * curvature;
     if (curvature <= 0.0) {
       report.relative_residual = std::numeric_limits<double>::infinity();
       return report;
     }
-    const double alpha = rz / curvature;
-    x.noalias() += alpha * m_p;
-    m_r.noalias() -= alpha * m_q;
-    report.relative_residual = std::sqrt(dot(m_r, m_r)) / b_norm;
+    residual = std::sqrt(advance(rz_next / curvature, beta, x));
+    rz = rz_next;
     ++report.iterations;
   }
-  report.converged = report.relative_residual <= tolerance;
+  report.converged = residual <= goal;
+  report.relative_residual = first > rounding ? residual / first : 0.0;
   return report;
 }
 

@@ -1,74 +1,88 @@
 #pragma once
 
-#include <memory>
-
 #include "linear/block_matrix.h"
 #include "linear/cholesky.h"
+#include "linear/operator.h"
+#include "linear/short_blocks.h"
 
 namespace argil::linear {
 
-struct SolveReport {
-  bool converged = false;
-  int iterations = 0;              ///< 0: solved by a factor
-  double relative_residual = 0.0;  ///< ‖b − A x‖₂ / ‖b‖₂; of an iteration by its recurrence; infinite: A
-                                   ///< was seen not to be positive definite
-};
-
-/// A symmetric positive definite matrix by its product alone.
-class Operator {
- public:
-  virtual ~Operator() = default;
-  /// y = A x; y has the shape of x.
-  virtual void multiply(const Points& x, Points& y) = 0;
-};
-
-/// A stored matrix as an operator.
+/// A stored matrix as an operator. Bits do not depend on `threads`, here and below.
 class MatrixOperator final : public Operator {
  public:
-  MatrixOperator(const BlockMatrix& matrix, int threads) : m_matrix(matrix), m_threads(threads) {}
-  void multiply(const Points& x, Points& y) override { linear::multiply(m_matrix, x, y, m_threads); }
+  MatrixOperator(const BlockMatrix& matrix, int threads) : m_matrix(matrix), m_rows(threads) {}
+  double multiply(const Points& x, Points& y) override { return linear::multiply(m_matrix, x, y, m_rows); }
 
  private:
   const BlockMatrix& m_matrix;
-  int m_threads;
+  OrderedRuns m_rows;
+};
+
+/// The same in floats, which takes half the time.
+class RoundedOperator final : public Operator {
+ public:
+  explicit RoundedOperator(int threads) : m_rows(threads) {}
+  void update(const BlockMatrix& matrix) {  ///< which must outlive the products
+    m_pattern = &matrix;
+    m_blocks.update(matrix, m_rows);
+  }
+  double multiply(const Points& x, Points& y) override { return m_blocks.multiply(*m_pattern, x, y, m_rows); }
+
+ private:
+  const BlockMatrix* m_pattern = nullptr;
+  ShortBlocks m_blocks;
+  OrderedRuns m_rows;
 };
 
 /// Approximate inverse applied in every iteration of the conjugate gradients.
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
-  virtual void apply(const Points& r, Points& z) = 0;
+  /// z = M⁻¹ r; returns r·z.
+  virtual double apply(const Points& r, Points& z) = 0;
 };
 
 /// Inverses of the 3×3 diagonal blocks; the other blocks are not looked at.
 class BlockJacobi final : public Preconditioner {
  public:
+  explicit BlockJacobi(int threads) : m_rows(threads) {}
   void update(const BlockMatrix& matrix);
-  void apply(const Points& r, Points& z) override;
+  double apply(const Points& r, Points& z) override;
 
  private:
-  Eigen::Matrix3Xd m_inverse;
+  OrderedRuns m_rows;
+  Eigen::Matrix3Xd m_inverse;  // a column more than the blocks have, as in BlockMatrix
 };
 
 /// A Cholesky factor of an earlier, similar matrix.
 class StaleCholesky final : public Preconditioner {
  public:
-  explicit StaleCholesky(CholeskyFactor& factor) : m_factor(factor) {}
-  void apply(const Points& r, Points& z) override { m_factor.solve(r, z); }
+  StaleCholesky(CholeskyFactor& factor, OrderedRuns& rows) : m_factor(factor), m_rows(rows) {}
+  double apply(const Points& r, Points& z) override;
 
  private:
   CholeskyFactor& m_factor;
+  OrderedRuns& m_rows;
 };
 
-/// Preconditioned conjugate gradients [Hestenes & Stiefel 1952]. Starts from the x given, stops at
-/// ‖r‖ ≤ tolerance·‖b‖. Sums run in a fixed order; no allocation after the first call of one size.
+/// Preconditioned conjugate gradients [Hestenes & Stiefel 1952; Chronopoulos & Gear 1989]. Starts from the x
+/// given, stops at ‖r‖ ≤ tolerance·‖r₀‖ with r₀ of that x, or where ‖r‖ is what rounding leaves of b: a good
+/// guess makes the solution better, not the work less, and what is small beside b is not lost. No allocation
+/// after the first call of one size.
 class ConjugateGradients {
  public:
+  explicit ConjugateGradients(int threads) : m_rows(threads) {}
+
   SolveReport solve(Operator& matrix, Preconditioner& preconditioner, const Points& b, double tolerance,
                     int max_iterations, Points& x);
 
  private:
-  Points m_r, m_z, m_p, m_q;
+  double set_residual(const Points& b);
+  double advance(double alpha, double beta, Points& x);
+  double compute_squares(const Points& a);
+
+  OrderedRuns m_rows;
+  Points m_r, m_z, m_w, m_p, m_q;
 };
 
 }  // namespace argil::linear

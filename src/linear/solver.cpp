@@ -1,7 +1,10 @@
 #include "linear/solver.h"
 
+#include <cmath>
 #include <limits>
 #include <optional>
+
+#include "linear/pcg.h"
 
 namespace argil::linear {
 namespace {
@@ -68,14 +71,43 @@ class DirectSolver final : public Solver {
   Points m_work;
 };
 
+/// Conjugate gradients over the diagonal blocks. A matrix that is stored is multiplied in floats where the
+/// tolerance leaves room for their rounding.
+class JacobiIteration {
+ public:
+  JacobiIteration(const SolverParams& params, int threads)
+      : m_tolerance(params.tolerance),
+        m_is_rounded(params.tolerance >= kRoomForFloats && params.kind != SolverKind::pcg_matrix_free),
+        m_rounded(threads),
+        m_jacobi(threads),
+        m_iteration(threads) {}
+
+  SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, int max_iterations,
+                    Points& x) {
+    m_jacobi.update(matrix);
+    const double size = b.norm();
+    if (!m_is_rounded || !(size > kSmallest && size < kLargest))
+      return m_iteration.solve(product, m_jacobi, b, m_tolerance, max_iterations, x);
+    m_rounded.update(matrix);
+    return m_iteration.solve(m_rounded, m_jacobi, b, m_tolerance, max_iterations, x);
+  }
+
+ private:
+  static constexpr double kRoomForFloats = 1e-4;
+  static constexpr double kSmallest = 1e-10, kLargest = 1e10;  // of ‖b‖: far from where floats end
+  double m_tolerance;
+  bool m_is_rounded;
+  RoundedOperator m_rounded;
+  BlockJacobi m_jacobi;
+  ConjugateGradients m_iteration;
+};
+
 class JacobiSolver final : public Solver {
  public:
-  explicit JacobiSolver(const SolverParams& params) : m_params(params) {}
+  JacobiSolver(const SolverParams& params, int threads) : m_params(params), m_iteration(params, threads) {}
 
   SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) override {
-    m_jacobi.update(matrix);
-    const SolveReport report =
-        m_iteration.solve(product, m_jacobi, b, m_params.tolerance, m_params.max_iterations, x);
+    const SolveReport report = m_iteration.solve(matrix, product, b, m_params.max_iterations, x);
     ++m_cost.solves;
     m_cost.iterations += report.iterations;
     m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
@@ -84,21 +116,35 @@ class JacobiSolver final : public Solver {
 
  private:
   SolverParams m_params;
-  BlockJacobi m_jacobi;
-  ConjugateGradients m_iteration;
+  JacobiIteration m_iteration;
 };
 
 /// The factor of an earlier matrix preconditions; it is renewed when the last solve with it was slow, for
-/// then the matrix has moved away from it, and at once when a solve with it fails.
+/// then the matrix has moved away from it, and at once when a solve with it fails. `pcg` does without a
+/// factor until a solve is long: below that, its triangular solves cost more than they save.
 class KeptFactorSolver final : public Solver {
  public:
-  explicit KeptFactorSolver(const SolverParams& params) : m_params(params) {}
+  KeptFactorSolver(const SolverParams& params, int threads)
+      : m_params(params),
+        m_rows(threads),
+        m_jacobi(params, threads),
+        m_iteration(threads),
+        m_has_factor(params.kind == SolverKind::pcg_cholesky) {}
 
   SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) override {
+    m_guess = x;
+    ++m_cost.solves;
+    if (!m_has_factor) {
+      const SolveReport report = m_jacobi.solve(matrix, product, b, m_params.jacobi_iterations, x);
+      m_cost.iterations += report.iterations;
+      m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
+      if (report.converged || std::isinf(report.relative_residual)) return report;
+      m_has_factor = true;
+      x = m_guess;
+    }
     const bool is_slow = m_last_iterations > m_params.refactor_iterations;
     if ((!m_is_valid || is_slow) && !factorise(matrix)) return {false, 0, kNotPositive};
     const bool was_fresh = m_is_fresh;
-    m_guess = x;
     SolveReport report = iterate(product, b, x);
     if (!report.converged && !was_fresh) {
       if (!factorise(matrix)) return {false, 0, kNotPositive};
@@ -107,13 +153,13 @@ class KeptFactorSolver final : public Solver {
     }
     m_cost.multiplications +=
         (report.iterations + 1.0) * (count_entries(matrix) + 2.0 * m_factor->num_entries());
-    ++m_cost.solves;
     m_cost.iterations += report.iterations;
     return report;
   }
 
   void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
     Solver::exchange_state(archive, prefix, pattern);
+    archive.number(prefix + "has_factor", m_has_factor);
     archive.number(prefix + "last_iterations", m_last_iterations);
     bool is_fresh = m_is_fresh;
     archive.number(prefix + "is_fresh", is_fresh);
@@ -139,7 +185,7 @@ class KeptFactorSolver final : public Solver {
     return m_is_valid;
   }
   SolveReport iterate(Operator& product, const Points& b, Points& x) {
-    StaleCholesky kept(*m_factor);
+    StaleCholesky kept(*m_factor, m_rows);
     const SolveReport report =
         m_iteration.solve(product, kept, b, m_params.tolerance, m_params.max_iterations, x);
     m_last_iterations = report.iterations;
@@ -148,10 +194,13 @@ class KeptFactorSolver final : public Solver {
   }
 
   SolverParams m_params;
+  OrderedRuns m_rows;
+  JacobiIteration m_jacobi;
   std::optional<CholeskyFactor> m_factor;
   Eigen::Matrix3Xd m_factorised;  // values that the factor stands for, for a checkpoint
   ConjugateGradients m_iteration;
   Points m_guess;
+  bool m_has_factor;  // or does without as yet
   bool m_is_valid = false;
   bool m_is_fresh = false;
   int m_last_iterations = 0;
@@ -171,7 +220,7 @@ bool Solver::exchange_factor(Archive& archive, const std::string& prefix, Eigen:
   return archive.is_restoring() && factorised.cols() > 0;
 }
 
-std::unique_ptr<Solver> make_solver(const SolverParams& params) {
+std::unique_ptr<Solver> make_solver(const SolverParams& params, int threads) {
   switch (params.kind) {
     case SolverKind::cholesky:
       return std::make_unique<DirectSolver>(FactorKind::simplicial);
@@ -179,11 +228,12 @@ std::unique_ptr<Solver> make_solver(const SolverParams& params) {
       return std::make_unique<DirectSolver>(FactorKind::supernodal);
     case SolverKind::pcg_jacobi:
     case SolverKind::pcg_matrix_free:
-      return std::make_unique<JacobiSolver>(params);
+      return std::make_unique<JacobiSolver>(params, threads);
+    case SolverKind::pcg:
     case SolverKind::pcg_cholesky:
       break;
   }
-  return std::make_unique<KeptFactorSolver>(params);
+  return std::make_unique<KeptFactorSolver>(params, threads);
 }
 
 }  // namespace argil::linear

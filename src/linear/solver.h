@@ -3,11 +3,13 @@
 #include <memory>
 
 #include "base/archive.h"
-#include "linear/pcg.h"
+#include "linear/block_matrix.h"
+#include "linear/operator.h"
 
 namespace argil::linear {
 
 enum class SolverKind {
+  pcg,              ///< pcg_jacobi while it takes few iterations, pcg_cholesky from the first long solve on
   pcg_cholesky,     ///< conjugate gradients preconditioned by a kept simplicial factor
   pcg_jacobi,       ///< conjugate gradients preconditioned by the 3×3 diagonal blocks
   pcg_matrix_free,  ///< the same; the matrix holds its diagonal blocks only and the operator multiplies
@@ -16,9 +18,10 @@ enum class SolverKind {
 };
 
 struct SolverParams {
-  SolverKind kind = SolverKind::pcg_cholesky;
-  double tolerance = 1e-8;       ///< relative residual at which an iteration stops
+  SolverKind kind = SolverKind::pcg;
+  double tolerance = 1e-3;       ///< residual over that of the first guess at which an iteration stops
   int max_iterations = 500;      ///< of one solve
+  int jacobi_iterations = 150;   ///< pcg: a solve that needs more brings in the factor
   int refactor_iterations = 12;  ///< pcg_cholesky: factorise anew after a solve with more iterations
 };
 
@@ -52,6 +55,7 @@ class Solver {
   SolverCost m_cost;
 };
 
-std::unique_ptr<Solver> make_solver(const SolverParams& params);
+/// Bits do not depend on `threads`.
+std::unique_ptr<Solver> make_solver(const SolverParams& params, int threads = 1);
 
 }  // namespace argil::linear

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/lanes.h"
 #include "base/mandel.h"
 
 namespace argil::material {
@@ -77,6 +78,34 @@ double compute_shape_stiffness(const Mat6& C) {
 
 Vec6 compute_stress_drive(const Vec6& stress, double shape_stiffness) {
   return deviator(stress) / shape_stiffness;
+}
+
+ARGIL_EVERY_PROCESSOR unsigned find_flowing(const double* strain, const double* plastic_strain,
+                                            const double* yield, const Plasticity& law, std::ptrdiff_t begin,
+                                            std::ptrdiff_t end) {
+  constexpr double kCertain = 1.0 - 1e-10;  // squares are rounded otherwise than norms
+  Lanes total[6], plastic[6], limit;
+  read_lanes<6>(strain, begin, end - 1, total);
+  read_lanes<6>(plastic_strain, begin, end - 1, plastic);
+  read_lanes<1>(yield, begin, end - 1, &limit);
+  const bool is_j2 = law.form == FlowForm::j2;
+  const Lanes trace = total[0] - plastic[0] + (total[1] - plastic[1]) + (total[2] - plastic[2]);
+  const Lanes mean = law.deviatoric || is_j2 ? trace / 3.0 : Lanes{};
+  const double shear_weight = is_j2 || law.norm == StrainNorm::frobenius ? 1.0 : 0.5;
+  Lanes squares = {};
+  for (int k = 0; k < 3; ++k) {
+    const Lanes e = total[k] - plastic[k] - mean;
+    squares += e * e;
+  }
+  for (int k = 3; k < 6; ++k) {
+    const Lanes e = total[k] - plastic[k];
+    squares += shear_weight * (e * e);
+  }
+  const Lanes stays = squares <= kCertain * limit * limit ? Lanes{} + 1.0 : Lanes{};  // a NaN does not
+  unsigned found = 0;
+  for (int lane = 0; lane < static_cast<int>(end - begin); ++lane)
+    found |= stays[lane] == 0.0 ? 1U << lane : 0U;
+  return found;
 }
 
 double compute_clay_weight(double r, const ClayKernel& kernel) {

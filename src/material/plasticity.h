@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "material/parameters.h"
 
 namespace argil::material {
@@ -38,6 +40,11 @@ double compute_shape_stiffness(const Mat6& C);
 
 /// dev σ/(2μ*): the stress deviator as a strain, dev ε_e when isotropic. `stress` (6, Mandel) [Pa].
 Vec6 compute_stress_drive(const Vec6& stress, double shape_stiffness);
+
+/// May point t of begin … end−1 (at most kLanes) flow at all? Bit t − begin; certain where it is 0. For
+/// points without `drive`; arrays: 6, 6 and 1 a point.
+unsigned find_flowing(const double* strain, const double* plastic_strain, const double* yield,
+                      const Plasticity& law, std::ptrdiff_t begin, std::ptrdiff_t end);
 
 /// G_d(r), eq. 9, without overflow. r, radius [m]; k1, k2 [1/m].
 double compute_clay_weight(double r, const ClayKernel& kernel);

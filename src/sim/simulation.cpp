@@ -1,11 +1,13 @@
 #include "sim/simulation.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
 #include "base/check.h"
 #include "base/hash.h"
+#include "base/lanes.h"
 #include "base/ordered_sum.h"
 #include "base/parallel.h"
 #include "material/plasticity.h"
@@ -22,7 +24,8 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
       m_surface(params.contact_surface, m_body, m_solid.elements()),
       m_detector(m_surface.triangles(), m_surface.num_vertices(), tool, params.contact),
       m_compliance(m_surface, m_solid.elements().num_nodes()),
-      m_gate(params.device, params.rates.haptic_period) {
+      m_gate(params.device, params.rates.haptic_period),
+      m_runs(params.threads) {
   m_clock.period = params.rates.haptic_period;
   const Eigen::Index n = m_solid.elements().num_nodes();
   m_state.tool = {start.position, start.orientation};
@@ -35,7 +38,7 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
   m_external_force.setZero(3, n);
   m_x_before = m_state.solid.x;
   m_v_before = m_state.solid.v;
-  m_dissipation.setZero(m_solid.elements().num_points());
+  m_yield.setZero(m_solid.elements().num_points());
   const bool keeps_volume = params.plasticity.enabled && params.plasticity.deviatoric;
   if (!m_moisture.is_isotropic() && keeps_volume)
     m_shape_stiffness.resize(static_cast<std::size_t>(m_body.mesh.num_tets()));
@@ -113,31 +116,41 @@ Vec6 Simulation::compute_flow(int point, double step_s) const {
                                           step_s);
 }
 
-/// Trial flow of every point, committed at once. At fixed strain, the elastic energy that flow releases is
-/// what it dissipates. The neo-Hookean law bends within a long step of flow: there the step ends by halves
-/// where it releases energy.
+/// Flow of every point whose elastic strain lies beyond its yield; others are not looked at one by one.
 void Simulation::apply_plastic_flow(double step_s) {
   if (!m_params.plasticity.enabled) return;
+  const TensorField& plastic = m_state.solid.plastic_strain;
+  m_state.plastic_dissipation += m_runs.sum(plastic.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    double released = 0.0;
+    for (std::ptrdiff_t p = begin; p < end; p += kLanes) {
+      const std::ptrdiff_t last = std::min(p + kLanes, end);
+      unsigned flowing = m_is_flow_driven
+                             ? (1U << (last - p)) - 1U
+                             : material::find_flowing(m_solid.strain().data(), plastic.data(), m_yield.data(),
+                                                      m_params.plasticity, p, last);
+      for (; flowing != 0; flowing &= flowing - 1)
+        released += flow_at_point(static_cast<int>(p) + std::countr_zero(flowing), step_s);
+    }
+    return released;
+  });
+}
+
+/// Returns what flow dissipates [J]: at fixed strain, the elastic energy that it releases. The neo-Hookean
+/// law bends within a long step of flow: there the step ends by halves where it releases energy.
+double Simulation::flow_at_point(int point, double step_s) {
   constexpr int kHalvings = 10;
   const bool is_bent = m_params.solid.model == solid::StrainModel::neo_hookean;
-  TensorField& plastic = m_state.solid.plastic_strain;
-  parallel_for(plastic.cols(), m_params.threads, [&](std::ptrdiff_t p) {
-    const int point = static_cast<int>(p);
-    const Vec6 before = plastic.col(p);
-    Vec6 after = compute_flow(point, step_s);
-    m_dissipation(p) = 0.0;
-    if ((after.array() == before.array()).all()) return;
-    const double energy = m_solid.compute_elastic_energy(point, before);
-    double released = energy - m_solid.compute_elastic_energy(point, after);
-    for (int k = 0; is_bent && released < 0.0 && k < kHalvings; ++k) {
-      after = k + 1 < kHalvings ? Vec6(0.5 * (before + after)) : before;
-      released = energy - m_solid.compute_elastic_energy(point, after);
-    }
-    m_dissipation(p) = released;
-    plastic.col(p) = after;
-  });
-  m_state.plastic_dissipation +=
-      ordered_sum(m_dissipation.size(), [&](std::ptrdiff_t p) { return m_dissipation(p); });
+  const Vec6 before = m_state.solid.plastic_strain.col(point);
+  Vec6 after = compute_flow(point, step_s);
+  if ((after.array() == before.array()).all()) return 0.0;
+  const double energy = m_solid.compute_elastic_energy(point, before);
+  double released = energy - m_solid.compute_elastic_energy(point, after);
+  for (int k = 0; is_bent && released < 0.0 && k < kHalvings; ++k) {
+    after = k + 1 < kHalvings ? Vec6(0.5 * (before + after)) : before;
+    released = energy - m_solid.compute_elastic_energy(point, after);
+  }
+  m_state.solid.plastic_strain.col(point) = after;
+  return released;
 }
 
 void Simulation::exchange_water(int sign, double step_s) {
@@ -151,6 +164,8 @@ void Simulation::refresh_material(int tet, double S) {
   const double E = has_own_modulus ? m_body.youngs_modulus(tet) : m_params.elastic.youngs_modulus;
   const material::WetState wet = has_own_modulus ? m_moisture.at(S, E) : m_moisture.at(S);
   m_solid.set_material(tet, {wet.lambda, wet.mu, wet.yield});
+  const int Q = m_solid.elements().points_per_tet;
+  m_yield.segment(static_cast<Eigen::Index>(Q) * tet, Q).setConstant(wet.yield);
   if (m_params.water.swelling > 0.0) m_solid.set_swelling(tet, 1.0 + m_params.water.swelling * S);
   if (m_params.water.adds_mass) m_solid.set_water_mass(tet, m_water.capacity(tet) * S);
   if (m_moisture.is_isotropic()) return;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "base/ordered_runs.h"
 #include "material/moisture.h"
 #include "sim/clock.h"
 #include "sim/compliance.h"
@@ -70,6 +71,7 @@ class Simulation {
   StepStatus check_energy();
   Vec6 compute_flow(int point, double step_s) const;
   void apply_plastic_flow(double step_s);
+  double flow_at_point(int point, double step_s);
 
   // Between contacts, body and hand: hand.cpp.
   void move_hand(const device::DeviceSample& sample);
@@ -138,9 +140,10 @@ class Simulation {
   Points m_load_force;  // 3×n, constant
   Points m_external_force;
   Points m_x_before, m_v_before;
-  std::vector<double> m_shape_stiffness;                    // 2μ* per tet [Pa]; empty: isotropic stiffness
-  bool m_is_flow_driven = false;                            // plastic flow follows the stress, not the strain
-  Field m_dissipation;                                      // of each point in the last physics step [J]
+  std::vector<double> m_shape_stiffness;  // 2μ* per tet [Pa]; empty: isotropic stiffness
+  bool m_is_flow_driven = false;          // plastic flow follows the stress, not the strain
+  Field m_yield;                          // of each point: elastic strain norm [–]
+  OrderedRuns m_runs;
   bool m_is_moved = false;                                  // some support moves
   double m_rest_energy = 0.0, m_rest_plastic_strain = 0.0;  // of the body while it is at rest
   StageObserver* m_observer = nullptr;

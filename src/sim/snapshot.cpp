@@ -11,6 +11,7 @@ Snapshot Simulation::take_snapshot() {
   Snapshot snapshot;
   Archive archive = Archive::make_saving(snapshot);
   exchange_state(archive);
+  m_solid.exchange_frames(archive);
   return snapshot;
 }
 
@@ -19,6 +20,7 @@ void Simulation::restore(const Snapshot& snapshot, const std::string& origin) {
   Archive archive = Archive::make_restoring(snapshot, origin);
   exchange_state(archive);
   for (int t = 0; t < m_body.mesh.num_tets(); ++t) refresh_material(t, m_water.state().collected(t));
+  m_solid.exchange_frames(archive);
   const StepStatus status = m_solid.update_kinematics(m_state.solid.x, m_clock.tick);
   ARGIL_ASSERT(status.is_ok());
 }

@@ -24,17 +24,12 @@ void Solid::set_corner_forces() {
   });
 }
 
-/// Do eight tets at once: 4 nodes, one isotropic law without a mean volume change?
-bool Solid::takes_lanes() const {
-  return m_elements.nodes_per_tet == 4 && m_params.model != StrainModel::neo_hookean && m_stiffness.empty() &&
-         !m_nodal;
+/// 4-node tets of an isotropic law: those that go eight at a time.
+bool Solid::has_isotropic_tets() const {
+  return m_elements.nodes_per_tet == 4 && m_stiffness.empty();
 }
 
 void Solid::set_tet_forces() {
-  for (int t = 0; t < m_elements.num_tets(); ++t) {
-    m_lambda(t) = material(t).lambda;
-    m_mu(t) = material(t).mu;
-  }
   const ForceArrays tets{
       m_elements.gradient.data(), m_rotation.data(), m_strain.data(), m_plastic_strain->data(),
       m_elements.weight.data(),   m_lambda.data(),   m_mu.data(),     m_params.model == StrainModel::linear,
@@ -44,18 +39,16 @@ void Solid::set_tet_forces() {
 }
 
 void Solid::gather(Points& force) const {
-  parallel_for(force.cols(), m_threads, [&](std::ptrdiff_t v) {
-    Vec3 sum = Vec3::Zero();
-    for (int c = m_elements.node_begin[static_cast<std::size_t>(v)];
-         c < m_elements.node_begin[static_cast<std::size_t>(v) + 1]; ++c)
-      sum += m_corner_force.col(m_elements.node_corners[static_cast<std::size_t>(c)]);
-    force.col(v) = sum;
+  m_rows.each(force.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v)
+      sum_corner_forces(m_corner_force.data(), m_elements.node_corners.data(), m_elements.node_begin[v],
+                        m_elements.node_begin[v + 1], force.data() + 3 * v);
   });
 }
 
 void Solid::assemble_internal_force() {
   update_volume_change(*m_plastic_strain);
-  if (takes_lanes())
+  if (has_isotropic_tets() && m_params.model != StrainModel::neo_hookean && !m_nodal)
     set_tet_forces();
   else if (m_elements.nodes_per_tet == 4)
     set_corner_forces<4>();

@@ -91,11 +91,15 @@ void Solid::assemble_rows() {
   mark_rows(!keeps_rest);
   m_stored_shares = share;
   m_counters.assembled_rows += static_cast<int>(std::count(m_is_row_stale.begin(), m_is_row_stale.end(), 1));
-  const bool is_simple = m_elements.nodes_per_tet == 4 && m_stiffness.empty() && share.exact == 0.0;
-  if (is_simple) scale_moduli(share.kept);
-  const RowArrays rows{
-      m_turned_gradient.data(),      m_lambda.data(),       m_mu.data(), m_elements.node_corners.data(),
-      m_block_of_corner_pair.data(), m_matrix.values.data()};
+  const bool is_simple = has_isotropic_tets() && share.exact == 0.0;
+  const RowArrays rows{m_turned_gradient.data(),
+                       m_elements.weight.data(),
+                       m_lambda.data(),
+                       m_mu.data(),
+                       share.kept,
+                       m_elements.node_corners.data(),
+                       m_block_of_corner_pair.data(),
+                       m_matrix.values.data()};
   parallel_for(num_free(), m_threads, [&](std::ptrdiff_t row) {
     const auto r = static_cast<std::size_t>(row);
     if (!m_is_row_stale[r]) return;
@@ -116,22 +120,12 @@ void Solid::assemble_rows() {
 }
 
 void Solid::mark_rows(bool all) {
-  parallel_for(num_free(), m_threads, [&](std::ptrdiff_t row) {
-    const auto node = static_cast<std::size_t>(m_node_of_row[static_cast<std::size_t>(row)]);
-    char& is_stale = m_is_row_stale[static_cast<std::size_t>(row)];
-    if (all) is_stale = 1;
-    for (int c = m_elements.node_begin[node]; !is_stale && c < m_elements.node_begin[node + 1]; ++c)
-      is_stale = m_is_tet_changed[static_cast<std::size_t>(
-          m_elements.node_corners[static_cast<std::size_t>(c)] / m_elements.nodes_per_tet)];
-  });
-}
-
-/// Volume times Lamé's constants, `share` times.
-void Solid::scale_moduli(double share) {
-  for (int t = 0; t < m_elements.num_tets(); ++t) {
-    const Elasticity e = elasticity(t);
-    m_lambda(t) = share * m_elements.weight(t) * e.lambda;
-    m_mu(t) = share * m_elements.weight(t) * e.mu;
+  if (all) std::fill(m_is_row_stale.begin(), m_is_row_stale.end(), char{1});
+  for (std::size_t t = 0; t < m_is_tet_changed.size() && !all; ++t) {
+    if (!m_is_tet_changed[t]) continue;
+    for (const int node : m_elements.nodes.col(static_cast<Eigen::Index>(t)))
+      if (const int row = m_row_of_node[static_cast<std::size_t>(node)]; row >= 0)
+        m_is_row_stale[static_cast<std::size_t>(row)] = 1;
   }
 }
 

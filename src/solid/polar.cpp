@@ -27,9 +27,9 @@ Mat3 compute_cofactor(const Mat3& a) {
 Mat3 compute_rotation(const Mat3& F) {
   Real33<double> from, rotation;
   Mat3::Map(from.m) = F;
-  bool is_found = false;
+  double is_found = 0.0;
   iterate_rotation(from, rotation, is_found);
-  return is_found ? Mat3(Mat3::Map(rotation.m)) : compute_rotation_by_svd(F);
+  return is_found != 0.0 ? Mat3(Mat3::Map(rotation.m)) : compute_rotation_by_svd(F);
 }
 
 }  // namespace argil::solid

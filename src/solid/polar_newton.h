@@ -27,7 +27,7 @@ ARGIL_INLINE void set_cofactor(const Real33<Real>& a, Real33<Real>& cofactor, Re
 /// Rotation of F = R S by X ← ½(γX + (γX)⁻ᵀ) with the scaling γ of [Higham1986], for one matrix or for eight.
 /// `found` is false where F is inverted or nearly flat or the iteration does not end; R means nothing there.
 template <class Real>
-ARGIL_INLINE void iterate_rotation(const Real33<Real>& F, Real33<Real>& R, MaskOf<Real>& found) {
+ARGIL_INLINE void iterate_rotation(const Real33<Real>& F, Real33<Real>& R, Real& found) {
   // Newton is quadratically convergent; from a condition number of 1e3 the scaled iteration needs at most 9
   // steps.
   constexpr int kMaxIterations = 12;
@@ -41,8 +41,9 @@ ARGIL_INLINE void iterate_rotation(const Real33<Real>& F, Real33<Real>& R, MaskO
   add_squares(F, squares);
   Real norm;
   set_root(norm, squares);
-  found = determinant > kSmallestRelativeDeterminant * norm * squares;
-  MaskOf<Real> active = found;
+  const Real zero = {};
+  found = determinant > kSmallestRelativeDeterminant * norm * squares ? one : zero;
+  Real active = found;  // 1 or 0, as `found` is
   R = F;
   for (int iteration = 0; iteration < kMaxIterations && any(active); ++iteration) {
     set_cofactor(R, inverse, determinant);
@@ -54,26 +55,26 @@ ARGIL_INLINE void iterate_rotation(const Real33<Real>& F, Real33<Real>& R, MaskO
     }
     Real change;
     add_squares(difference, change);
-    const MaskOf<Real> far = change >= 1e-2;
+    const Real far = change >= 1e-2 ? active : zero;
     Real gamma = one;
-    if (any(far & active)) {
+    if (any(far)) {
       Real size, inverse_size, root;
       add_squares(R, size);
       add_squares(inverse, inverse_size);
       const Real ratio = inverse_size / size;
       set_root(root, ratio);
       set_root(gamma, root);
-      gamma = far ? gamma : one;
+      gamma = far != 0.0 ? gamma : one;
     }
     const Real share = 0.5 * gamma;
     const Real inverse_share = 0.5 / gamma;
     for (int k = 0; k < 9; ++k) {
       const Real next = share * R.m[k] + inverse_share * inverse.m[k];
-      R.m[k] = active ? next : R.m[k];
+      R.m[k] = active != 0.0 ? next : R.m[k];
     }
-    active = active & (change >= kSquaredChange);
+    active = change >= kSquaredChange ? active : zero;
   }
-  found = found & (active == MaskOf<Real>{});
+  found = active != 0.0 ? zero : found;
 }
 
 }  // namespace argil::solid

@@ -23,7 +23,9 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
       m_constraints(find_constraints(m_elements.rest, m_supports)),
       m_mass(params.density * m_elements.node_volume),
       m_static_mass(params.density * m_elements.shape_volume),
-      m_solver(linear::make_solver(params.solver)) {
+      m_rows(threads),
+      m_solver(linear::make_solver(
+          params.iteration == Iteration::newton ? make_exact(params.solver) : params.solver, threads)) {
   const Eigen::Index num_points = m_elements.num_points();
   const Eigen::Index num_nodes = m_elements.num_nodes();
   m_material.resize(static_cast<std::size_t>(m_elements.num_tets()));
@@ -32,10 +34,11 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   m_strain.setZero(6, num_points);
   m_volume_ratio.setOnes(num_points);
   m_turned_gradient.setZero(3, m_elements.gradient.cols());
-  m_lambda.resize(m_elements.num_tets());
-  m_mu.resize(m_elements.num_tets());
+  m_frame.setZero(3, m_elements.nodes_per_tet == 4 ? 3 * num_points : 0);
+  m_lambda.setZero(m_elements.num_tets());
+  m_mu.setZero(m_elements.num_tets());
   m_is_tet_changed.resize(m_material.size(), 1);
-  m_corner_force.setZero(3, m_elements.nodes.size());
+  m_corner_force.setZero(3, m_elements.nodes.size() + 1);
   m_internal_force.setZero(3, num_nodes);
   m_product.setZero(3, num_nodes);
   number_rows();
@@ -52,6 +55,8 @@ void Solid::number_rows() {
   const int N = m_elements.nodes_per_tet;
   m_row_of_node.assign(static_cast<std::size_t>(m_elements.num_nodes()), -1);
   for (int n = 0; n < m_elements.num_nodes(); ++n) {
+    for (int k = 0; k < 3; ++k)
+      if (m_constraints.support(k, n) >= 0) m_held_components.push_back({n, k});
     if (m_constraints.is_held(n)) continue;
     const int row = num_free();
     m_row_of_node[static_cast<std::size_t>(n)] = row;
@@ -100,7 +105,10 @@ void Solid::set_material(int tet, const TetMaterial& material) {
   m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
   if (!m_stiffness.empty())
     m_stiffness[static_cast<std::size_t>(tet)] = make_isotropic_stiffness(material.lambda, material.mu);
-  if (m_nodal) m_nodal->set_excess(tet, elasticity(tet).excess_bulk, m_elements.weight(tet));
+  const Elasticity e = elasticity(tet);
+  m_lambda(tet) = e.lambda;
+  m_mu(tet) = e.mu;
+  if (m_nodal) m_nodal->set_excess(tet, e.excess_bulk, m_elements.weight(tet));
 }
 
 void Solid::set_anisotropic_stiffness(int tet, const Mat6& C) {
@@ -124,6 +132,8 @@ void Solid::set_swelling(int tet, double volume_ratio) {
   const Eigen::Index columns = Q * m_elements.nodes_per_tet;
   m_elements.gradient.middleCols(columns * tet, columns) =
       m_dry.gradient.middleCols(columns * tet, columns) / std::cbrt(volume_ratio);
+  if (m_frame.size() > 0)
+    m_frame.middleCols<3>(3 * static_cast<Eigen::Index>(tet)).setZero();  // to be made anew
   m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
   m_elements.weight.segment(Q * tet, Q) = volume_ratio * m_dry.weight.segment(Q * tet, Q);
   if (m_nodal) m_nodal->set_excess(tet, elasticity(tet).excess_bulk, m_elements.weight(tet));
@@ -175,6 +185,16 @@ PointMotion Solid::motion(int point) const {
           m_rotation.middleCols<3>(3 * static_cast<Eigen::Index>(point))};
 }
 
+/// How far the frames of the matrix may lag behind R: a step that is solved to a tolerance may as well have a
+/// matrix that is off by as much. Its residual is always that of R.
+double Solid::frame_tolerance() const {
+  constexpr double kLargest = 0.01;
+  using linear::SolverKind;
+  const SolverKind kind = m_params.solver.kind;
+  const bool is_direct = kind == SolverKind::cholesky || kind == SolverKind::supernodal;
+  return is_newton() || is_direct ? 0.0 : std::min(kLargest, m_params.solver.tolerance);
+}
+
 void Solid::set_tet_motion(const Points& x, bool keeps_frame) {
   const TetArrays tets{x.data(),
                        m_elements.nodes.data(),
@@ -183,6 +203,8 @@ void Solid::set_tet_motion(const Points& x, bool keeps_frame) {
                        m_deformation.data(),
                        m_rotation.data(),
                        keeps_frame ? nullptr : m_turned_gradient.data(),
+                       m_frame.data(),
+                       frame_tolerance(),
                        m_strain.data(),
                        m_volume_ratio.data(),
                        m_is_tet_changed.data()};

@@ -121,6 +121,8 @@ class Solid {
   /// What a step takes from the last ones besides the state, its moduli and its kinematics: what the solvers
   /// keep, and the counters.
   void exchange_state(Archive& archive);
+  /// What the matrix remembers of earlier rotations; restored once the tets have their size at rest.
+  void exchange_frames(Archive& archive);
 
   const Elements& elements() const { return m_elements; }
   const Constraints& constraints() const { return m_constraints; }
@@ -156,6 +158,7 @@ class Solid {
 
   // solid.cpp
   void number_rows();
+  double frame_tolerance() const;
   void set_tet_motion(const Points& x, bool keeps_frame);
   void set_quadratic_motion(const Points& x, bool keeps_frame);
   Elasticity elasticity(int tet) const;
@@ -166,7 +169,7 @@ class Solid {
 
   // assembly.cpp
   void assemble_internal_force();
-  bool takes_lanes() const;
+  bool has_isotropic_tets() const;
   void set_tet_forces();
   template <int N>
   void set_corner_forces();
@@ -195,7 +198,6 @@ class Solid {
   void assemble_matrix(std::span<const PointStiffness> contacts);
   void assemble_rows();
   void mark_rows(bool all);
-  void scale_moduli(double share);
   template <int N>
   void gather_row(int row, const MatrixShares& share);
   void add_nodal_stiffness(const Eigen::Matrix3Xd& gradient, double scale);
@@ -210,8 +212,10 @@ class Solid {
   bool place_supports(double time, double share);
   void compute_residual(const StepLoads& loads);
   double compute_rounding_force() const;
-  void add_reactions_and_rounding();
+  Vec3 applied_force(const StepLoads& loads, Eigen::Index node) const;
+  void set_residual_scale(const StepLoads& loads);
   double compute_potential(const StepLoads& loads);
+  static linear::SolverParams make_exact(linear::SolverParams solver);
   linear::SolveReport solve_system(const StepLoads& loads, bool is_first);
   StepStatus search_line(const StepLoads& loads, Tick tick);
   void set_iterate(double share);
@@ -231,7 +235,7 @@ class Solid {
   Elements m_dry;       // gradient and weight of tets that have not swollen; empty without swelling
   std::vector<TetMaterial> m_material;
   std::vector<Mat6> m_stiffness;  // empty while every tet is isotropic
-  Field m_lambda, m_mu;           // of each tet for a loop over lanes
+  Field m_lambda, m_mu;           // of each tet as elasticity() has them
 
   Eigen::Matrix3Xd m_deformation;  // F, 3 columns a point
   Eigen::Matrix3Xd m_rotation;     // R, 3 columns a point
@@ -241,22 +245,26 @@ class Solid {
   Field m_volume_change;  // p1_nodal: θ of each tet's nodes, their mean
 
   Eigen::Matrix3Xd m_kept_rotation;                     // damping's R where it is not the present one
-  Eigen::Matrix3Xd m_turned_gradient;                   // R ∇N with that R, N columns a point
+  Eigen::Matrix3Xd m_turned_gradient;                   // Q ∇N, N columns a point, for the matrix
+  Eigen::Matrix3Xd m_frame;                             // Q of p1: R within frame_tolerance()
   Eigen::Matrix<double, 81, Eigen::Dynamic> m_tangent;  // ∂P/∂F of each point, where it is wanted
   bool m_is_projected = true;                           // with its negative modes set to zero
-  Eigen::Matrix3Xd m_corner_force;                      // N columns a tet
+  Eigen::Matrix3Xd m_corner_force;                      // N columns a tet, and one more
   Points m_internal_force;
 
   std::vector<int> m_row_of_node;  // −1: held in all directions
   std::vector<int> m_node_of_row;
-  std::vector<int> m_held_rows;             // rows with a held component
+  std::vector<std::array<int, 2>> m_held_components;  // node and direction of all that is prescribed
+  std::vector<int> m_held_rows;                       // rows with a held component
   std::vector<int> m_block_of_corner_pair;  // N² a tet: place of block (i, j), −1 where there is none
   linear::BlockMatrix m_matrix;
   MatrixShares m_stored_shares;        // of the matrix that is stored
   std::vector<char> m_is_tet_changed;  // its stiffness or frame, since then
   std::vector<char> m_is_row_stale;    // holds something that the next matrix may not
+  OrderedRuns m_rows;
   std::unique_ptr<linear::Solver> m_solver;
-  std::unique_ptr<linear::Solver> m_response_solver;  // keeps a factor of its own; made at first use
+  std::unique_ptr<linear::Solver> m_static_solver;    // made at first use, as is the next:
+  std::unique_ptr<linear::Solver> m_response_solver;  // each keeps a factor of its own
   std::unique_ptr<NodalVolume> m_nodal;               // p1_nodal
 
   // Of the present step.

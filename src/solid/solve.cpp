@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 
 #include "base/check.h"
+#include "base/ordered_sum.h"
 #include "solid/solid.h"
 
 namespace argil::solid {
@@ -10,11 +12,8 @@ class Solid::Product final : public linear::Operator {
  public:
   Product(Solid& solid, std::span<const PointStiffness> contacts) : m_solid(solid), m_contacts(contacts) {}
 
-  void multiply(const Points& x, Points& y) override {
-    if (!m_solid.has_only_diagonal()) {
-      linear::multiply(m_solid.m_matrix, x, y, m_solid.m_threads);
-      return;
-    }
+  double multiply(const Points& x, Points& y) override {
+    if (!m_solid.has_only_diagonal()) return linear::multiply(m_solid.m_matrix, x, y, m_solid.m_rows);
     const MatrixShares share = m_solid.shares();
     Points& u = m_solid.m_direction;
     Points& force = m_solid.m_product;
@@ -37,6 +36,7 @@ class Solid::Product final : public linear::Operator {
           y(k, row) = m_solid.m_matrix.block(m_solid.m_matrix.diagonal[static_cast<std::size_t>(row)])(k, k) *
                       x(k, row);
     }
+    return ordered_sum(x.size(), [&](std::ptrdiff_t i) { return x(i) * y(i); });
   }
 
  private:
@@ -87,16 +87,30 @@ StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
   return search_line(loads, tick);
 }
 
+/// What Newton's method, statics and compliances ask of a solve: there its error does not go with the next
+/// step, or another iteration costs more than what a loose solve saves.
+linear::SolverParams Solid::make_exact(linear::SolverParams solver) {
+  constexpr double kTolerance = 1e-8;
+  solver.tolerance = std::min(solver.tolerance, kTolerance);
+  return solver;
+}
+
 /// A δ = r. First guess: the body goes on as before; when contacts were exchanged, the step with the others.
 linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
   if (num_free() == 0) return {true, 0, 0.0};
-  for (int row = 0; (is_first || is_newton()) && row < num_free(); ++row) {
+  if (is_newton()) m_delta.setZero();
+  for (int row = 0; row < num_free() && is_first; ++row) {
     const int n = m_node_of_row[static_cast<std::size_t>(row)];
-    for (int k = 0; k < 3; ++k)
-      m_delta(k, row) = is_first && m_constraints.support(k, n) < 0 ? m_v_start(k, n) - m_v(k, n) : 0.0;
+    m_delta.col(row) = m_v_start.col(n) - m_v.col(n);
   }
+  for (const int row : m_held_rows)
+    for (int k = 0; k < 3; ++k)
+      if (m_constraints.support(k, m_node_of_row[static_cast<std::size_t>(row)]) >= 0) m_delta(k, row) = 0.0;
   Product product(*this, loads.contacts);
-  const linear::SolveReport report = m_solver->solve(m_matrix, product, m_rhs, m_delta);
+  if (m_is_static && !m_static_solver)
+    m_static_solver = linear::make_solver(make_exact(m_params.solver), m_threads);
+  linear::Solver& solver = m_is_static ? *m_static_solver : *m_solver;
+  const linear::SolveReport report = solver.solve(m_matrix, product, m_rhs, m_delta);
   m_counters.linear_iterations += report.iterations;
   m_counters.residual = report.relative_residual;
   return report;
@@ -116,7 +130,7 @@ void Solid::prepare_response(const SolidState& state, double step_s) {
 StepStatus Solid::find_response(const Points& force, Tick tick, Points& displacement) {
   displacement = force;
   clear_held(displacement);
-  if (!m_response_solver) m_response_solver = linear::make_solver(m_params.solver);
+  if (!m_response_solver) m_response_solver = linear::make_solver(make_exact(m_params.solver), m_threads);
   for (int r = 0; r < num_free(); ++r)
     m_rhs.col(r) = m_tau * m_tau * displacement.col(m_node_of_row[static_cast<std::size_t>(r)]);
   displacement.setZero();
@@ -141,8 +155,14 @@ void Solid::exchange_state(Archive& archive) {
   bool has_response_solver = m_response_solver != nullptr;
   archive.number("response/is_known", has_response_solver);
   if (!has_response_solver) return;
-  if (!m_response_solver) m_response_solver = linear::make_solver(m_params.solver);
+  if (!m_response_solver) m_response_solver = linear::make_solver(make_exact(m_params.solver), m_threads);
   m_response_solver->exchange_state(archive, "response/", m_matrix);
+}
+
+void Solid::exchange_frames(Archive& archive) {
+  if (m_frame.size() == 0 || frame_tolerance() == 0.0) return;
+  archive.array("solid/frame", m_frame);
+  archive.array("solid/turned_gradient", m_turned_gradient);
 }
 
 }  // namespace argil::solid

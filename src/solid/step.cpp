@@ -42,9 +42,12 @@ StepStatus Solid::begin_step(const SolidState& state, const StepLoads& loads, do
   keep_damping_frame();
   predict(state, loads, step_s);
   const bool has_moved = place_supports(time, 1.0);
-  m_v = is_explicit() ? state.v : Points((m_x - m_x_hat) / m_tau);
+  if (is_explicit())
+    m_v = state.v;
+  else
+    m_v.noalias() = (m_x - m_x_hat) / m_tau;
   // Held components go at their mean velocity; Newmark's own rule would let it swing about that.
-  m_v = (m_constraints.support.array() >= 0).select((m_held_x - state.x) / step_s, m_v);
+  for (const auto& [n, k] : m_held_components) m_v(k, n) = (m_held_x(k, n) - state.x(k, n)) / step_s;
   if (is_explicit()) m_x = state.x;  // forces are those of the start
   return has_moved && !is_explicit() ? update_kinematics(m_x, tick) : StepStatus::ok();
 }
@@ -101,16 +104,13 @@ void Solid::predict(const SolidState& state, const StepLoads& loads, double step
 
 /// Puts the prescribed components of m_x where they are at `time`. True when any of them moved.
 bool Solid::place_supports(double time, double share) {
-  m_held_x = m_elements.rest;
   bool has_moved = false;
-  for (int n = 0; n < m_elements.num_nodes(); ++n)
-    for (int k = 0; k < 3; ++k) {
-      const int support = m_constraints.support(k, n);
-      if (support < 0) continue;
-      m_held_x(k, n) += share * compute_displacement(m_supports[static_cast<std::size_t>(support)], time)(k);
-      has_moved = has_moved || m_x(k, n) != m_held_x(k, n);
-      m_x(k, n) = m_held_x(k, n);
-    }
+  for (const auto& [n, k] : m_held_components) {
+    const auto support = static_cast<std::size_t>(m_constraints.support(k, n));
+    m_held_x(k, n) = m_elements.rest(k, n) + share * compute_displacement(m_supports[support], time)(k);
+    has_moved = has_moved || m_x(k, n) != m_held_x(k, n);
+    m_x(k, n) = m_held_x(k, n);
+  }
   return has_moved;
 }
 
@@ -148,31 +148,40 @@ void Solid::compute_residual(const StepLoads& loads) {
       spread(loads.contacts[i], compute_contact_fall(loads.contacts, i), m_product);
   const double a = m_is_static ? 0.0 : m_params.rayleigh_mass;
   const double inertia = m_is_static ? 0.0 : 1.0;
-  double scale = 0.0;
-  for (int row = 0; row < num_free(); ++row) {
-    const int n = m_node_of_row[static_cast<std::size_t>(row)];
-    const Vec3 applied = m_load_share * (loads.force.col(n) + gravity_mass(n) * m_params.gravity);
-    const Vec3 force = applied - m_internal_force.col(n) - m_product.col(n) - a * m_mass(n) * m_v.col(n);
-    m_rhs.col(row) = inertia * m_mass(n) * (m_v_hat.col(n) - m_v.col(n)) + m_tau * force;
-    scale += inertia * m_mass(n) * (m_v_hat.col(n).norm() + m_v.col(n).norm()) + m_tau * applied.norm();
-  }
+  m_rows.each(num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t row = begin; row < end; ++row) {
+      const int n = m_node_of_row[static_cast<std::size_t>(row)];
+      const Vec3 force =
+          applied_force(loads, n) - m_internal_force.col(n) - m_product.col(n) - a * m_mass(n) * m_v.col(n);
+      m_rhs.col(row) = inertia * m_mass(n) * (m_v_hat.col(n) - m_v.col(n)) + m_tau * force;
+    }
+  });
   for (const int row : m_held_rows)
     for (int k = 0; k < 3; ++k)
       if (m_constraints.support(k, m_node_of_row[static_cast<std::size_t>(row)]) >= 0) m_rhs(k, row) = 0.0;
-  m_residual_scale = scale;
-  if (is_newton()) add_reactions_and_rounding();
+  if (is_newton()) set_residual_scale(loads);
 }
 
-/// What else the residual is small against: the forces in the supports, and, so that a body at rest is found
-/// to be so, the rounding of corner forces and of the positions that they come from.
-void Solid::add_reactions_and_rounding() {
+Vec3 Solid::applied_force(const StepLoads& loads, Eigen::Index node) const {
+  return m_load_share * (loads.force.col(node) + gravity_mass(node) * m_params.gravity);
+}
+
+/// What Newton's residual is small against: loads, momenta, the forces in the supports, and, so that a body
+/// at rest is found to be so, the rounding of corner forces and of the positions that they come from.
+void Solid::set_residual_scale(const StepLoads& loads) {
+  const double inertia = m_is_static ? 0.0 : 1.0;
+  m_residual_scale = ordered_sum(num_free(), [&](std::ptrdiff_t row) {
+    const int n = m_node_of_row[static_cast<std::size_t>(row)];
+    return inertia * m_mass(n) * (m_v_hat.col(n).norm() + m_v.col(n).norm()) +
+           m_tau * applied_force(loads, n).norm();
+  });
   const double reactions = ordered_sum(m_elements.num_nodes(), [&](std::ptrdiff_t n) {
     return (m_constraints.support.col(n).array() >= 0).select(m_internal_force.col(n), Vec3::Zero()).norm();
   });
   m_residual_scale += m_tau * reactions;
   m_rounding = m_tau * (compute_rounding_force() + kRounding * std::sqrt(m_corner_scale));
   // Of the energy: force times what rounding moves each corner.
-  const auto corners = static_cast<double>(m_corner_force.cols());
+  const auto corners = static_cast<double>(m_elements.nodes.size());
   m_potential_rounding = kRounding * m_x.cwiseAbs().maxCoeff() * std::sqrt(corners * m_corner_scale);
 }
 
@@ -225,13 +234,16 @@ double Solid::compute_potential(const StepLoads& loads) {
 
 /// v = v_base + share · δ, x = x̂ + τ v.
 void Solid::set_iterate(double share) {
-  for (int row = 0; row < num_free(); ++row) {
-    const int n = m_node_of_row[static_cast<std::size_t>(row)];
-    for (int k = 0; k < 3; ++k) {
-      if (m_constraints.support(k, n) >= 0) continue;
-      m_v(k, n) = m_v_base(k, n) + share * m_delta(k, row);
-      m_x(k, n) = m_x_hat(k, n) + m_tau * m_v(k, n);
+  m_rows.each(num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t row = begin; row < end; ++row) {
+      const int n = m_node_of_row[static_cast<std::size_t>(row)];
+      m_v.col(n) = m_v_base.col(n) + share * m_delta.col(row);
+      m_x.col(n) = m_x_hat.col(n) + m_tau * m_v.col(n);
     }
+  });
+  for (const auto& [n, k] : m_held_components) {
+    m_v(k, n) = m_v_base(k, n);
+    m_x(k, n) = m_held_x(k, n);
   }
 }
 
@@ -267,8 +279,8 @@ void Solid::finish_step(SolidState& state) {
 }
 
 void Solid::move(SolidState& state) const {
-  state.x = m_x_hat + m_tau * state.v;
-  state.x = (m_constraints.support.array() >= 0).select(m_held_x, state.x);
+  state.x.noalias() = m_x_hat + m_tau * state.v;
+  for (const auto& [n, k] : m_held_components) state.x(k, n) = m_held_x(k, n);
 }
 
 StepStatus Solid::iterate_static(const SolidState& state, const StepLoads& loads) {

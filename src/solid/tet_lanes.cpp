@@ -1,28 +1,11 @@
 #include "solid/tet_lanes.h"
 
-#include <algorithm>
-
 #include "base/mandel.h"
 #include "solid/polar.h"
 #include "solid/polar_newton.h"
 
 namespace argil::solid {
 namespace {
-
-/// Reads `Count` numbers of each of eight tets; the last one fills the lanes that are left over.
-template <int Count>
-ARGIL_INLINE void read_lanes(const double* from, std::ptrdiff_t begin, std::ptrdiff_t last, Lanes* to) {
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const double* item = from + Count * std::min(begin + lane, last);
-    for (int k = 0; k < Count; ++k) to[k][lane] = item[k];
-  }
-}
-
-template <int Count>
-ARGIL_INLINE void write_lanes(const Lanes* from, std::ptrdiff_t begin, std::ptrdiff_t end, double* to) {
-  for (std::ptrdiff_t t = begin; t < end; ++t)
-    for (int k = 0; k < Count; ++k) to[Count * t + k] = from[k][t - begin];
-}
 
 /// b = a g for four columns g.
 ARGIL_INLINE void turn_gradient(const Real33<Lanes>& a, const Lanes* gradient, Lanes* turned) {
@@ -37,6 +20,26 @@ void set_rotation_by_svd(const Real33<Lanes>& F, int lane, Real33<Lanes>& R) {
   for (int k = 0; k < 9; ++k) from(k) = F.m[k][lane];
   const Mat3 rotation = compute_rotation(from);
   for (int k = 0; k < 9; ++k) R.m[k][lane] = rotation(k);
+}
+
+/// Where R left the frame of the turned gradient: another frame, another gradient.
+ARGIL_INLINE void turn_frames(const TetArrays& tets, const Real33<Lanes>& R, const Lanes* gradient,
+                              std::ptrdiff_t begin, std::ptrdiff_t end) {
+  Lanes frame[8];
+  read_eight<9>(tets.frame, begin, end - 1, frame);
+  Lanes squares = {};  // of eight entries: the ninth follows from them
+  for (int k = 0; k < 8; ++k) squares += (R.m[k] - frame[k]) * (R.m[k] - frame[k]);
+  const Lanes is_turned = squares > tets.frame_tolerance * tets.frame_tolerance ? Lanes{} + 1.0 : Lanes{};
+  if (!any(is_turned)) return;
+  Lanes turned[12];
+  turn_gradient(R, gradient, turned);
+  for (std::ptrdiff_t t = begin; t < end; ++t) {
+    const std::ptrdiff_t lane = t - begin;
+    if (is_turned[lane] == 0.0) continue;
+    tets.is_turned[t] = 1;
+    for (int k = 0; k < 9; ++k) tets.frame[9 * t + k] = R.m[k][lane];
+    for (int k = 0; k < 12; ++k) tets.turned_gradient[12 * t + k] = turned[k][lane];
+  }
 }
 
 }  // namespace
@@ -59,10 +62,10 @@ ARGIL_EVERY_PROCESSOR void compute_motions(const TetArrays& tets, std::ptrdiff_t
   if (tets.is_linear) {
     for (int k = 0; k < 9; ++k) R.m[k] = Lanes{} + (k % 4 == 0 ? 1.0 : 0.0);
   } else {
-    LaneMask found;
+    Lanes found;
     iterate_rotation(F, R, found);
     for (int lane = 0; lane < kLanes; ++lane)
-      if (!found[lane]) set_rotation_by_svd(F, lane, R);
+      if (found[lane] == 0.0) set_rotation_by_svd(F, lane, R);
   }
 
   const auto set_dot = [&](int i, int j, Lanes& dot) __attribute__((always_inline)) {
@@ -85,15 +88,7 @@ ARGIL_EVERY_PROCESSOR void compute_motions(const TetArrays& tets, std::ptrdiff_t
   write_lanes<9>(R.m, begin, end, tets.R);
   write_lanes<6>(strain, begin, end, tets.strain);
   write_lanes<1>(&determinant, begin, end, tets.volume_ratio);
-  if (!tets.turned_gradient) return;
-  Lanes turned[12];
-  turn_gradient(R, gradient, turned);
-  for (std::ptrdiff_t t = begin; t < end; ++t)
-    for (int k = 0; k < 12; ++k) {
-      double& stored = tets.turned_gradient[12 * t + k];
-      if (stored != turned[k][t - begin]) tets.is_turned[t] = 1;
-      stored = turned[k][t - begin];
-    }
+  if (tets.turned_gradient) turn_frames(tets, R, gradient, begin, end);
 }
 
 ARGIL_EVERY_PROCESSOR void compute_corner_forces(const ForceArrays& tets, std::ptrdiff_t begin,
@@ -122,9 +117,9 @@ ARGIL_EVERY_PROCESSOR void compute_corner_forces(const ForceArrays& tets, std::p
   // derivative, −2[G⁻¹k]× with [k]× = skew(σS), G = tr(S) 1 − S.
   Real33<Lanes> P = {
       {sigma[0], sigma[5], sigma[4], sigma[5], sigma[1], sigma[3], sigma[4], sigma[3], sigma[2]}};
-  LaneMask is_plastic = {};
-  for (int k = 0; k < 6; ++k) is_plastic |= plastic[k] != 0.0;
-  if (!tets.is_linear && any(is_plastic)) {
+  Lanes plastic_size = {};  // 0: none; squares of what is smaller than 1e-160 are no matter
+  for (int k = 0; k < 6; ++k) plastic_size += plastic[k] * plastic[k];
+  if (!tets.is_linear && any(plastic_size)) {
     const Lanes S[6] = {strain[0] + 1.0, strain[1] + 1.0, strain[2] + 1.0,
                         s * strain[3],   s * strain[4],   s * strain[5]};
     // Axial vector of σS over 2: (σS)₃₂ − (σS)₂₃ and so on.
@@ -143,7 +138,7 @@ ARGIL_EVERY_PROCESSOR void compute_corner_forces(const ForceArrays& tets, std::p
     Lanes w[3];
     for (int i = 0; i < 3; ++i) {
       w[i] = scale * (adjugate.m[i] * k[0] + adjugate.m[3 + i] * k[1] + adjugate.m[6 + i] * k[2]);
-      w[i] = is_plastic ? w[i] : Lanes{};
+      w[i] = plastic_size != 0.0 ? w[i] : Lanes{};
     }
     P.m[1] -= w[2];
     P.m[2] += w[1];
@@ -165,7 +160,7 @@ ARGIL_EVERY_PROCESSOR void compute_corner_forces(const ForceArrays& tets, std::p
 
 ARGIL_EVERY_PROCESSOR void set_isotropic_row(const RowArrays& rows, int begin, int end, int first_block,
                                              int num_blocks) {
-  using Quad = double __attribute__((vector_size(32)));  // a column, its last number zero
+  // A column is a Quad.
   Quad sum[3 * kLongestRow];
   for (int k = 0; k < 3 * num_blocks; ++k) sum[k] = Quad{};
   for (int c = begin; c < end; ++c) {
@@ -174,8 +169,9 @@ ARGIL_EVERY_PROCESSOR void set_isotropic_row(const RowArrays& rows, int begin, i
     const double* gradient = rows.turned_gradient + 12 * tet;
     const double* own = gradient + 3 * (corner % 4);
     const Quad ci = {own[0], own[1], own[2], 0.0};
-    const Quad li = rows.lambda[tet] * ci;
-    const Quad mi = rows.mu[tet] * ci;
+    const double weight = rows.scale * rows.weight[tet];
+    const Quad li = weight * rows.lambda[tet] * ci;
+    const Quad mi = weight * rows.mu[tet] * ci;
     const int* blocks = rows.block_of_pair + 4 * static_cast<std::ptrdiff_t>(corner);
     for (int j = 0; j < 4; ++j) {
       if (blocks[j] < 0) continue;
@@ -192,6 +188,19 @@ ARGIL_EVERY_PROCESSOR void set_isotropic_row(const RowArrays& rows, int begin, i
   double* out = rows.values + 9 * static_cast<std::ptrdiff_t>(first_block);
   for (int k = 0; k < 3 * num_blocks; ++k)
     for (int i = 0; i < 3; ++i) out[3 * k + i] = sum[k][i];
+}
+
+ARGIL_EVERY_PROCESSOR void sum_corner_forces(const double* corner_force, const int* corners, int begin,
+                                             int end, double* force) {
+  Quad even = {}, odd = {};  // apart, so that no sum waits for the one before it
+  int c = begin;
+  for (; c + 1 < end; c += 2) {
+    even += quad_at(corner_force + 3 * static_cast<std::ptrdiff_t>(corners[c]));
+    odd += quad_at(corner_force + 3 * static_cast<std::ptrdiff_t>(corners[c + 1]));
+  }
+  if (c < end) even += quad_at(corner_force + 3 * static_cast<std::ptrdiff_t>(corners[c]));
+  even += odd;
+  for (int k = 0; k < 3; ++k) force[k] = even[k];
 }
 
 }  // namespace argil::solid

@@ -16,10 +16,12 @@ struct TetArrays {
   bool is_linear = false;             ///< R = 1
   double* F = nullptr;                ///< 9 a tet
   double* R = nullptr;                ///< 9 a tet
-  double* turned_gradient = nullptr;  ///< R ∇Nᵢ, 12 a tet; may be null: not wanted
+  double* turned_gradient = nullptr;  ///< Q ∇Nᵢ, 12 a tet; may be null: not wanted
+  double* frame = nullptr;            ///< Q, 9 a tet: R, or an earlier one that is still near
+  double frame_tolerance = 0.0;       ///< on ‖R − Q‖; beyond it Q becomes R
   double* strain = nullptr;           ///< ε, Mandel, 6 a tet
   double* volume_ratio = nullptr;     ///< det F
-  char* is_turned = nullptr;          ///< set to 1 where the turned gradient changed
+  char* is_turned = nullptr;          ///< set to 1 where Q changed
 };
 
 /// body(begin, end) for the tets in runs of kLanes; the same runs at any number of threads.
@@ -51,18 +53,23 @@ void compute_corner_forces(const ForceArrays& tets, std::ptrdiff_t begin, std::p
 /// What rows of the matrix are gathered from.
 struct RowArrays {
   const double* turned_gradient = nullptr;  ///< 12 a tet
-  const double* lambda = nullptr;           ///< volume times Lamé's constant, 1 a tet
-  const double* mu = nullptr;
-  const int* corners = nullptr;        ///< 4·tet + corner of each tet around each node
-  const int* block_of_pair = nullptr;  ///< 16 a tet: place of block (i, j), −1 where there is none
-  double* values = nullptr;            ///< 9 a block
+  const double* weight = nullptr;           ///< volume, 1 a tet
+  const double* lambda = nullptr;           ///< 1 a tet [Pa]
+  const double* mu = nullptr;               ///< 1 a tet [Pa]
+  double scale = 1.0;                       ///< of all blocks
+  const int* corners = nullptr;             ///< 4·tet + corner of each tet around each node
+  const int* block_of_pair = nullptr;       ///< 16 a tet: place of block (i, j), −1 where there is none
+  double* values = nullptr;                 ///< 9 a block
 };
 
-/// Longest row that add_isotropic_row can gather.
+/// Longest row that set_isotropic_row can gather.
 inline constexpr int kLongestRow = 96;
 
-/// Blocks first_block … first_block + num_blocks − 1 of one row: Σ λ cᵢ⊗cⱼ + μ cⱼ⊗cᵢ + μ cᵢ·cⱼ 1 over the
-/// corners `begin` … `end` − 1, c the turned gradients.
+/// Blocks first_block … first_block + num_blocks − 1 of one row: scale Σ V (λ cᵢ⊗cⱼ + μ cⱼ⊗cᵢ + μ cᵢ·cⱼ 1)
+/// over the corners `begin` … `end` − 1, c the turned gradients.
 void set_isotropic_row(const RowArrays& rows, int begin, int end, int first_block, int num_blocks);
+
+/// Sum of the forces on corners `begin` … `end` − 1 of `corners`; each force with a number after it.
+void sum_corner_forces(const double* corner_force, const int* corners, int begin, int end, double* force);
 
 }  // namespace argil::solid

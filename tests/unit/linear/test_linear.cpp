@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/rng.h"
-#include "linear/cholesky.h"
+#include "linear/pcg.h"
 #include "linear/solver.h"
 
 namespace argil::linear {
@@ -99,12 +99,60 @@ TEST(CholeskyFactor, RefusesAnIndefiniteMatrix) {
   EXPECT_FALSE(factor.factorise(a));
 }
 
+TEST(BlockMatrix, MultipliesAsADenseMatrixDoes) {
+  for (const int rows : {1, 2, 31, 32, 33, 100}) {
+    const BlockMatrix a = make_random_spd(rows, 21);
+    const Points x = make_random_vector(rows, 22);
+    Points y(3, rows);
+    OrderedRuns runs(3);
+    const double dot = multiply(a, x, y, runs);
+    const Eigen::VectorXd expected = to_dense(a) * x.reshaped();
+    EXPECT_LT((y.reshaped() - expected).norm(), 1e-14 * expected.norm()) << rows;
+    EXPECT_NEAR(dot, expected.dot(x.reshaped()), 1e-13 * expected.norm() * x.norm()) << rows;
+    RoundedOperator rounded(3);
+    rounded.update(a);
+    rounded.multiply(x, y);
+    EXPECT_LT((y.reshaped() - expected).norm(), 1e-7 * expected.norm()) << rows;  // a float has 2⁻²⁴
+    EXPECT_GT((y.reshaped() - expected).norm(), 1e-10 * expected.norm()) << rows;
+  }
+}
+
+TEST(ConjugateGradients, MeasuresTheResidualByThatOfTheFirstGuess) {
+  // Gravity on a body that already flies fast: what is new is small beside b, and must not be lost.
+  const BlockMatrix a = make_random_spd(50, 23);
+  const Points before = 1e4 * make_random_vector(50, 24);
+  const Points change = make_random_vector(50, 25);
+  Points b(3, 50);
+  b.reshaped() = to_dense(a) * (before + change).reshaped();
+  BlockJacobi jacobi(1);
+  jacobi.update(a);
+  ConjugateGradients cg(1);
+  Points x = before;
+  const SolveReport report = solve(cg, a, jacobi, b, 1e-3, 100, 1, x);
+  EXPECT_TRUE(report.converged);
+  EXPECT_GT(report.iterations, 0);
+  EXPECT_LT((x - before - change).norm(), 3e-3 * change.norm());  // condition number 3 of D⁻¹A
+}
+
+TEST(ConjugateGradients, StopsWhereRoundingLeavesNoMore) {
+  const BlockMatrix a = make_random_spd(50, 26);
+  Points x = make_random_vector(50, 27);
+  Points b(3, 50);
+  b.reshaped() = to_dense(a) * x.reshaped();
+  BlockJacobi jacobi(1);
+  jacobi.update(a);
+  ConjugateGradients cg(1);
+  const SolveReport report = solve(cg, a, jacobi, b, 1e-8, 100, 1, x);
+  EXPECT_TRUE(report.converged);
+  EXPECT_EQ(report.iterations, 0);
+}
+
 TEST(ConjugateGradients, BlockJacobiReachesTheToleranceOfATrueResidual) {
   const BlockMatrix a = make_random_spd(200, 4);
   const Points b = make_random_vector(200, 5);
-  BlockJacobi jacobi;
+  BlockJacobi jacobi(1);
   jacobi.update(a);
-  ConjugateGradients cg;
+  ConjugateGradients cg(1);
   Points x = Points::Zero(3, 200);
   const SolveReport report = solve(cg, a, jacobi, b, 1e-10, 200, 1, x);
   EXPECT_TRUE(report.converged);
@@ -119,8 +167,9 @@ TEST(ConjugateGradients, ExactFactorConvergesInOneIterationAndAStaleOneInFew) {
   const Points b = make_random_vector(100, 7);
   CholeskyFactor factor(a);
   ASSERT_TRUE(factor.factorise(a));
-  StaleCholesky stale(factor);
-  ConjugateGradients cg;
+  OrderedRuns rows(1);
+  StaleCholesky stale(factor, rows);
+  ConjugateGradients cg(1);
   Points x = Points::Zero(3, 100);
   EXPECT_EQ(solve(cg, a, stale, b, 1e-10, 50, 1, x).iterations, 1);
   x.setZero();
@@ -130,9 +179,9 @@ TEST(ConjugateGradients, ExactFactorConvergesInOneIterationAndAStaleOneInFew) {
 
 TEST(ConjugateGradients, ReportsWhenItDoesNotConverge) {
   const BlockMatrix a = make_laplacian(300);
-  BlockJacobi jacobi;
+  BlockJacobi jacobi(1);
   jacobi.update(a);
-  ConjugateGradients cg;
+  ConjugateGradients cg(1);
   Points x = Points::Zero(3, 300);
   const SolveReport report = solve(cg, a, jacobi, Points::Ones(3, 300), 1e-12, 5, 1, x);
   EXPECT_FALSE(report.converged);
@@ -141,11 +190,11 @@ TEST(ConjugateGradients, ReportsWhenItDoesNotConverge) {
 
 TEST(ConjugateGradients, GivesEqualBitsOnAnyNumberOfThreads) {
   const BlockMatrix a = make_laplacian(500);
-  BlockJacobi jacobi;
+  BlockJacobi jacobi(1);
   jacobi.update(a);
   const Points b = make_random_vector(500, 8);
   Points first = Points::Zero(3, 500);
-  ConjugateGradients cg;
+  ConjugateGradients cg(1);
   static_cast<void>(solve(cg, a, jacobi, b, 1e-10, 700, 1, first));
   for (const int threads : {2, 4, 7}) {
     Points x = Points::Zero(3, 500);
@@ -177,7 +226,7 @@ TEST_P(EverySolver, SolvesAgainAndAgainWhileTheMatrixChanges) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EverySolver,
-                         testing::Values(SolverKind::pcg_cholesky, SolverKind::pcg_jacobi,
+                         testing::Values(SolverKind::pcg, SolverKind::pcg_cholesky, SolverKind::pcg_jacobi,
                                          SolverKind::cholesky, SolverKind::supernodal));
 
 TEST(DirectSolver, FactorisesOnlyWhenTheMatrixChanged) {
@@ -227,8 +276,31 @@ TEST(JacobiSolver, SeesThatAMatrixIsNotPositiveDefinite) {
   EXPECT_TRUE(std::isinf(report.relative_residual));
 }
 
+TEST(KeptFactorSolver, BringsInAFactorWithTheFirstLongSolve) {
+  SolverParams params;
+  params.tolerance = 1e-8;
+  params.jacobi_iterations = 40;
+  const auto solver = make_solver(params);
+  const auto iterations = [&](const BlockMatrix& a) {
+    MatrixOperator product(a, 1);
+    Points x = Points::Zero(3, 300);
+    const SolveReport report = solver->solve(a, product, make_random_vector(300, 28), x);
+    EXPECT_TRUE(report.converged);
+    return report.iterations;
+  };
+  EXPECT_GT(iterations(make_random_spd(300, 29)), 1);
+  EXPECT_EQ(solver->cost().factorisations, 0);
+  EXPECT_LE(iterations(make_laplacian(300)), 1);  // over its diagonal: hundreds
+  EXPECT_EQ(solver->cost().factorisations, 1);
+  const int before = solver->cost().iterations;
+  EXPECT_LE(iterations(make_laplacian(300)), 1);
+  EXPECT_LE(solver->cost().iterations, before + 1);  // and none over the diagonal any more
+}
+
 TEST(KeptFactorSolver, RenewsItsFactorAfterASlowSolveOnly) {
   SolverParams params;
+  params.kind = SolverKind::pcg_cholesky;
+  params.tolerance = 1e-8;
   params.refactor_iterations = 3;
   const auto solver = make_solver(params);
   BlockMatrix a = make_random_spd(100, 15);

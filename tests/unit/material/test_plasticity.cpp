@@ -321,5 +321,39 @@ TEST(ClayKernel, InRateFormDoesNotDependOnTheStep) {
   EXPECT_EQ(compute_clay_factor(0.03, kernel, 0.001), 1.0);
 }
 
+TEST(FindFlowing, NamesThePointsThatTheLawLetsFlow) {
+  constexpr int kPoints = 61;  // the last batch is not full
+  Rng rng(5);
+  TensorField strain(6, kPoints), plastic(6, kPoints);
+  Field yield(kPoints);
+  for (Eigen::Index i = 0; i < strain.size(); ++i) {
+    strain(i) = rng.uniform(-0.1, 0.1);
+    plastic(i) = rng.uniform(-0.1, 0.1);
+  }
+  for (int p = 0; p < kPoints; ++p) yield(p) = rng.uniform(0.05, 0.25);
+  for (const FlowForm form : {FlowForm::rate, FlowForm::rate_to_yield, FlowForm::literal, FlowForm::j2})
+    for (const bool deviatoric : {false, true})
+      for (const StrainNorm norm : {StrainNorm::frobenius, StrainNorm::voigt6}) {
+        Plasticity law;
+        law.form = form;
+        law.deviatoric = deviatoric;
+        law.norm = norm;
+        law.creep_per_s = 20.0;
+        law.max = 1.0;
+        int count = 0;
+        for (int p = 0; p < kPoints; ++p) {
+          const int begin = p / 8 * 8;
+          const unsigned found = find_flowing(strain.data(), plastic.data(), yield.data(), law, begin,
+                                              std::min(begin + 8, kPoints));
+          const Vec6 after = compute_plastic_strain(strain.col(p), plastic.col(p), {yield(p)}, law, 1e-3);
+          const bool flows = after != plastic.col(p);
+          EXPECT_EQ((found >> (p - begin)) & 1U, flows ? 1U : 0U) << p;
+          count += flows ? 1 : 0;
+        }
+        EXPECT_GT(count, 5);
+        EXPECT_LT(count, kPoints - 5);
+      }
+}
+
 }  // namespace
 }  // namespace argil::material

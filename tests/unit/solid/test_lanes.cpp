@@ -20,7 +20,8 @@ struct Tets {
   Points x{3, 4 * kTets};
   Eigen::Matrix4Xi nodes{4, kTets};
   Eigen::Matrix3Xd gradient{3, 4 * kTets}, turned{3, 4 * kTets}, force{3, 4 * kTets};
-  Eigen::Matrix3Xd F{3, 3 * kTets}, R{3, 3 * kTets};
+  Eigen::Matrix3Xd F{3, 3 * kTets}, R{3, 3 * kTets}, frame{3, 3 * kTets};
+  double tolerance = 0.0;
   TensorField strain{6, kTets}, plastic{6, kTets};
   Field volume_ratio{kTets}, weight{kTets}, lambda{kTets}, mu{kTets};
   std::vector<char> is_turned = std::vector<char>(kTets, 0);
@@ -46,11 +47,12 @@ struct Tets {
       mu(t) = rng.uniform(1e3, 1e5);
     }
     turned.setZero();
+    frame.setZero();
   }
   void move(StrainModel model) {
-    const TetArrays arrays{
-        x.data(), nodes.data(),  gradient.data(), model == StrainModel::linear, F.data(),
-        R.data(), turned.data(), strain.data(),   volume_ratio.data(),          is_turned.data()};
+    const TetArrays arrays{x.data(),  nodes.data(),  gradient.data(),     model == StrainModel::linear,
+                           F.data(),  R.data(),      turned.data(),       frame.data(),
+                           tolerance, strain.data(), volume_ratio.data(), is_turned.data()};
     for_batches(kTets, 1,
                 [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_motions(arrays, begin, end); });
   }
@@ -97,6 +99,35 @@ TEST_P(Lanes8, NameTheTetsWhoseFrameChanged) {
   std::vector<char> expected(kTets, 0);
   if (GetParam() == StrainModel::corotational) expected[kMoved] = 1;  // the linear law has one frame for ever
   EXPECT_EQ(tets.is_turned, expected);
+}
+
+TEST(Lanes8, KeepAFrameUntilTheRotationHasLeftIt) {
+  Tets tets;
+  tets.move(StrainModel::corotational);
+  const Tets before = tets;
+  tets.is_turned.assign(kTets, 0);
+  tets.tolerance = 0.01;
+  constexpr int kLittle = kLanes + 1, kMuch = 3;
+  const auto turn = [&](int tet, double angle) {
+    tets.x.middleCols<4>(4 * tet) =
+        Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix() * tets.x.middleCols<4>(4 * tet).eval();
+  };
+  turn(kLittle, 0.006);
+  turn(kMuch, 0.02);
+  tets.move(StrainModel::corotational);
+  std::vector<char> expected(kTets, 0);
+  expected[kMuch] = 1;
+  EXPECT_EQ(tets.is_turned, expected);
+  const auto change = [&](int tet) {
+    return (tets.turned - before.turned).middleCols<4>(4 * tet).cwiseAbs().maxCoeff();
+  };
+  EXPECT_EQ(change(kLittle), 0.0);
+  EXPECT_GT(change(kMuch), 0.001);
+  EXPECT_NEAR((tets.R - before.R).middleCols<3>(3 * kLittle).norm(), 0.006 * std::sqrt(2.0), 1e-6);
+  turn(kLittle, 0.006);  // what it has turned since its frame was made counts, not the last step
+  tets.move(StrainModel::corotational);
+  EXPECT_EQ(tets.is_turned[kLittle], 1);
+  EXPECT_EQ((tets.frame - tets.R).middleCols<3>(3 * kLittle).norm(), 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Lanes8, testing::Values(StrainModel::linear, StrainModel::corotational),

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "base/types.h"
+
+namespace argil::linear {
+
+struct SolveReport {
+  bool converged = false;
+  int iterations = 0;              ///< 0: solved by a factor
+  double relative_residual = 0.0;  ///< ‖b − A x‖₂ over its value at the first guess, by recurrence; of a
+                                   ///< factor over ‖b‖₂; infinite: A was seen not to be positive definite
+};
+
+/// A symmetric positive definite matrix by its product alone.
+class Operator {
+ public:
+  virtual ~Operator() = default;
+  /// y = A x; returns x·y. y has the shape of x.
+  virtual double multiply(const Points& x, Points& y) = 0;
+};
+
+}  // namespace argil::linear
