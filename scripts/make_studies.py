@@ -17,7 +17,7 @@ TITLES = {
     "map_contact_stiffness": "Contact force held over the step (the paper)",
     "map_contact_stiffness_implicit": "Contact in the solve", "map_poisson": "Four-node tets towards ν = ½",
     "map_poisson_p1_nodal": "Volumes averaged at nodes, towards ν = ½",
-    "map_dilute_pole": "The paper's formula for wet clay", "map_wet_dry_contrast": "Wet clay much softer than dry",
+    "map_dilute_pole": "The paper's formula for wet clay",
     "map_rotation": "Linear strain under rotation", "map_creep_step": "Literal plastic flow",
     "map_kernel_step": "Clay kernel once a step"}
 
