@@ -82,6 +82,15 @@ std::string read_last_words(const std::string& log) {
   return last.rfind(kName, 0) == 0 ? last.substr(kName.size()) : last;
 }
 
+/// A message without the folder of the scenario that it names, so that tables are the same on every machine.
+std::string leave_out_folder(std::string text, const std::string& scenario) {
+  const std::string folder = fs::path(scenario).parent_path().string() + "/";
+  for (std::size_t at = text.find(folder); folder.size() > 1 && at != std::string::npos;
+       at = text.find(folder, at))
+    text.erase(at, folder.size());
+  return text;
+}
+
 /// One case under way.
 struct Job {
   std::size_t place = 0;  // in the list of cases
@@ -124,7 +133,7 @@ class Runner {
       result.id = make_id(m_cases[i]);
     } catch (const InputError& refused) {
       result.exit_code = kInputRefused;
-      result.reason = refused.what();
+      result.reason = leave_out_folder(refused.what(), m_cases[i].scenario);
       return false;
     }
     if (!m_first.emplace(result.id, i).second) return false;
@@ -194,7 +203,7 @@ class Runner {
     fs::remove(stem + ".xdmf", error);  // it names a file that moves
     const std::string file = stem + ".h5";
     if (!fs::exists(file)) {
-      result.reason = read_last_words(path(job.place, ".log"));
+      result.reason = leave_out_folder(read_last_words(path(job.place, ".log")), m_cases[job.place].scenario);
       return;
     }
     try {
