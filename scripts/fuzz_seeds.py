@@ -1,5 +1,11 @@
 #!/usr/bin/python3
-"""Seeds for the fuzzers from real files: scenarios, traces, small meshes in every format. Usage: fuzz_seeds.py FOLDER"""
+"""Seeds for the fuzzers, a folder for each reader: small meshes in every format and encoding, the project's own scenarios,
+motions, studies and sweeps, and what is small or can be cut off among public files.
+
+Usage: fuzz_seeds.py FOLDER [PUBLIC_FILES]
+"""
+import base64
+import json
 import struct
 import sys
 import zlib
@@ -15,6 +21,29 @@ def lines(rows):
     return "".join(" ".join(map(str, row)) + "\n" for row in rows)
 
 
+def packed_vtu(is_packed):
+    """Numbers in base64, or packed by zlib and appended raw."""
+    arrays = {"p": struct.pack("<15d", *(c for p in POINTS for c in p)), "connectivity": struct.pack("<8i", *TETS[0], *TETS[1]),
+              "offsets": struct.pack("<2i", 4, 8), "types": bytes([10, 10]), "E": struct.pack("<2f", 1, 2)}
+    types = {"p": "Float64", "types": "UInt8", "E": "Float32"}
+    texts, appended = {}, b""
+    for name, numbers in arrays.items():
+        tag = f'<DataArray type="{types.get(name, "Int32")}" Name="{name}" NumberOfComponents="{3 if name == "p" else 1}" '
+        if is_packed:
+            small = zlib.compress(numbers)
+            texts[name] = tag + f'format="appended" offset="{len(appended)}"/>'
+            appended += struct.pack("<4I", 1, len(numbers), 0, len(small)) + small
+        else:
+            block = base64.b64encode(struct.pack("<I", len(numbers)) + numbers).decode()
+            texts[name] = tag + f'format="binary">{block}</DataArray>'
+    compressor = ' compressor="vtkZLibDataCompressor"' if is_packed else ""
+    text = f'<VTKFile type="UnstructuredGrid" byte_order="LittleEndian"{compressor}><UnstructuredGrid><Piece NumberOfPoints="5" ' \
+        f'NumberOfCells="2"><Points>{texts["p"]}</Points><Cells>{texts["connectivity"]}{texts["offsets"]}{texts["types"]}</Cells>' \
+        f'<CellData>{texts["E"]}</CellData></Piece></UnstructuredGrid>'
+    tail = b'<AppendedData encoding="raw">_' + appended + b"</AppendedData>" if is_packed else b""
+    return text.encode() + tail + b"</VTKFile>"
+
+
 def tet_files():
     """By the order of the fuzzer's endings: .msh .mesh .node .vtk .vtu .veg"""
     numbered = [(i + 1, *p) for i, p in enumerate(POINTS)]
@@ -25,12 +54,19 @@ def tet_files():
         "$EndNodes\n$Elements\n1 2 1 2\n3 1 4 2\n" + lines((i + 1, *t) for i, t in enumerate(one)) + "$EndElements\n"
     yield 1, "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n" + lines((*p, 0) for p in POINTS) + "Tetrahedra\n2\n" + \
         lines((*t, 1) for t in one) + "End\n"
-    yield 2, "5 3 0 0\n" + lines(numbered)
+    yield 2, "5 3 0 0\n" + lines(numbered) + "\x1e2 4 1\n" + lines((i + 1, *t, 0.5) for i, t in enumerate(one))
     head = "# vtk DataFile Version 3.0\nx\n{}\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n"
     yield 3, head.format("ASCII") + lines(POINTS) + "CELLS 2 10\n" + lines((4, *t) for t in TETS) + \
         "CELL_TYPES 2\n10\n10\nCELL_DATA 2\nSCALARS a double 1\nLOOKUP_TABLE default\n0.5\n1\n"
     yield 3, head.format("BINARY").encode() + b"".join(struct.pack(">3d", *p) for p in POINTS) + b"\nCELLS 2 10\n" + \
         b"".join(struct.pack(">5i", 4, *t) for t in TETS) + b"\nCELL_TYPES 2\n" + struct.pack(">2i", 10, 10)
+    yield 3, head.format("ASCII").replace("3.0", "5.1") + lines(POINTS) + "CELLS 3 8\nOFFSETS vtktypeint64\n0 4 8\n" \
+        "CONNECTIVITY vtktypeint64\n" + lines(TETS) + "CELL_TYPES 2\n10\n10\nCELL_DATA 2\nFIELD f 1\nE 1 2 float\n1 2\n"
+    yield 0, b"$MeshFormat\n2.2 1 8\n" + struct.pack("<i", 1) + b"\n$EndMeshFormat\n$Nodes\n5\n" + b"".join(
+        struct.pack("<i3d", i + 1, *p) for i, p in enumerate(POINTS)) + b"\n$EndNodes\n$Elements\n2\n" + \
+        struct.pack("<3i", 4, 2, 0) + b"".join(struct.pack("<5i", i + 1, *t) for i, t in enumerate(one)) + b"\n$EndElements\n"
+    for packed in (True, False):
+        yield 4, packed_vtu(packed)
     yield 4, '<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"><UnstructuredGrid>' \
         '<Piece NumberOfPoints="5" NumberOfCells="2"><Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">' + \
         lines(POINTS) + '</DataArray></Points><Cells><DataArray type="Int64" Name="connectivity" format="ascii">' + lines(TETS) + \
@@ -54,20 +90,56 @@ def surface_files():
             b"".join(struct.pack(order + "B3i", 3, *f) for f in FACES)
 
 
+def json_files(pattern):
+    return [file.read_bytes() for file in sorted(ROOT.glob(pattern))]
+
+
+def head(file, size=4000):
+    """Whole lines from the beginning of a file."""
+    text = file.read_bytes()[:size]
+    return text[:text.rfind(b"\n") + 1]
+
+
+def shared_files(shared):
+    """Small public files and beginnings of larger ones, by reader."""
+    endings = {"tets": [".msh", ".mesh", ".node", ".vtk", ".vtu", ".veg"], "surfaces": [".obj", ".stl", ".ply"]}
+    for name, folder in (("tets", "tets"), ("surfaces", "surface")):
+        for file in sorted((shared / folder).glob("*")):
+            if file.suffix in endings[name] and file.stat().st_size < 8000:
+                yield name, bytes([endings[name].index(file.suffix)]) + file.read_bytes()
+    for file in sorted((shared / "traces").glob("*.csv")):
+        yield "traces", head(file)
+    for file in sorted((shared / "ccd").glob("*/*/*.csv")):
+        yield "queries", b"".join(file.read_bytes().splitlines(True)[:16])
+
+
+def own_files():
+    for name, files in (("tets", tet_files()), ("surfaces", surface_files())):
+        for ending, text in files:
+            yield name, bytes([ending]) + (text if isinstance(text, bytes) else text.encode())
+    for text in json_files("scenarios/*.json") + json_files("scenarios/failures/*.json") + json_files("tests/golden/ball.json"):
+        yield "scenarios", text
+    for file in sorted(ROOT.glob("traces/*.csv")):
+        yield "traces", head(file)
+    yield "queries", b"0,1,1,2,-3,4\n" * 8
+    yield "queries", b"1,3,1,2,5,7,1\n" * 16
+    yield "points", b"".join(b'{"index":%d,"id":"a1","scenario":"s.json","settings":{"/a/b":%s}}\n' % (i, value)
+                             for i, value in enumerate((b"1", b'"x"', b"[1,2.5e-3,null]", b'{"k":true}')))
+    for text in json_files("scenarios/sweeps/*.sweep.json"):
+        yield "sweeps", text
+    yield "sweeps", json.dumps({"scenario": "s.json", "zip": {"/a": [1, 2], "/b": ["x", True]}, "list": [{}, {"/c": 1}],
+                                "sample": {"method": "halton", "count": 3, "seed": 1, "axes": {"/d": [0, 1], "/e": [1, 2]}}}).encode()
+    for kind, pattern in enumerate(("scenarios/studies/chart*.json", "scenarios/studies/map*.json", "tests/golden/[en]*.json")):
+        for text in json_files(pattern):
+            yield "studies", bytes([kind]) + text
+
+
 def main():
     folder = Path(sys.argv[1])
-    seeds = {"tets": [], "surface": [], "scenario": [], "trace": [], "queries": [], "points": []}
-    for name, files in (("tets", tet_files()), ("surface", surface_files())):
-        seeds[name] = [bytes([ending]) + (text if isinstance(text, bytes) else text.encode()) for ending, text in files]
-    seeds["scenario"] = [file.read_bytes() for file in sorted(ROOT.glob("scenarios/*.json")) + [ROOT / "tests/golden/ball.json"]]
-    seeds["trace"] = [b"".join(file.read_bytes().splitlines(True)[:20]) for file in sorted(ROOT.glob("traces/*.csv"))]
-    seeds["queries"] = [b"0,1,1,2,-3,4\n" * 8, b"1,3,1,2,5,7,1\n" * 16]
-    seeds["points"] = [b'{"index":0,"id":"a","scenario":"s.json","settings":{"/a/b":1}}\n'
-                       b'{"index":1,"id":"b","scenario":"s.json","settings":{"/a/b":"x"}}\n']
-    for name, contents in seeds.items():
+    shared = Path(sys.argv[2]) if len(sys.argv) > 2 else ROOT.parent / "shared" / "data"
+    for name, content in [*own_files(), *shared_files(shared)]:
         (folder / name).mkdir(parents=True, exist_ok=True)
-        for content in contents:
-            (folder / name / f"{zlib.crc32(content):08x}").write_bytes(content)
+        (folder / name / f"{zlib.crc32(content):08x}").write_bytes(content)
 
 
 if __name__ == "__main__":

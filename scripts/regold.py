@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Golden results: one small run for each mode, model, element, integrator and method between frames (tests/golden/).
 
-Usage: regold.py ARGIL --check          compares runs with the golden files; exit code 1 when one is different
+Usage: regold.py ARGIL --check [--threads 1 2]
+                                        compares runs with the golden files; exit code 1 when one is different
        regold.py ARGIL [NAME …]         rewrites golden files, all or those named: only when results are meant to change
 
-Bits must be equal when compiler, flags, libraries and processor family are those that the golden file names in its
+Runs of one program must have the same bits for any number of threads. Bits must equal the golden ones when compiler, flags, libraries and processor family are those that the golden file names in its
 /provenance/build and /provenance/machine; elsewhere numbers must agree within tests/golden/near.json.
 """
 import argparse
@@ -20,9 +21,10 @@ import h5py
 GOLDEN = Path(__file__).resolve().parent.parent / "tests" / "golden"
 
 
-def run(argil, name, settings, output):
+def run(argil, name, settings, output, threads=1):
     sets = [word for setting in settings for word in ("--set", setting)]
-    done = subprocess.run([argil, "run", GOLDEN / "ball.json", "-q", "-o", output, *sets], capture_output=True, text=True)
+    done = subprocess.run([argil, "run", GOLDEN / "ball.json", "-q", "-o", output, "--threads", str(threads), *sets],
+                          capture_output=True, text=True)
     if done.returncode != 0:
         raise SystemExit(f"{name}: argil run ended with {done.returncode}: {done.stderr}")
 
@@ -63,22 +65,31 @@ def without_commit(text):
     return [line for line in text.splitlines() if line and not line.startswith("commit ")]
 
 
-def check(argil, name, settings):
+def compare(argil, a, b, rule):
+    """Whether they are the same, and what the program says of it."""
+    done = subprocess.run([argil, "compare", a, b, "--tolerances", GOLDEN / f"{rule}.json"], capture_output=True, text=True)
+    return done.returncode == 0, "\n    ".join((done.stdout + done.stderr).splitlines()[:4])
+
+
+def check(argil, name, settings, threads):
     """Line to print, and whether it is as it should be."""
     golden = GOLDEN / f"{name}.h5"
     with h5py.File(golden) as file:
         build = file["provenance/build"][()].decode()
         machine = file["provenance/machine"][()].decode()
     version = subprocess.run([argil, "--version"], capture_output=True, text=True, check=True).stdout
-    is_same = without_commit(build) == without_commit(version) and machine == platform.machine()
-    rule = "exact" if is_same else "near"
+    is_same_build = without_commit(build) == without_commit(version) and machine == platform.machine()
     with tempfile.TemporaryDirectory() as folder:
-        output = Path(folder) / "run.h5"
-        run(argil, name, settings, output)
-        done = subprocess.run([argil, "compare", golden, output, "--tolerances", GOLDEN / f"{rule}.json"],
-                              capture_output=True, text=True)
-    first = (done.stdout + done.stderr).splitlines()[:4]
-    return f"{name} ({'bits' if is_same else 'within tolerance, made by another build'}): " + "\n    ".join(first), done.returncode == 0
+        outputs = [Path(folder) / f"threads_{count}.h5" for count in threads]
+        for count, output in zip(threads, outputs):
+            run(argil, name, settings, output, count)
+        is_equal, what = compare(argil, golden, outputs[0], "exact" if is_same_build else "near")
+        line = f"{name} ({'bits' if is_same_build else 'within tolerance, made by another build'}): {what}"
+        for count, output in zip(threads[1:], outputs[1:]):
+            same_bits, what = compare(argil, outputs[0], output, "exact")
+            line += f"; {count} threads: {'the same bits' if same_bits else what}"
+            is_equal = is_equal and same_bits
+    return line, is_equal
 
 
 def main():
@@ -86,6 +97,7 @@ def main():
     parser.add_argument("argil")
     parser.add_argument("names", nargs="*")
     parser.add_argument("--check", action="store_true")
+    parser.add_argument("--threads", type=int, nargs="+", default=[1, 2])
     options = parser.parse_intermixed_args()
     argil = str(Path(options.argil).resolve())
     runs = json.loads((GOLDEN / "runs.json").read_text())
@@ -95,7 +107,7 @@ def main():
     different = 0
     for name in options.names or runs:
         if options.check:
-            line, is_equal = check(argil, name, runs[name])
+            line, is_equal = check(argil, name, runs[name], options.threads)
             print(line, flush=True)
             different += not is_equal
         else:

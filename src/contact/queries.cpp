@@ -13,6 +13,10 @@
 namespace argil::contact {
 namespace {
 
+// The cost of a quotient grows with the square of its digits; a double's exact value has at most 767 and 308.
+constexpr std::size_t kMostDigits = 10000;
+constexpr std::size_t kQuotedLength = 40;  // longer words are cut in messages
+
 /// Unsigned integer of any length, lowest limb first, no zero limb on top.
 class BigUint {
  public:
@@ -85,7 +89,11 @@ class BigUint {
 std::string_view require_digits(std::string_view text, std::string_view whole) {
   const bool ok =
       !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-  if (!ok) throw std::invalid_argument("\"" + std::string(whole) + "\" is not an integer");
+  if (!ok)
+    throw std::invalid_argument("\"" + std::string(whole.substr(0, kQuotedLength)) + "\" is not an integer");
+  if (text.size() > kMostDigits)
+    throw std::invalid_argument("an integer has " + std::to_string(text.size()) + " digits, more than " +
+                                std::to_string(kMostDigits));
   return text;
 }
 

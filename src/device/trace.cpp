@@ -1,17 +1,14 @@
 #include "device/trace.h"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <limits>
-#include <memory>
 
 #include "base/check.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/read_file.h"
 #include "device/trace_raw.h"
 
 namespace argil::device {
@@ -27,19 +24,6 @@ constexpr double kMaxRateError =
     0.05;  // stated rate against the median interval; clocks jitter, units do not
 constexpr double kSnapFraction = 1e-6;  // of an interval: a query this near a sample is that sample
 constexpr double kSmallArc = 1e-6;      // [rad]; below, chord and arc weights differ by less than its square
-
-// C streams, because errno after theirs says why.
-std::string read_bytes(const std::string& file) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
-  std::string bytes;
-  std::array<char, 1 << 16> block;
-  std::size_t length = 0;
-  while (stream && (length = std::fread(block.data(), 1, block.size(), stream.get())) > 0)
-    bytes.append(block.data(), length);
-  if (!stream || std::ferror(stream.get()) != 0)
-    throw IoError(file, std::string("cannot be read: ") + std::strerror(errno));
-  return bytes;
-}
 
 std::string place(const RawTrace& raw, std::size_t i) {
   return raw.line.empty() ? "row " + std::to_string(i) : "line " + std::to_string(raw.line[i]);
@@ -122,7 +106,7 @@ void move_to_world(const DeviceToWorld& map, DeviceSample& sample) {
 }  // namespace
 
 Trace read_trace(const std::string& file, const TraceOptions& options) {
-  const std::string bytes = read_bytes(file);
+  const std::string bytes = read_file(file);
   const bool is_hdf5 = bytes.starts_with("\x89HDF\r\n\x1a\n");
   RawTrace raw = is_hdf5 ? internal::read_hdf5(file, options) : internal::parse_csv(file, bytes, options);
   fill_times(file, options, raw);

@@ -1,14 +1,11 @@
 #include "mesh/file_cursor.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <memory>
 
 #include "base/error.h"
+#include "base/read_file.h"
 
 namespace argil::mesh {
 namespace {
@@ -34,29 +31,6 @@ std::string_view drop_plus(std::string_view word) {
   return is_positive ? word.substr(1) : word;
 }
 
-std::string read_bytes(const std::string& file) {
-  const auto fail = [&](int code) {
-    throw IoError(file, std::string("cannot be read: ") + std::strerror(code != 0 ? code : EIO));
-  };
-  errno = 0;
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) fail(EISDIR);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
-  if (!stream) fail(errno);
-  std::string bytes;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (!error) bytes.reserve(static_cast<std::size_t>(size));
-  constexpr std::size_t kBlock = std::size_t{1} << 20;
-  while (std::feof(stream.get()) == 0) {
-    const std::size_t used = bytes.size();
-    bytes.resize(used + kBlock);
-    const std::size_t got = std::fread(bytes.data() + used, 1, kBlock, stream.get());
-    bytes.resize(used + got);
-    if (std::ferror(stream.get()) != 0) fail(errno);
-  }
-  return bytes;
-}
-
 }  // namespace
 
 std::string_view trim(std::string_view text) {
@@ -65,7 +39,7 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-FileCursor::FileCursor(const std::string& file) : m_file(file), m_bytes(read_bytes(file)) {}
+FileCursor::FileCursor(const std::string& file) : m_file(file), m_bytes(read_file(file)) {}
 
 void FileCursor::seek(std::size_t offset) {
   m_offset = m_last = std::min(offset, m_bytes.size());

@@ -166,7 +166,9 @@ void LegacyReader::keep(const std::string& name, std::int64_t components, std::v
 // SCALARS name type [components] / LOOKUP_TABLE name / values
 void LegacyReader::read_scalars() {
   const auto line = m_cursor.find_line();
-  const std::size_t end_of_line = m_cursor.offset() - 1;  // numbers() passes the line break itself
+  // numbers() passes the line break itself; a file that ends here has none.
+  const std::size_t end_of_line =
+      m_cursor.offset() - (m_cursor.bytes().substr(0, m_cursor.offset()).ends_with('\n') ? 1 : 0);
   WordsOf words(line.value_or(""));
   const std::string name = decode_name(words.next());
   const std::string type_word(words.next());

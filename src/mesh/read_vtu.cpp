@@ -182,13 +182,18 @@ void VtuReader::read_tags() {
   if (m_num_cells < 0) m_cursor.fail_at(0, "has no Piece", "write the file again");
 }
 
-// Where the appended array that begins at `begin` must end: at the next one, or at the end of the file.
+// Where the appended array that begins at `begin` must end: at the next one, or at the end of the file. No
+// two share their bytes, so that a small file cannot ask for a large memory.
 std::size_t VtuReader::appended_end(std::size_t begin) const {
   std::size_t end = m_cursor.bytes().size();
+  int num_here = 0;
   for (const DataArray& array : m_arrays) {
     if (array.tag.attribute("format") != "appended") continue;
     const std::size_t other = *m_appended + static_cast<std::size_t>(whole(array.tag, "offset", ""));
     if (other > begin) end = std::min(end, other);
+    if (other == begin && ++num_here > 1)
+      m_cursor.fail_at(array.tag.begin, "array \"" + array.name + "\" has the offset of another",
+                       "give each its own");
   }
   return end;
 }

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <set>
-#include <sstream>
 
 #include "base/error.h"
+#include "base/read_file.h"
 
 namespace argil::scenario {
 namespace {
@@ -122,11 +121,7 @@ Json read_json(const std::string& file) {
   if (missing) throw InputError(file, "", "cannot be read (" + missing.message() + ")", "check the path");
   if (size > kMaxBytes)
     throw InputError(file, "", "is larger than 64 MiB", "a scenario is small; is this the right file?");
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw IoError(file, "could not be read to its end");
-  return parse_json(text.str(), file);
+  return parse_json(read_file(file), file);
 }
 
 std::string find_nearest(const std::string& key, const std::vector<std::string>& keys) {

@@ -14,11 +14,25 @@ namespace {
 using PointList = std::vector<std::vector<Setting>>;
 
 constexpr std::size_t kMostPoints = 1000000;
+constexpr std::size_t kMostSettings = 4000000;  // of all points: some 0.5 GB
+
+std::size_t count_settings(const PointList& points) {
+  std::size_t count = 0;
+  for (const auto& settings : points) count += settings.size();
+  return count;
+}
+
+void check_settings(std::size_t count, const JsonReader& reader, const std::string& key) {
+  if (count > kMostSettings)
+    reader.refuse(key, "makes " + std::to_string(count) + " settings, more than four million",
+                  "take fewer values, or put what does not vary into the scenario");
+}
 
 /// Every point of `a` with every point of `b`.
 PointList combine(const PointList& a, const PointList& b, const JsonReader& reader, const std::string& key) {
   if (b.empty() || a.size() > kMostPoints / b.size())
     reader.refuse(key, "makes more than a million points, or none", "take fewer values");
+  check_settings(b.size() * count_settings(a) + a.size() * count_settings(b), reader, key);
   PointList product;
   product.reserve(a.size() * b.size());
   for (const auto& left : a)
@@ -106,6 +120,7 @@ PointList read_sample(const Json& json, const std::string& file) {
   const auto seed = static_cast<std::uint64_t>(reader.number("seed", 0.0, 0.0, 0x1p53));
   const Json& axes = require_axes(reader, "axes", reader.get("axes", "{\"/json/pointer\": [low, high], …}"));
   reader.finish();
+  check_settings(count * axes.size(), reader, "axes");
   PointList points(count);
   std::uint64_t base = 1;
   for (const auto& [pointer, range] : axes.items()) {

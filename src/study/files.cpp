@@ -1,11 +1,10 @@
 #include "study/files.h"
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/read_file.h"
 
 namespace argil::study {
 namespace {
@@ -29,13 +28,12 @@ void require_input_file(const std::string& file, const std::string& place) {
     throw InputError(file, place, "does not exist", "check the path");
   if (std::filesystem::is_directory(file, error))
     throw InputError(file, place, "is a folder", "name a file in it");
+  if (std::filesystem::is_character_file(file, error))  // may never end
+    throw InputError(file, place, "is a device", "name a file");
 }
 
 std::string hash_file(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << stream.rdbuf();
-  return Sha256().add(bytes.str()).hex_digest();
+  return Sha256().add(read_file(file)).hex_digest();
 }
 
 std::string name_xdmf(const std::string& result) {

@@ -40,6 +40,13 @@ TEST(Quotient, TiesGoToEvenAndWhatLiesBeyondATieGoesUp) {
   EXPECT_EQ(compute_quotient("18014398509481983", "1"), 18014398509481984.0);
 }
 
+TEST(Quotient, IntegersWhoseQuotientWouldTakeForeverAreRefused) {
+  const std::string longest(10000, '7');
+  EXPECT_EQ(compute_quotient(longest, longest), 1.0);
+  EXPECT_THROW(compute_quotient(longest + "7", "1"), std::invalid_argument);
+  EXPECT_THROW(compute_quotient("1", std::string(20000000, '7')), std::invalid_argument);
+}
+
 TEST(Quotient, SubnormalResultsAreRoundedOnce) {
   const std::string two_1074 = [] {  // 2^1074 by doubling a decimal string
     std::string digits = "1";

@@ -222,6 +222,18 @@ TEST(RefuseTets, LegacyVtkSaysWhere) {
   });
 }
 
+TEST(RefuseTets, LegacyVtkThatEndsAfterTheHeadOfItsScalars) {
+  // The head's own last number is not the first value.
+  const test::TempFolder folder;
+  const std::string file =
+      folder.write("cut.vtk",
+                   "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"
+                   "0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"
+                   "CELL_DATA 1\nSCALARS E double 1");
+  ARGIL_EXPECT_THROW_WITH(read_tet_mesh(file), InputError,
+                          "line 12: the file ends where a scalar was expected");
+}
+
 TEST(RefuseTets, XmlVtkSaysWhere) {
   expect_refusals({
       {"ascii.vtu", "VTKFile", "HTML", "does not begin with a VTKFile element"},
@@ -246,6 +258,7 @@ TEST(RefuseTets, XmlVtkSaysWhere) {
       {"appended.vtu", "encoding=\"base64\"", "encoding=\"hex\"", "AppendedData with encoding \"hex\""},
       {"appended.vtu", "offset=\"208\"", "offset=\"999999\"", "its offset is behind the end of the file"},
       {"raw.vtu", "offset=\"0\"", "offset=\"1\"", "array \"\""},
+      {"appended.vtu", "offset=\"208\"", "offset=\"0\"", "has the offset of another; give each its own"},
   });
 }
 

@@ -99,6 +99,38 @@ TEST(CompareResults, AcceptsDifferencesWithinAToleranceAndNoLarger) {
   EXPECT_FALSE(pair.compare(options).is_equal());
 }
 
+TEST(CompareResults, AcceptsAShareOfTheLargestValueOfItsDataset) {
+  // Every force is (0.25 tick, 2, 3) or so; one component of one tick moves by 2^-8. The largest of 40 ticks
+  // is known.
+  Pair pair;
+  pair.change_haptic = [](sim::HapticRecord& record) {
+    if (record.tick == 0) record.force.y() += 0x1p-8;
+  };
+  double largest = 0.0;
+  for (Tick tick = 0; tick < 40; ++tick)
+    largest = std::max(largest, test::make_haptic(tick).force.cwiseAbs().maxCoeff());
+  ASSERT_GT(largest, 2.0 * std::abs(test::make_haptic(0).force.y()));  // not the value itself
+  CompareOptions options;
+  options.tolerances = {{"/haptic/force", 0.0, 0.0, 1.001 * 0x1p-8 / largest}};
+  EXPECT_TRUE(pair.compare(options).is_equal());
+  options.tolerances[0].of_largest = 0.999 * 0x1p-8 / largest;
+  EXPECT_FALSE(pair.compare(options).is_equal());
+  options.tolerances = {{"/haptic/torque", 0.0, 0.0, 1.0}};  // of another dataset
+  EXPECT_FALSE(pair.compare(options).is_equal());
+}
+
+TEST(CompareResults, AValueThatIsNotFiniteWidensNoTolerance) {
+  Pair pair;
+  pair.change_haptic = [](sim::HapticRecord& record) {
+    if (record.tick == 3) record.force.x() = std::numeric_limits<double>::infinity();
+    if (record.tick == 5) record.force.y() += 1.0;
+  };
+  CompareOptions options;
+  options.tolerances = {{"/haptic/force", 0.0, 0.0, 1e-3}};
+  EXPECT_EQ(pair.compare(options).differences.at(0).count, 2U);
+  EXPECT_EQ(compare_results(pair.b, pair.a, options).differences.at(0).count, 2U);  // also as the first file
+}
+
 TEST(CompareResults, NeverTakesNaNForEqual) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   Pair pair;

@@ -142,6 +142,11 @@ TEST_F(BadInput, FolderInPlaceOfAFileIsRefused) {
                  {"motion.csv: /trace/file: is a folder; name a file"});
 }
 
+TEST_F(BadInput, DeviceThatNeverEndsIsRefused) {
+  expect_refused(test::make_ball_scenario("/dev/zero"), {},
+                 {"/dev/zero: /trace/file: is a device; name a file"});
+}
+
 TEST_F(BadInput, FixedRegionWithoutVerticesIsRefused) {
   expect_refused(ball(), {R"(/body/fixed=[{"kind":"sphere","centre_m":[1,1,1],"radius_m":0.1}])"},
                  {"/body/fixed/0", "holds no vertex", "body's box, (-0.0", ", 0) to (0.0", ", 0.04) m"});
