@@ -49,11 +49,6 @@ struct Entry {
   int face = -1;
 };
 
-struct NearFace {
-  int face = -1;
-  double squared_distance = 0.0;  ///< [m²]
-};
-
 /// Vertices of one surface against faces of the other, with what is carried between intervals.
 struct VertexSide {
   std::vector<int> face_of_vertex;  ///< face each vertex lies behind; −1: outside
@@ -63,7 +58,7 @@ struct VertexSide {
   // Of the present interval.
   std::vector<Entry> entries;    ///< by vertex, time, face
   std::vector<int> inside_next;  ///< working array
-  std::vector<NearFace> near;    ///< working array: faces about as near to a vertex as its nearest
+  std::vector<NearFace> near;    ///< working array: faces near a vertex, by number
   std::vector<int> pressed;      ///< vertices with depth
   std::vector<double> depth;     ///< |∫ nᵀ(p−q) n dt| of each vertex [m]
 
@@ -142,7 +137,7 @@ struct ContactDetector::Impl {
   // entries.cpp
   void find_entries(const Motion& motion, const Bounds& tool_bounds);
   void test_vertices(int body_face, int tool_face, const Bounds& swept_body, const Motion& motion);
-  void test_edges(int body_edge, const Motion& motion);
+  void test_edges(int body_edge, double reach, const Motion& motion);
 
   // press.cpp
   void press_vertices(const VertexFaceMotion& m, Contacts& out) const;

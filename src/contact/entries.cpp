@@ -10,16 +10,38 @@ namespace {
 /// An edge on its way.
 struct EdgePath {
   std::array<Vec3, 2> t0, t1;
-  Bounds swept;
 
   EdgePath(const Points& x_t0, const Points& x_t1, const Eigen::Vector2i& v)
-      : t0{x_t0.col(v(0)), x_t0.col(v(1))}, t1{x_t1.col(v(0)), x_t1.col(v(1))} {
+      : t0{x_t0.col(v(0)), x_t0.col(v(1))}, t1{x_t1.col(v(0)), x_t1.col(v(1))} {}
+  Bounds swept() const {
+    Bounds box;
     for (std::size_t k = 0; k < 2; ++k) {
-      swept.include(t0[k]);
-      swept.include(t1[k]);
+      box.include(t0[k]);
+      box.include(t1[k]);
     }
+    return box;
   }
 };
+
+/// Do the edge's box and `other`, grown by `separation`, overlap? Axis by axis: most are told apart by the
+/// first.
+bool may_meet(const EdgePath& edge, const Bounds& other, double separation) {
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const auto [low, high] = std::minmax({edge.t0[0](k), edge.t0[1](k), edge.t1[0](k), edge.t1[1](k)});
+    if (low - separation > other.high(k) || high + separation < other.low(k)) return false;
+  }
+  return true;
+}
+
+/// Is the surface concave at an edge, by more than rounding? Then no direction is in its normal cone.
+bool is_concave(const SurfaceAt& surface, int edge) {
+  const Vec3 n = compute_face_normal(surface, surface.features.edge_triangles(0, edge));
+  const Vec3 across = surface.vertex(surface.features.edge_opposite(1, edge)) -
+                      surface.vertex(surface.features.edges(0, edge));
+  constexpr double kRounding = 1e-9;  // sine of the angle between the faces
+  const double height = n.dot(across);
+  return height > 0.0 && height * height > kRounding * kRounding * n.squaredNorm() * across.squaredNorm();
+}
 
 /// Do the edges cross in penetration at one end of the interval? Both parameters of compute_line_parameters
 /// lie in [0, 1] (here without its divisions), the common normal points out of the body and into the tool,
@@ -73,8 +95,10 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
     tool_candidates.clear();
     tool_tree.find_overlaps(swept, motion.tool_t0, motion.tool_t1, tool_candidates);
     for (const int tool_face : tool_candidates) test_vertices(body_face, tool_face, swept, motion);
+    if (tool_candidates.empty()) continue;
     for (const int body_edge : body.triangle_edges.col(body_face))
-      if (body.edge_owner[static_cast<std::size_t>(body_edge)] == body_face) test_edges(body_edge, motion);
+      if (body.edge_owner[static_cast<std::size_t>(body_edge)] == body_face)
+        test_edges(body_edge, reach, motion);
   }
   sort_entries(tool_vertices.entries);
   sort_entries(body_vertices.entries);
@@ -105,11 +129,15 @@ void ContactDetector::Impl::test_vertices(int body_face, int tool_face, const Bo
   }
 }
 
-/// An edge of the body against those of the present tool candidates.
-void ContactDetector::Impl::test_edges(int body_edge, const Motion& motion) {
-  const EdgePath b(motion.body_t0, motion.body_t1, body.edges.col(body_edge));
+/// An edge of the body against those of the present tool candidates. One that stays farther from the tool's
+/// centre than `reach`, or is concave throughout, can bear no force.
+void ContactDetector::Impl::test_edges(int body_edge, double reach, const Motion& motion) {
   const SurfaceAt body_t0{body, motion.body_t0, motion.body_t0},
       body_t1{body, motion.body_t1, motion.body_t1};
+  if (is_concave(body_t0, body_edge) && is_concave(body_t1, body_edge)) return;
+  const EdgePath b(motion.body_t0, motion.body_t1, body.edges.col(body_edge));
+  const Bounds swept = b.swept();
+  if (swept.squared_distance(centre_t0) > reach * reach) return;
   const SurfaceAt tool_t0_at{tool, motion.tool_t0, motion.tool_t0};
   const SurfaceAt tool_t1_at{tool, motion.tool_t1, motion.tool_t1};
   for (const int tool_face : tool_candidates)
@@ -120,7 +148,7 @@ void ContactDetector::Impl::test_edges(int body_edge, const Motion& motion) {
       pair.inside_t0 = is_crossed(a.t0, b.t0, tool_t0_at, tool_edge, body_t0, body_edge);
       pair.inside_t1 = is_crossed(a.t1, b.t1, tool_t1_at, tool_edge, body_t1, body_edge);
       bool is_hit = pair.inside_t0 || pair.inside_t1;
-      if (!is_hit && a.swept.overlaps(b.swept, params.minimum_separation))
+      if (!is_hit && may_meet(a, swept, params.minimum_separation))
         is_hit =
             find_time_of_impact(PairKind::edge_edge,
                                 {{a.t0[0], a.t0[1], b.t0[0], b.t0[1]}, {a.t1[0], a.t1[1], b.t1[0], b.t1[1]}},

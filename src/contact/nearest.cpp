@@ -147,24 +147,25 @@ SurfacePoint compute_nearest_on_face(const SurfaceAt& surface, int face, const V
           found.squared_distance};
 }
 
-SurfacePoint walk_to_nearest(const SurfaceAt& surface, const Vec3& p, int face) {
+SurfacePoint walk_to_nearest(const SurfaceAt& surface, const Vec3& p, int face,
+                             std::span<const NearFace> near) {
   const SurfaceFeatures& features = surface.features;
-  SurfacePoint nearest = compute_nearest_on_face(surface, face, p);
+  int at = face;
+  double least = compute_nearest_on_face(surface, face, p).squared_distance;
   constexpr double kNearer = 1.0 - 1e-12;  // ties by rounding do not move it
   for (bool moved = true; moved;) {
     moved = false;
-    const auto from = static_cast<std::size_t>(nearest.face);
-    for (int i = features.ring_begin[from]; i < features.ring_begin[from + 1]; ++i) {
-      const int near = features.ring[static_cast<std::size_t>(i)];
-      Bounds box;
-      for (int k = 0; k < 3; ++k) box.include(surface.corner(near, k));
-      if (box.squared_distance(p) > nearest.squared_distance) continue;
-      const SurfacePoint other = compute_nearest_on_face(surface, near, p);
-      if (!(other.squared_distance < kNearer * nearest.squared_distance)) continue;
-      nearest = other;
+    const auto ring = features.ring.begin() + features.ring_begin[static_cast<std::size_t>(at)];
+    const auto ring_end = features.ring.begin() + features.ring_begin[static_cast<std::size_t>(at) + 1];
+    for (const NearFace& other : near) {
+      if (!(other.squared_distance < kNearer * least) || !std::binary_search(ring, ring_end, other.face))
+        continue;
+      at = other.face;
+      least = other.squared_distance;
       moved = true;
     }
   }
+  const SurfacePoint nearest = compute_nearest_on_face(surface, at, p);
   const int deepest = choose_deepest(surface, nearest, p);
   return deepest == nearest.face ? nearest : compute_nearest_on_face(surface, deepest, p);
 }

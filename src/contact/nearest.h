@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "contact/bounding_tree.h"
 #include "contact/surface_features.h"
 
@@ -38,10 +40,17 @@ struct SurfacePoint {
 /// Place of `face` nearest to p.
 SurfacePoint compute_nearest_on_face(const SurfaceAt& surface, int face, const Vec3& p);
 
+/// A face and how far it is from a point.
+struct NearFace {
+  int face = -1;
+  double squared_distance = 0.0;  ///< [m²]
+};
+
 /// From `face`, steps to neighbouring faces as long as one is nearer to `p`: the nearest place that the
 /// contact can have slid to. Where several faces meet in it, the one that p lies deepest behind; the present
-/// face when it is among these.
-SurfacePoint walk_to_nearest(const SurfaceAt& surface, const Vec3& p, int face);
+/// face when it is among these. `near`: by number, at least the faces that are nearer to p than `face`.
+SurfacePoint walk_to_nearest(const SurfaceAt& surface, const Vec3& p, int face,
+                             std::span<const NearFace> near);
 
 /// Of two places: the smaller distance, or, where both are equal, the lower triangle.
 bool is_nearer(const SurfacePoint& a, const SurfacePoint& b);

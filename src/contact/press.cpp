@@ -33,21 +33,30 @@ double find_exit(const VertexFaceMotion& m, int v, int face, double from) {
   return outside;
 }
 
-/// The place nearest to p of the whole surface, and in m.side.near the faces less than (1 + blend) times as
-/// far from p as `walked`, the nearest one in the neighbourhood.
-SurfacePoint find_near_faces(const VertexFaceMotion& m, const Vec3& p, const SurfacePoint& walked,
-                             double blend) {
+/// Places on a surface about a vertex that may lie behind it.
+struct Surroundings {
+  SurfacePoint walked;   ///< the nearest one that the vertex can have slid to
+  SurfacePoint nearest;  ///< of the whole surface
+};
+
+/// From the face where the vertex was. Leaves in m.side.near, by number, the faces less than (1 + blend)
+/// times as far from p as that face.
+Surroundings find_surroundings(const VertexFaceMotion& m, const Vec3& p, int face, double blend) {
   std::vector<NearFace>& near = m.side.near;
   near.clear();
-  SurfacePoint nearest = compute_nearest_on_face(m.faces, walked.face, p);
-  const double reach = (1.0 + blend) * (1.0 + blend) * walked.squared_distance;
-  m.tree.visit_near(p, reach, m.faces.x_t0, m.faces.x_t1, [&](int face) {
-    const SurfacePoint found = compute_nearest_on_face(m.faces, face, p);
-    if (is_nearer(found, nearest)) nearest = found;
-    if (found.squared_distance < reach) near.push_back({face, found.squared_distance});
+  Surroundings out;
+  out.nearest = compute_nearest_on_face(m.faces, face, p);
+  const double reach = (1.0 + blend) * (1.0 + blend) * out.nearest.squared_distance;
+  m.tree.visit_near(p, reach, m.faces.x_t0, m.faces.x_t1, [&](int other) {
+    const SurfacePoint found = compute_nearest_on_face(m.faces, other, p);
+    if (is_nearer(found, out.nearest)) out.nearest = found;
+    if (found.squared_distance < reach) near.push_back({other, found.squared_distance});
     return reach;
   });
-  return nearest;
+  // Not in the order of the tree's boxes, which depend on the past.
+  std::sort(near.begin(), near.end(), [](const NearFace& a, const NearFace& b) { return a.face < b.face; });
+  out.walked = walk_to_nearest(m.faces, p, face, near);
+  return out;
 }
 
 /// What turns the force of a vertex behind `nearest` into the mean over the near faces: Σ w h n over
@@ -61,14 +70,13 @@ std::optional<Vec3> find_blended_direction(const VertexFaceMotion& m, const Vec3
   const Vec3 normal = compute_face_normal(m.faces, nearest.face).normalized();
   const double depth = -compute_height(m.faces, nearest.face, p);
   if (!(blend > 0.0) || !(depth > 0.0)) return {};
-  // In the order of their numbers, not of the tree's boxes, which depend on the past.
-  std::vector<NearFace>& near = m.side.near;
-  std::sort(near.begin(), near.end(), [](const NearFace& a, const NearFace& b) { return a.face < b.face; });
+  const double reach = (1.0 + blend) * (1.0 + blend) * nearest.squared_distance;
   double sum = 0.0;
   Vec3 direction = Vec3::Zero();
   bool is_flat = true;
   constexpr double kSamePlane = 1e-12;  // 1 − cos of the angle between two faces: rounding
-  for (const auto& [face, squared_distance] : near) {
+  for (const auto& [face, squared_distance] : m.side.near) {
+    if (!(squared_distance < reach)) continue;
     const Vec3 n = compute_face_normal(m.faces, face).normalized();
     const double alike = n.dot(normal);
     const double nearness = (1.0 + blend - std::sqrt(squared_distance / nearest.squared_distance)) / blend;
@@ -146,25 +154,24 @@ void ContactDetector::Impl::press_vertices(const VertexFaceMotion& m, Contacts& 
     Penalty penalty;
     if (!is_discrete) penalty = compute_vertex_face_penalty(path, was_inside);
     const Vec3 p = m.v_t1.col(v);
-    const SurfacePoint nearest = walk_to_nearest(m.faces, p, face);
-    const bool inside = is_behind(m.faces, find_near_faces(m, p, nearest, params.face_blend), p);
-    side.face_of_vertex[static_cast<std::size_t>(v)] = inside ? nearest.face : -1;
+    const auto [walked, nearest] = find_surroundings(m, p, face, params.face_blend);
+    const bool inside = is_behind(m.faces, nearest, p);
+    side.face_of_vertex[static_cast<std::size_t>(v)] = inside ? walked.face : -1;
     if (inside) side.inside_next.push_back(v);
     if (!inside && penalty.inside_at_end) {
       const double from = penalty.intervals[static_cast<std::size_t>(penalty.num_intervals) - 1].begin;
       penalty = compute_vertex_face_penalty(path, was_inside, find_exit(m, v, face, from));
     }
     if (is_discrete && inside) {
-      const SurfacePoint place = find_nearest(m.faces, m.tree, p, nearest.face);
-      face = place.face;
+      face = nearest.face;
       path = m.path(v, face);
-      penalty = compute_vertex_face_depth(m, p, place);
+      penalty = compute_vertex_face_depth(m, p, nearest);
     }
     double end_depth = inside ? std::max(0.0, -compute_height(m.faces, face, p)) : 0.0;
     if (inside && !is_discrete)
-      if (const auto direction = find_blended_direction(m, p, nearest, params.face_blend)) {
+      if (const auto direction = find_blended_direction(m, p, walked, params.face_blend)) {
         penalty.integral = penalty.integral.norm() * *direction;
-        end_depth = -compute_height(m.faces, nearest.face, p) * direction->norm();
+        end_depth = -compute_height(m.faces, walked.face, p) * direction->norm();
       }
     const double depth = penalty.integral.norm();
     if (!inside && !(depth > 0.0)) stretch.setZero();
