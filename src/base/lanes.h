@@ -34,6 +34,12 @@ ARGIL_INLINE const auto& quad_at(const double* from) {
   return *reinterpret_cast<const Anywhere*>(from);
 }
 
+/// All four of them to any address.
+ARGIL_INLINE void write(const Quad& from, double* to) {
+  using Anywhere = double __attribute__((vector_size(32), aligned(8), may_alias));
+  *reinterpret_cast<Anywhere*>(to) = from;
+}
+
 /// Turns eight rows of eight numbers into eight columns.
 ARGIL_INLINE void transpose(Lanes (&a)[kLanes]) {
   static_assert(kLanes == 8);

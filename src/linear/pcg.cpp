@@ -19,12 +19,17 @@ Mat3 invert(const Mat3& block) {
 
 }  // namespace
 
-void BlockJacobi::update(const BlockMatrix& matrix) {
+void BlockJacobi::update(const BlockMatrix& matrix, Operator& whole) {
   m_inverse.resize(3, 3 * static_cast<Eigen::Index>(matrix.num_rows()) + 1);
   m_inverse.rightCols<1>().setZero();
   m_rows.each(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row)
-      m_inverse.middleCols<3>(3 * row) = invert(matrix.block(matrix.diagonal[static_cast<std::size_t>(row)]));
+      m_inverse.middleCols<3>(3 * row) = matrix.block(matrix.diagonal[static_cast<std::size_t>(row)]);
+  });
+  whole.add_unstored_diagonal(m_inverse);
+  m_rows.each(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t row = begin; row < end; ++row)
+      m_inverse.middleCols<3>(3 * row) = invert(m_inverse.middleCols<3>(3 * row));
   });
 }
 

@@ -84,16 +84,15 @@ class JacobiIteration {
 
   SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, int max_iterations,
                     Points& x) {
-    m_jacobi.update(matrix);
+    m_jacobi.update(matrix, product);
     const double size = b.norm();
     if (!m_is_rounded || !(size > kSmallest && size < kLargest))
       return m_iteration.solve(product, m_jacobi, b, m_tolerance, max_iterations, x);
-    m_rounded.update(matrix);
+    m_rounded.update(matrix, product);
     return m_iteration.solve(m_rounded, m_jacobi, b, m_tolerance, max_iterations, x);
   }
 
  private:
-  static constexpr double kRoomForFloats = 1e-4;
   static constexpr double kSmallest = 1e-10, kLargest = 1e10;  // of ‖b‖: far from where floats end
   double m_tolerance;
   bool m_is_rounded;

@@ -17,6 +17,9 @@ enum class SolverKind {
   supernodal,       ///< supernodal LLᵀ by BLAS, renewed likewise
 };
 
+/// From this tolerance on, the rounding of floats, 6e-8 of a matrix, is beside it.
+inline constexpr double kRoomForFloats = 1e-4;
+
 struct SolverParams {
   SolverKind kind = SolverKind::pcg;
   double tolerance = 1e-3;       ///< residual over that of the first guess at which an iteration stops
@@ -38,8 +41,9 @@ class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// `product` multiplies by A; `matrix` stores it (pcg_matrix_free: its diagonal blocks alone). x holds the
-  /// first guess. Not converged with an infinite residual: the matrix is not positive definite.
+  /// `product` multiplies by A; `matrix` stores it (pcg_matrix_free: its diagonal blocks alone), but for what
+  /// `product` adds to it, which only the kinds without a factor's exactness take (pcg, pcg_jacobi). x holds
+  /// the first guess. Not converged with an infinite residual: the matrix is not positive definite.
   virtual SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) = 0;
 
   const SolverCost& cost() const { return m_cost; }

@@ -30,10 +30,16 @@ bool Solid::has_isotropic_tets() const {
 }
 
 void Solid::set_tet_forces() {
-  const ForceArrays tets{
-      m_elements.gradient.data(), m_rotation.data(), m_strain.data(), m_plastic_strain->data(),
-      m_elements.weight.data(),   m_lambda.data(),   m_mu.data(),     m_params.model == StrainModel::linear,
-      m_corner_force.data()};
+  const ForceArrays tets{m_elements.gradient.data(),
+                         m_rotation.data(),
+                         m_strain.data(),
+                         m_plastic_strain->data(),
+                         m_elements.weight.data(),
+                         m_lambda.data(),
+                         m_mu.data(),
+                         m_nodal ? m_nodal_pressure.data() : nullptr,
+                         m_params.model == StrainModel::linear,
+                         m_corner_force.data()};
   for_batches(m_elements.num_tets(), m_threads,
               [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_corner_forces(tets, begin, end); });
 }
@@ -48,7 +54,7 @@ void Solid::gather(Points& force) const {
 
 void Solid::assemble_internal_force() {
   update_volume_change(*m_plastic_strain);
-  if (has_isotropic_tets() && m_params.model != StrainModel::neo_hookean && !m_nodal)
+  if (has_isotropic_tets() && m_params.model != StrainModel::neo_hookean)
     set_tet_forces();
   else if (m_elements.nodes_per_tet == 4)
     set_corner_forces<4>();

@@ -60,34 +60,48 @@ void Solid::assemble_tangents() {
 void Solid::assemble_matrix(std::span<const PointStiffness> contacts) {
   assemble_tangents();
   assemble_rows();
-  if (m_nodal) {
-    add_nodal_stiffness(m_turned_gradient, shares().kept);
-    if (shares().exact != 0.0) {
-      Eigen::Matrix3Xd gradient(3, m_elements.gradient.cols());
-      for (int t = 0; t < m_elements.num_tets(); ++t)
-        gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t)) =
-            volume_gradient(t) * m_elements.gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t));
-      add_nodal_stiffness(gradient, shares().exact);
-    }
-  }
+  if (m_nodal) update_nodal_stiffness();
   if (m_params.implicit_contact) add_contacts(contacts);
   mask_rows();
 }
 
+/// Does the matrix leave out the nodes' stiffness of p1_nodal? Its factors take a third of the memory and no
+/// assembly; but a Cholesky factor of the rest alone is no exact one, and Newton's matrix may need two sets
+/// of factors, for elasticity and damping.
+bool Solid::keeps_nodal_factors() const {
+  using linear::SolverKind;
+  const SolverKind kind = m_params.solver.kind;
+  return (kind == SolverKind::pcg || kind == SolverKind::pcg_jacobi) &&
+         m_params.iteration == Iteration::one && m_params.model != StrainModel::neo_hookean;
+}
+
+void Solid::update_nodal_stiffness() {
+  add_nodal_stiffness(m_turned_gradient, shares().kept);
+  if (shares().exact == 0.0) return;
+  Eigen::Matrix3Xd gradient(3, m_elements.gradient.cols());
+  for (int t = 0; t < m_elements.num_tets(); ++t)
+    gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t)) =
+        volume_gradient(t) * m_elements.gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t));
+  add_nodal_stiffness(gradient, shares().exact);
+}
+
 void Solid::add_nodal_stiffness(const Eigen::Matrix3Xd& gradient, double scale) {
   if (scale == 0.0) return;
-  if (has_only_diagonal())
-    m_nodal->add_diagonal(gradient, scale, m_matrix);
+  m_nodal->collect_gradients(gradient);
+  if (m_nodal_product)
+    m_nodal_product->update(scale);
+  else if (has_only_diagonal())
+    m_nodal->add_diagonal(scale, m_matrix);
   else
-    m_nodal->add_stiffness(gradient, scale, m_threads, m_matrix);
+    m_nodal->add_stiffness(scale, m_matrix);
 }
 
 /// Gathers the rows that need it: all of them, or, where a matrix of kept rotations stays the same but for a
 /// few tets, the rows of those tets and the rows that contacts were added to.
 void Solid::assemble_rows() {
   const MatrixShares share = shares();
-  const bool keeps_rest =
-      m_elements.nodes_per_tet == 4 && !m_nodal && share == m_stored_shares && share.exact == 0.0;
+  const bool keeps_rest = m_elements.nodes_per_tet == 4 && (!m_nodal || m_nodal_product) &&
+                          share == m_stored_shares && share.exact == 0.0;
   mark_rows(!keeps_rest);
   m_stored_shares = share;
   m_counters.assembled_rows += static_cast<int>(std::count(m_is_row_stale.begin(), m_is_row_stale.end(), 1));

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 
+#include "base/lanes.h"
 #include "base/ordered_sum.h"
-#include "base/parallel.h"
 
 namespace argil::solid {
 
-NodalVolume::NodalVolume(const Elements& elements, const std::vector<int>& row_of_node)
-    : m_nodes(elements.nodes),
+NodalVolume::NodalVolume(const Elements& elements, const std::vector<int>& row_of_node, int threads)
+    : m_runs(threads),
+      m_nodes(elements.nodes),
       m_node_begin(elements.node_begin),
       m_node_corners(elements.node_corners),
       m_row_of_node(row_of_node) {
@@ -19,16 +20,18 @@ NodalVolume::NodalVolume(const Elements& elements, const std::vector<int>& row_o
   }
   m_place.resize(static_cast<std::size_t>(16 * elements.num_tets()));
   for (int t = 0; t < elements.num_tets(); ++t)
-    for (int a = 0; a < 4; ++a) {
-      const auto node = static_cast<std::size_t>(elements.nodes(a, t));
-      const auto first = m_neighbour.begin() + m_begin[node];
-      const auto last = m_neighbour.begin() + m_begin[node + 1];
+    for (int a = 0; a < 4; ++a)
       for (int j = 0; j < 4; ++j)
         m_place[static_cast<std::size_t>(16 * t + 4 * a + j)] =
-            static_cast<int>(std::lower_bound(first, last, elements.nodes(j, t)) - m_neighbour.begin());
-    }
-  m_ring_gradient.setZero(3, static_cast<Eigen::Index>(m_neighbour.size()));
+            find_place(elements.nodes(a, t), elements.nodes(j, t));
+  m_ring_gradient.setZero(4, static_cast<Eigen::Index>(m_neighbour.size()));
   m_weight.setZero(elements.num_tets());
+}
+
+int NodalVolume::find_place(int node, int neighbour) const {
+  const auto first = m_neighbour.begin() + m_begin[static_cast<std::size_t>(node)];
+  const auto last = m_neighbour.begin() + m_begin[static_cast<std::size_t>(node) + 1];
+  return static_cast<int>(std::lower_bound(first, last, neighbour) - m_neighbour.begin());
 }
 
 void NodalVolume::set_excess(int tet, double excess_bulk, double volume) {
@@ -55,14 +58,18 @@ double NodalVolume::theta(int node, const Field& volume_change) const {
   return sum / m_stiffness(node);
 }
 
-void NodalVolume::average(const Field& volume_change, Field& mean) const {
-  Field at_node(num_nodes());
-  for (int n = 0; n < num_nodes(); ++n) at_node(n) = theta(n, volume_change);
+void NodalVolume::average(const Field& volume_change, Field& mean) {
+  m_theta.resize(num_nodes());
+  m_runs.each(num_nodes(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t n = begin; n < end; ++n) m_theta(n) = theta(static_cast<int>(n), volume_change);
+  });
   mean.resize(m_nodes.cols());
-  for (Eigen::Index t = 0; t < mean.size(); ++t) {
-    const auto n = m_nodes.col(t);
-    mean(t) = 0.25 * (at_node(n(0)) + at_node(n(1)) + at_node(n(2)) + at_node(n(3)));
-  }
+  m_runs.each(mean.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t t = begin; t < end; ++t) {
+      const auto n = m_nodes.col(t);
+      mean(t) = 0.25 * (m_theta(n(0)) + m_theta(n(1)) + m_theta(n(2)) + m_theta(n(3)));
+    }
+  });
 }
 
 double NodalVolume::compute_energy(const Field& volume_change) const {
@@ -104,45 +111,61 @@ void NodalVolume::connect(const linear::BlockMatrix& matrix) {
     }
 }
 
-void NodalVolume::collect_gradients(const Eigen::Matrix3Xd& gradient) {
-  m_ring_gradient.setZero();
-  for (Eigen::Index t = 0; t < m_nodes.cols(); ++t)
-    for (int a = 0; a < 4; ++a)
-      for (int j = 0; j < 4; ++j)
-        m_ring_gradient.col(m_place[static_cast<std::size_t>(16 * t + 4 * a + j)]) +=
-            m_weight(t) * gradient.col(4 * t + j);
+namespace {
+
+/// Ring entries of a node with corners begin … end−1: Σ V κ/4 ∂θ/∂x of the tets' corners.
+ARGIL_EVERY_PROCESSOR void add_corner_gradients(const int* corners, int begin, int end, const int* places,
+                                                const double* weight, const double* gradient, double* ring) {
+  for (int c = begin; c < end; ++c) {
+    const std::ptrdiff_t corner = corners[c];
+    const std::ptrdiff_t tet = corner / 4;
+    for (int j = 0; j < 4; ++j) {
+      const double* g = gradient + 12 * tet + 3 * j;
+      double* sum = ring + 4 * static_cast<std::ptrdiff_t>(places[4 * corner + j]);
+      write(quad_at(sum) + weight[tet] * Quad{g[0], g[1], g[2], 0.0}, sum);
+    }
+  }
 }
 
-void NodalVolume::add_stiffness(const Eigen::Matrix3Xd& gradient, double scale, int threads,
-                                linear::BlockMatrix& matrix) {
-  collect_gradients(gradient);
-  parallel_for(num_nodes(), threads, [&](std::ptrdiff_t i) {
-    if (m_row_of_node[static_cast<std::size_t>(i)] < 0) return;
-    for (int a = m_begin[static_cast<std::size_t>(i)]; a < m_begin[static_cast<std::size_t>(i) + 1]; ++a) {
-      const int node = m_neighbour[static_cast<std::size_t>(a)];
-      if (m_stiffness(node) == 0.0) continue;
-      const int first = m_begin[static_cast<std::size_t>(node)];
-      const int last = m_begin[static_cast<std::size_t>(node) + 1];
-      const auto self =
-          std::lower_bound(m_neighbour.begin() + first, m_neighbour.begin() + last, static_cast<int>(i)) -
-          m_neighbour.begin();
-      const Vec3 own = scale / m_stiffness(node) * m_ring_gradient.col(self);
-      const int* block = &m_block[static_cast<std::size_t>(m_block_begin[static_cast<std::size_t>(a)])];
-      for (int j = first; j < last; ++j, ++block)
-        if (*block >= 0) matrix.block(*block) += own * m_ring_gradient.col(j).transpose();
+}  // namespace
+
+void NodalVolume::collect_gradients(const Eigen::Matrix3Xd& gradient) {
+  m_runs.each(num_nodes(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
+      m_ring_gradient.middleCols(m_begin[n], m_begin[n + 1] - m_begin[n]).setZero();
+      add_corner_gradients(m_node_corners.data(), m_node_begin[n], m_node_begin[n + 1], m_place.data(),
+                           m_weight.data(), gradient.data(), m_ring_gradient.data());
     }
   });
 }
 
-void NodalVolume::add_diagonal(const Eigen::Matrix3Xd& gradient, double scale, linear::BlockMatrix& matrix) {
-  collect_gradients(gradient);
+void NodalVolume::add_stiffness(double scale, linear::BlockMatrix& matrix) const {
+  m_runs.each(num_nodes(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      if (m_row_of_node[i] < 0) continue;
+      for (int a = m_begin[i]; a < m_begin[i + 1]; ++a) {
+        const int node = m_neighbour[static_cast<std::size_t>(a)];
+        if (m_stiffness(node) == 0.0) continue;
+        const Vec3 own =
+            scale / m_stiffness(node) * m_ring_gradient.col(find_place(node, static_cast<int>(i))).head<3>();
+        const int* block = &m_block[static_cast<std::size_t>(m_block_begin[static_cast<std::size_t>(a)])];
+        for (int j = m_begin[static_cast<std::size_t>(node)]; j < m_begin[static_cast<std::size_t>(node) + 1];
+             ++j, ++block)
+          if (*block >= 0) matrix.block(*block) += own * m_ring_gradient.col(j).head<3>().transpose();
+      }
+    }
+  });
+}
+
+void NodalVolume::add_diagonal(double scale, linear::BlockMatrix& matrix) const {
   for (int node = 0; node < num_nodes(); ++node)
     for (int j = m_begin[static_cast<std::size_t>(node)]; j < m_begin[static_cast<std::size_t>(node) + 1];
          ++j) {
       const int row = m_row_of_node[static_cast<std::size_t>(m_neighbour[static_cast<std::size_t>(j)])];
       if (row < 0 || m_stiffness(node) == 0.0) continue;
       matrix.block(matrix.diagonal[static_cast<std::size_t>(row)]) +=
-          scale / m_stiffness(node) * m_ring_gradient.col(j) * m_ring_gradient.col(j).transpose();
+          scale / m_stiffness(node) * m_ring_gradient.col(j).head<3>() *
+          m_ring_gradient.col(j).head<3>().transpose();
     }
 }
 

@@ -37,6 +37,7 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   m_frame.setZero(3, m_elements.nodes_per_tet == 4 ? 3 * num_points : 0);
   m_lambda.setZero(m_elements.num_tets());
   m_mu.setZero(m_elements.num_tets());
+  m_excess_bulk.setZero(m_elements.num_tets());
   m_is_tet_changed.resize(m_material.size(), 1);
   m_corner_force.setZero(3, m_elements.nodes.size() + 1);
   m_internal_force.setZero(3, num_nodes);
@@ -64,13 +65,17 @@ void Solid::number_rows() {
     if (!m_constraints.is_free(n)) m_held_rows.push_back(row);
   }
   if (m_params.element == ElementKind::p1_nodal)
-    m_nodal = std::make_unique<NodalVolume>(m_elements, m_row_of_node);
+    m_nodal = std::make_unique<NodalVolume>(m_elements, m_row_of_node, m_threads);
+  if (m_nodal && keeps_nodal_factors())
+    m_nodal_product =
+        std::make_unique<NodalProduct>(*m_nodal, m_node_of_row, m_row_of_node, m_constraints,
+                                       m_params.solver.tolerance >= linear::kRoomForFloats, m_threads);
 
   const bool only_diagonal = m_params.solver.kind == linear::SolverKind::pcg_matrix_free;
   std::vector<std::vector<int>> rows(m_node_of_row.size());
   if (only_diagonal) {
     for (std::size_t row = 0; row < rows.size(); ++row) rows[row] = {static_cast<int>(row)};
-  } else if (m_nodal) {
+  } else if (m_nodal && !m_nodal_product) {
     rows = m_nodal->find_row_neighbours();
   } else {
     const auto neighbours = find_node_neighbours(m_elements);
@@ -80,7 +85,7 @@ void Solid::number_rows() {
           rows[row].push_back(m_row_of_node[static_cast<std::size_t>(node)]);
   }
   m_matrix = linear::make_block_matrix(rows);
-  if (m_nodal && !only_diagonal) m_nodal->connect(m_matrix);
+  if (m_nodal && !m_nodal_product && !only_diagonal) m_nodal->connect(m_matrix);
   m_block_of_corner_pair.reserve(static_cast<std::size_t>(N * N) * m_material.size());
   for (int t = 0; t < m_elements.num_tets(); ++t)
     for (int i = 0; i < N; ++i)
@@ -108,6 +113,7 @@ void Solid::set_material(int tet, const TetMaterial& material) {
   const Elasticity e = elasticity(tet);
   m_lambda(tet) = e.lambda;
   m_mu(tet) = e.mu;
+  m_excess_bulk(tet) = e.excess_bulk;
   if (m_nodal) m_nodal->set_excess(tet, e.excess_bulk, m_elements.weight(tet));
 }
 
@@ -254,8 +260,13 @@ StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frame) {
 
 Field Solid::compute_volume_changes(const TensorField& plastic_strain) const {
   Field change(m_elements.num_tets());
-  for (int t = 0; t < m_elements.num_tets(); ++t)
-    change(t) = compute_volume_change(m_params.model, motion(t), plastic_strain.col(t));
+  m_rows.each(change.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t t = begin; t < end; ++t)
+      change(t) =
+          m_params.model == StrainModel::neo_hookean
+              ? compute_volume_change(m_params.model, motion(static_cast<int>(t)), plastic_strain.col(t))
+              : (m_strain.col(t) - plastic_strain.col(t)).head<3>().sum();
+  });
   return change;
 }
 
@@ -264,6 +275,7 @@ void Solid::update_volume_change(const TensorField& plastic_strain) {
   if (!m_nodal) return;
   m_nodal->update_stiffness();
   m_nodal->average(compute_volume_changes(plastic_strain), m_volume_change);
+  m_nodal_pressure = m_excess_bulk.cwiseProduct(m_volume_change);
 }
 
 Vec6 Solid::compute_flow_drive(int point, const Vec6& plastic_strain, double shape_stiffness) const {

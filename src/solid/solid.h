@@ -10,7 +10,7 @@
 #include "base/status.h"
 #include "solid/elements.h"
 #include "solid/law.h"
-#include "solid/nodal_volume.h"
+#include "solid/nodal_product.h"
 #include "solid/supports.h"
 
 namespace argil::solid {
@@ -200,6 +200,8 @@ class Solid {
   void mark_rows(bool all);
   template <int N>
   void gather_row(int row, const MatrixShares& share);
+  bool keeps_nodal_factors() const;
+  void update_nodal_stiffness();
   void add_nodal_stiffness(const Eigen::Matrix3Xd& gradient, double scale);
   void add_contacts(std::span<const PointStiffness> contacts);
   void mask_rows();
@@ -234,15 +236,16 @@ class Solid {
   Field m_water_mass;   // of each tet; empty without
   Elements m_dry;       // gradient and weight of tets that have not swollen; empty without swelling
   std::vector<TetMaterial> m_material;
-  std::vector<Mat6> m_stiffness;  // empty while every tet is isotropic
-  Field m_lambda, m_mu;           // of each tet as elasticity() has them
+  std::vector<Mat6> m_stiffness;        // empty while every tet is isotropic
+  Field m_lambda, m_mu, m_excess_bulk;  // of each tet as elasticity() has them
 
   Eigen::Matrix3Xd m_deformation;  // F, 3 columns a point
   Eigen::Matrix3Xd m_rotation;     // R, 3 columns a point
   TensorField m_strain;
   Field m_volume_ratio;  // det F
   double m_min_volume_ratio = 1.0;
-  Field m_volume_change;  // p1_nodal: θ of each tet's nodes, their mean
+  Field m_volume_change;   // p1_nodal: θ of each tet's nodes, their mean
+  Field m_nodal_pressure;  // and the stress that it is [Pa]
 
   Eigen::Matrix3Xd m_kept_rotation;                     // damping's R where it is not the present one
   Eigen::Matrix3Xd m_turned_gradient;                   // Q ∇N, N columns a point, for the matrix
@@ -266,6 +269,7 @@ class Solid {
   std::unique_ptr<linear::Solver> m_static_solver;    // made at first use, as is the next:
   std::unique_ptr<linear::Solver> m_response_solver;  // each keeps a factor of its own
   std::unique_ptr<NodalVolume> m_nodal;               // p1_nodal
+  std::unique_ptr<NodalProduct> m_nodal_product;      // its stiffness where the matrix does not hold it
 
   // Of the present step.
   bool m_is_static = false;

@@ -13,7 +13,10 @@ class Solid::Product final : public linear::Operator {
   Product(Solid& solid, std::span<const PointStiffness> contacts) : m_solid(solid), m_contacts(contacts) {}
 
   double multiply(const Points& x, Points& y) override {
-    if (!m_solid.has_only_diagonal()) return linear::multiply(m_solid.m_matrix, x, y, m_solid.m_rows);
+    if (!m_solid.has_only_diagonal()) {
+      const double stored = linear::multiply(m_solid.m_matrix, x, y, m_solid.m_rows);
+      return stored + add_unstored(x, y);
+    }
     const MatrixShares share = m_solid.shares();
     Points& u = m_solid.m_direction;
     Points& force = m_solid.m_product;
@@ -37,6 +40,13 @@ class Solid::Product final : public linear::Operator {
                       x(k, row);
     }
     return ordered_sum(x.size(), [&](std::ptrdiff_t i) { return x(i) * y(i); });
+  }
+
+  double add_unstored(const Points& x, Points& y) override {
+    return m_solid.m_nodal_product ? m_solid.m_nodal_product->add(x, y) : 0.0;
+  }
+  void add_unstored_diagonal(Eigen::Matrix3Xd& blocks) override {
+    if (m_solid.m_nodal_product) m_solid.m_nodal_product->add_diagonal(blocks);
   }
 
  private:

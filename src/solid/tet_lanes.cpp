@@ -148,6 +148,12 @@ ARGIL_EVERY_PROCESSOR void compute_corner_forces(const ForceArrays& tets, std::p
     P.m[7] += w[0];
   }
 
+  if (tets.pressure) {  // alike in all directions: no rotation's derivative sees it
+    Lanes added;
+    read_lanes<1>(tets.pressure, begin, last, &added);
+    for (int k = 0; k < 9; k += 4) P.m[k] += added;
+  }
+
   Real33<Lanes> piola;
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r)

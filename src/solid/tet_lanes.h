@@ -43,6 +43,7 @@ struct ForceArrays {
   const double* weight = nullptr;          ///< volume
   const double* lambda = nullptr;          ///< 1 a tet [Pa]
   const double* mu = nullptr;              ///< 1 a tet [Pa]
+  const double* pressure = nullptr;        ///< added to the stress, 1 a tet [Pa]; may be null: none
   bool is_linear = false;                  ///< R = 1 has no derivative
   double* corner_force = nullptr;          ///< 12 a tet [N]
 };

@@ -68,6 +68,34 @@ SolveReport solve(ConjugateGradients& cg, const BlockMatrix& a, Preconditioner& 
   return cg.solve(product, preconditioner, b, tolerance, max_iterations, x);
 }
 
+void update(BlockJacobi& jacobi, const BlockMatrix& a) {
+  MatrixOperator product(a, 1);
+  jacobi.update(a, product);
+}
+
+/// A stored matrix and u uᵀ, which is not stored and joins all rows.
+class WithOuterProduct final : public Operator {
+ public:
+  WithOuterProduct(const BlockMatrix& stored, Points u) : m_stored(stored, 1), m_u(std::move(u)) {}
+  double multiply(const Points& x, Points& y) override {
+    const double dot = m_stored.multiply(x, y);
+    return dot + add_unstored(x, y);
+  }
+  double add_unstored(const Points& x, Points& y) override {
+    const double along = m_u.cwiseProduct(x).sum();
+    y += along * m_u;
+    return along * along;
+  }
+  void add_unstored_diagonal(Eigen::Matrix3Xd& blocks) override {
+    for (Eigen::Index row = 0; row < m_u.cols(); ++row)
+      blocks.middleCols<3>(3 * row) += m_u.col(row) * m_u.col(row).transpose();
+  }
+
+ private:
+  MatrixOperator m_stored;
+  Points m_u;
+};
+
 TEST(CholeskyFactor, SolvesTheOneDimensionalLaplacianExactly) {
   const int rows = 99;
   const BlockMatrix a = make_laplacian(rows);
@@ -110,7 +138,8 @@ TEST(BlockMatrix, MultipliesAsADenseMatrixDoes) {
     EXPECT_LT((y.reshaped() - expected).norm(), 1e-14 * expected.norm()) << rows;
     EXPECT_NEAR(dot, expected.dot(x.reshaped()), 1e-13 * expected.norm() * x.norm()) << rows;
     RoundedOperator rounded(3);
-    rounded.update(a);
+    MatrixOperator product(a, 1);
+    rounded.update(a, product);
     rounded.multiply(x, y);
     EXPECT_LT((y.reshaped() - expected).norm(), 1e-7 * expected.norm()) << rows;  // a float has 2⁻²⁴
     EXPECT_GT((y.reshaped() - expected).norm(), 1e-10 * expected.norm()) << rows;
@@ -125,7 +154,7 @@ TEST(ConjugateGradients, MeasuresTheResidualByThatOfTheFirstGuess) {
   Points b(3, 50);
   b.reshaped() = to_dense(a) * (before + change).reshaped();
   BlockJacobi jacobi(1);
-  jacobi.update(a);
+  update(jacobi, a);
   ConjugateGradients cg(1);
   Points x = before;
   const SolveReport report = solve(cg, a, jacobi, b, 1e-3, 100, 1, x);
@@ -140,7 +169,7 @@ TEST(ConjugateGradients, StopsWhereRoundingLeavesNoMore) {
   Points b(3, 50);
   b.reshaped() = to_dense(a) * x.reshaped();
   BlockJacobi jacobi(1);
-  jacobi.update(a);
+  update(jacobi, a);
   ConjugateGradients cg(1);
   const SolveReport report = solve(cg, a, jacobi, b, 1e-8, 100, 1, x);
   EXPECT_TRUE(report.converged);
@@ -151,7 +180,7 @@ TEST(ConjugateGradients, BlockJacobiReachesTheToleranceOfATrueResidual) {
   const BlockMatrix a = make_random_spd(200, 4);
   const Points b = make_random_vector(200, 5);
   BlockJacobi jacobi(1);
-  jacobi.update(a);
+  update(jacobi, a);
   ConjugateGradients cg(1);
   Points x = Points::Zero(3, 200);
   const SolveReport report = solve(cg, a, jacobi, b, 1e-10, 200, 1, x);
@@ -180,7 +209,7 @@ TEST(ConjugateGradients, ExactFactorConvergesInOneIterationAndAStaleOneInFew) {
 TEST(ConjugateGradients, ReportsWhenItDoesNotConverge) {
   const BlockMatrix a = make_laplacian(300);
   BlockJacobi jacobi(1);
-  jacobi.update(a);
+  update(jacobi, a);
   ConjugateGradients cg(1);
   Points x = Points::Zero(3, 300);
   const SolveReport report = solve(cg, a, jacobi, Points::Ones(3, 300), 1e-12, 5, 1, x);
@@ -191,7 +220,7 @@ TEST(ConjugateGradients, ReportsWhenItDoesNotConverge) {
 TEST(ConjugateGradients, GivesEqualBitsOnAnyNumberOfThreads) {
   const BlockMatrix a = make_laplacian(500);
   BlockJacobi jacobi(1);
-  jacobi.update(a);
+  update(jacobi, a);
   const Points b = make_random_vector(500, 8);
   Points first = Points::Zero(3, 500);
   ConjugateGradients cg(1);
@@ -228,6 +257,23 @@ TEST_P(EverySolver, SolvesAgainAndAgainWhileTheMatrixChanges) {
 INSTANTIATE_TEST_SUITE_P(Kinds, EverySolver,
                          testing::Values(SolverKind::pcg, SolverKind::pcg_cholesky, SolverKind::pcg_jacobi,
                                          SolverKind::cholesky, SolverKind::supernodal));
+
+TEST(IterativeSolver, TakesWhatTheMatrixDoesNotStore) {
+  const BlockMatrix a = make_random_spd(60, 28);
+  const Points u = 2.0 * make_random_vector(60, 29);
+  const Points b = make_random_vector(60, 30);
+  const Eigen::MatrixXd whole = to_dense(a) + u.reshaped() * u.reshaped().transpose();
+  WithOuterProduct product(a, u);
+  for (const SolverKind kind : {SolverKind::pcg, SolverKind::pcg_jacobi})
+    for (const double tolerance : {1e-3, 1e-10})      // in floats and in double
+      for (const int jacobi_iterations : {150, 2}) {  // the latter: pcg takes a factor of what is stored
+        const auto solver =
+            make_solver({.kind = kind, .tolerance = tolerance, .jacobi_iterations = jacobi_iterations});
+        Points x = Points::Zero(3, 60);
+        ASSERT_TRUE(solver->solve(a, product, b, x).converged);
+        EXPECT_LT((whole * x.reshaped() - b.reshaped()).norm(), 1.01 * tolerance * b.norm());
+      }
+}
 
 TEST(DirectSolver, FactorisesOnlyWhenTheMatrixChanged) {
   const auto solver = make_solver({SolverKind::cholesky});

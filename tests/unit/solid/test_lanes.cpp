@@ -24,6 +24,7 @@ struct Tets {
   double tolerance = 0.0;
   TensorField strain{6, kTets}, plastic{6, kTets};
   Field volume_ratio{kTets}, weight{kTets}, lambda{kTets}, mu{kTets};
+  Field excess_bulk{kTets}, volume_change{kTets}, pressure{kTets};
   std::vector<char> is_turned = std::vector<char>(kTets, 0);
 
   Tets() {
@@ -45,7 +46,10 @@ struct Tets {
       for (int k = 0; k < 6; ++k) plastic(k, t) = t % 3 == 0 ? 0.0 : rng.uniform(-0.2, 0.2);
       lambda(t) = rng.uniform(1e3, 1e5);
       mu(t) = rng.uniform(1e3, 1e5);
+      excess_bulk(t) = rng.uniform(1e3, 1e6);
+      volume_change(t) = rng.uniform(-0.1, 0.1);
     }
+    pressure = excess_bulk.cwiseProduct(volume_change);
     turned.setZero();
     frame.setZero();
   }
@@ -56,9 +60,16 @@ struct Tets {
     for_batches(kTets, 1,
                 [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_motions(arrays, begin, end); });
   }
-  void press(StrainModel model) {
-    const ForceArrays arrays{gradient.data(), R.data(),      strain.data(), plastic.data(),
-                             weight.data(),   lambda.data(), mu.data(),     model == StrainModel::linear,
+  void press(StrainModel model, bool with_pressure) {
+    const ForceArrays arrays{gradient.data(),
+                             R.data(),
+                             strain.data(),
+                             plastic.data(),
+                             weight.data(),
+                             lambda.data(),
+                             mu.data(),
+                             with_pressure ? pressure.data() : nullptr,
+                             model == StrainModel::linear,
                              force.data()};
     for_batches(kTets, 1,
                 [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_corner_forces(arrays, begin, end); });
@@ -70,7 +81,11 @@ class Lanes8 : public testing::TestWithParam<StrainModel> {};
 TEST_P(Lanes8, MoveAndPressAsTheLawOfAPointDoes) {
   Tets tets;
   tets.move(GetParam());
-  tets.press(GetParam());
+  Eigen::Matrix3Xd forces[2];
+  for (const bool with_pressure : {false, true}) {
+    tets.press(GetParam(), with_pressure);
+    forces[with_pressure] = tets.force;
+  }
   for (int t = 0; t < kTets; ++t) {
     const Mat34 gradient = tets.gradient.middleCols<4>(4 * t);
     const Mat3 F = compute_deformation_gradient(tets.x.middleCols<4>(4 * t), gradient);
@@ -81,10 +96,16 @@ TEST_P(Lanes8, MoveAndPressAsTheLawOfAPointDoes) {
     EXPECT_LT((tets.R.middleCols<3>(3 * t) - motion.R).norm(), 1e-13) << t;
     EXPECT_LT((tets.turned.middleCols<4>(4 * t) - motion.R * gradient).norm(), 1e-12) << t;
     EXPECT_LT((tets.strain.col(t) - compute_strain(F, motion.R)).norm(), 1e-13) << t;
-    const Elasticity e{tets.lambda(t), tets.mu(t)};
-    const Mat34 expected =
-        compute_element_force({gradient, tets.weight(t)}, GetParam(), motion, tets.plastic.col(t), e);
-    EXPECT_LT((tets.force.middleCols<4>(4 * t) - expected).norm(), 1e-12 * (1.0 + expected.norm())) << t;
+    Elasticity e{tets.lambda(t), tets.mu(t)};
+    for (const bool with_pressure : {false, true}) {
+      e.excess_bulk = with_pressure ? tets.excess_bulk(t) : 0.0;
+      e.volume_change = tets.volume_change(t);
+      const Mat34 expected =
+          compute_element_force({gradient, tets.weight(t)}, GetParam(), motion, tets.plastic.col(t), e);
+      EXPECT_LT((forces[with_pressure].middleCols<4>(4 * t) - expected).norm(),
+                1e-12 * (1.0 + expected.norm()))
+          << t;
+    }
   }
 }
 
