@@ -18,8 +18,8 @@ class OrderedRuns {
   /// first call of one size.
   template <class Body>
   double sum(std::ptrdiff_t count, Body body) {
-    const std::ptrdiff_t runs = (count + kLength - 1) / kLength;
-    m_sums.resize(static_cast<std::size_t>(runs));
+    const std::ptrdiff_t runs = count_runs(count);
+    prepare(count);
     double* sums = m_sums.data();
     parallel_for(runs, m_threads, [sums, count, &body](std::ptrdiff_t run) {
       sums[run] = body(run * kLength, std::min((run + 1) * kLength, count));
@@ -30,9 +30,20 @@ class OrderedRuns {
   }
   template <class Body>
   void each(std::ptrdiff_t count, Body body) const {
-    parallel_for((count + kLength - 1) / kLength, m_threads, [count, &body](std::ptrdiff_t run) {
-      body(run * kLength, std::min((run + 1) * kLength, count));
+    each_run(count, [&body](std::ptrdiff_t, std::ptrdiff_t begin, std::ptrdiff_t end) { body(begin, end); });
+  }
+  /// body(run, begin, end) for every run.
+  template <class Body>
+  void each_run(std::ptrdiff_t count, Body body) const {
+    parallel_for(count_runs(count), m_threads, [count, &body](std::ptrdiff_t run) {
+      body(run, run * kLength, std::min((run + 1) * kLength, count));
     });
+  }
+  static std::ptrdiff_t count_runs(std::ptrdiff_t count) { return (count + kLength - 1) / kLength; }
+  /// Before a first sum of this many items in a team.
+  void prepare(std::ptrdiff_t count) {
+    const auto runs = static_cast<std::size_t>(count_runs(count));
+    if (m_sums.size() != runs) m_sums.resize(runs);
   }
 
  private:

@@ -18,8 +18,17 @@ BlockMatrix make_block_matrix(const std::vector<std::vector<int>>& neighbours) {
     matrix.column.insert(matrix.column.end(), list.begin(), list.end());
     matrix.row_begin.push_back(static_cast<int>(matrix.column.size()));
   }
+  matrix.revision.resize(neighbours.size(), 0);
   matrix.values.setZero(3, 3 * static_cast<Eigen::Index>(matrix.column.size()) + 1);
   return matrix;
+}
+
+Mat3 invert_block(const Mat3& block) {
+  const Mat3 cofactor_transposed =
+      (Mat3() << block.col(1).cross(block.col(2)).transpose(), block.col(2).cross(block.col(0)).transpose(),
+       block.col(0).cross(block.col(1)).transpose())
+          .finished();
+  return cofactor_transposed / block.col(0).dot(block.col(1).cross(block.col(2)));
 }
 
 int find_block(const BlockMatrix& matrix, int row, int column) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "base/ordered_runs.h"
@@ -10,9 +11,10 @@ namespace argil::linear {
 /// Sparse symmetric matrix of 3×3 blocks in compressed rows, both triangles stored. A vector that goes with
 /// it has one 3-vector a column.
 struct BlockMatrix {
-  std::vector<int> row_begin;  ///< rows + 1
-  std::vector<int> column;     ///< block column of each stored block, increasing within a row
-  std::vector<int> diagonal;   ///< place of each row's diagonal block
+  std::vector<int> row_begin;           ///< rows + 1
+  std::vector<int> column;              ///< block column of each stored block, increasing within a row
+  std::vector<int> diagonal;            ///< place of each row's diagonal block
+  std::vector<std::uint32_t> revision;  ///< of each row's values: who changes them counts it up
   Eigen::Matrix3Xd values;  ///< 3×3 blocks side by side, block b = columns 3b … 3b+2; one column more, so
                             ///< that columns may be read four numbers at a time
 
@@ -27,6 +29,9 @@ BlockMatrix make_block_matrix(const std::vector<std::vector<int>>& neighbours);
 
 /// Place of block (row, column), or −1 when it is not stored. O(log row length).
 int find_block(const BlockMatrix& matrix, int row, int column);
+
+/// Inverse of a 3×3 block.
+Mat3 invert_block(const Mat3& block);
 
 /// y = A x; returns x·y.
 double multiply(const BlockMatrix& matrix, const Points& x, Points& y, OrderedRuns& rows);

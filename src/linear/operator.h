@@ -19,10 +19,15 @@ class Operator {
   virtual double multiply(const Points& x, Points& y) = 0;
 
   // Where A is a stored matrix and something that is not stored:
-  /// y += the latter times x; returns x · what was added.
-  virtual double add_unstored(const Points&, Points&) { return 0.0; }
+  /// y += the latter times x; returns x · what was added. Called by all threads of a team (base/parallel.h),
+  /// with four floats a row, the last of them 0.
+  virtual double add_unstored(const float* x, float* y);
   /// Adds its diagonal blocks, 3×3 side by side.
   virtual void add_unstored_diagonal(Eigen::Matrix3Xd&) {}
 };
+
+inline double Operator::add_unstored(const float* /*x*/, float* /*y*/) {
+  return 0.0;
+}
 
 }  // namespace argil::linear

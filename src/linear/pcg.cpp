@@ -7,18 +7,6 @@
 #include "linear/vectors.h"
 
 namespace argil::linear {
-namespace {
-
-Mat3 invert(const Mat3& block) {
-  const Mat3 cofactor_transposed =
-      (Mat3() << block.col(1).cross(block.col(2)).transpose(), block.col(2).cross(block.col(0)).transpose(),
-       block.col(0).cross(block.col(1)).transpose())
-          .finished();
-  return cofactor_transposed / block.col(0).dot(block.col(1).cross(block.col(2)));
-}
-
-}  // namespace
-
 void BlockJacobi::update(const BlockMatrix& matrix, Operator& whole) {
   m_inverse.resize(3, 3 * static_cast<Eigen::Index>(matrix.num_rows()) + 1);
   m_inverse.rightCols<1>().setZero();
@@ -29,7 +17,7 @@ void BlockJacobi::update(const BlockMatrix& matrix, Operator& whole) {
   whole.add_unstored_diagonal(m_inverse);
   m_rows.each(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row)
-      m_inverse.middleCols<3>(3 * row) = invert(m_inverse.middleCols<3>(3 * row));
+      m_inverse.middleCols<3>(3 * row) = invert_block(m_inverse.middleCols<3>(3 * row));
   });
 }
 

@@ -3,7 +3,6 @@
 #include "linear/block_matrix.h"
 #include "linear/cholesky.h"
 #include "linear/operator.h"
-#include "linear/short_blocks.h"
 
 namespace argil::linear {
 
@@ -15,27 +14,6 @@ class MatrixOperator final : public Operator {
 
  private:
   const BlockMatrix& m_matrix;
-  OrderedRuns m_rows;
-};
-
-/// The same in floats, which takes half the time, and what an operator adds to what is stored.
-class RoundedOperator final : public Operator {
- public:
-  explicit RoundedOperator(int threads) : m_rows(threads) {}
-  void update(const BlockMatrix& matrix, Operator& whole) {  ///< both must outlive the products
-    m_pattern = &matrix;
-    m_whole = &whole;
-    m_blocks.update(matrix, m_rows);
-  }
-  double multiply(const Points& x, Points& y) override {
-    const double stored = m_blocks.multiply(*m_pattern, x, y, m_rows);
-    return stored + m_whole->add_unstored(x, y);
-  }
-
- private:
-  const BlockMatrix* m_pattern = nullptr;
-  Operator* m_whole = nullptr;
-  ShortBlocks m_blocks;
   OrderedRuns m_rows;
 };
 

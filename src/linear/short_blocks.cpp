@@ -11,6 +11,13 @@ using Floats8 = float __attribute__((vector_size(32)));
 using Floats4At = float __attribute__((vector_size(16), aligned(4), may_alias));
 using Floats8At = float __attribute__((vector_size(32), aligned(4), may_alias));
 
+ARGIL_INLINE auto& four_at(float* at) {
+  return *reinterpret_cast<Floats4At*>(at);
+}
+ARGIL_INLINE const auto& four_at(const float* at) {
+  return *reinterpret_cast<const Floats4At*>(at);
+}
+
 /// Sums of one row: the first eight numbers of a block meet those of x at once, its last one alone.
 struct RowSum {
   Floats8 eight = {};
@@ -18,17 +25,18 @@ struct RowSum {
 };
 
 ARGIL_INLINE void add_block(const float* block, const float* x, RowSum& sum) {
-  const Floats4 p = *reinterpret_cast<const Floats4At*>(x);
+  const Floats4 p = four_at(x);
   sum.eight +=
       *reinterpret_cast<const Floats8At*>(block) * __builtin_shufflevector(p, p, 0, 0, 0, 1, 1, 1, 2, 2);
   sum.last += block[8] * p[2];
 }
 
-/// Rows begin … end−1 of y = A x with four numbers a row in x. Blocks of even and odd places apart: no sum
-/// waits for the one before it.
-ARGIL_EVERY_PROCESSOR void multiply_rows(const BlockMatrix& pattern, const float* values, const float* x,
-                                         std::ptrdiff_t begin, std::ptrdiff_t end, double* y) {
+/// Rows begin … end−1 of y = A x; returns x·y of them. Blocks of even and odd places apart: no sum waits for
+/// the one before it.
+ARGIL_EVERY_PROCESSOR double multiply_rows(const BlockMatrix& pattern, const float* values, const float* x,
+                                           std::ptrdiff_t begin, std::ptrdiff_t end, float* y) {
   const int* column = pattern.column.data();
+  Floats4 dot = {};
   for (std::ptrdiff_t row = begin; row < end; ++row) {
     int b = pattern.row_begin.data()[row];
     const int last = pattern.row_begin.data()[row + 1];
@@ -40,10 +48,33 @@ ARGIL_EVERY_PROCESSOR void multiply_rows(const BlockMatrix& pattern, const float
     }
     if (b < last) add_block(block, x + 4 * static_cast<std::ptrdiff_t>(column[b]), even);
     const Floats8 sum = even.eight + odd.eight;
-    y[3 * row] = static_cast<double>(sum[0] + sum[3] + sum[6]);
-    y[3 * row + 1] = static_cast<double>(sum[1] + sum[4] + sum[7]);
-    y[3 * row + 2] = static_cast<double>(sum[2] + sum[5] + (even.last + odd.last));
+    const Floats4 out = {sum[0] + sum[3] + sum[6], sum[1] + sum[4] + sum[7],
+                         sum[2] + sum[5] + (even.last + odd.last), 0.0F};
+    four_at(y + 4 * row) = out;
+    dot += out * four_at(x + 4 * row);
   }
+  return static_cast<double>(dot[0] + dot[1] + dot[2]);
+}
+
+ARGIL_EVERY_PROCESSOR void advance_rows(const float* inverse, float alpha, float beta, const float* w,
+                                        std::ptrdiff_t begin, std::ptrdiff_t end,
+                                        const ShortBlocks::Iterate& to, ShortBlocks::Sums& sums) {
+  Floats4 rr = {}, rz = {};
+  for (std::ptrdiff_t i = 4 * begin; i < 4 * end; i += 4) {
+    const Floats4 p = four_at(to.z + i) + beta * four_at(to.p + i);
+    const Floats4 q = four_at(w + i) + beta * four_at(to.q + i);
+    const Floats4 r = four_at(to.r + i) - alpha * q;
+    four_at(to.p + i) = p;
+    four_at(to.q + i) = q;
+    four_at(to.x + i) += alpha * p;
+    four_at(to.r + i) = r;
+    const float* a = inverse + 3 * i;
+    const Floats4 z = four_at(a) * r[0] + four_at(a + 4) * r[1] + four_at(a + 8) * r[2];
+    four_at(to.z + i) = z;
+    rr += r * r;
+    rz += r * z;
+  }
+  sums = {static_cast<double>(rr[0] + rr[1] + rr[2]), static_cast<double>(rz[0] + rz[1] + rz[2])};
 }
 
 ARGIL_EVERY_PROCESSOR void shorten(const double* from, std::ptrdiff_t count, float* to) {
@@ -52,27 +83,45 @@ ARGIL_EVERY_PROCESSOR void shorten(const double* from, std::ptrdiff_t count, flo
 
 }  // namespace
 
-void ShortBlocks::update(const BlockMatrix& matrix, const OrderedRuns& rows) {
-  m_values.resize(static_cast<std::size_t>(matrix.values.size()));
-  m_x.resize(static_cast<std::size_t>(4 * matrix.num_rows()));
-  rows.each(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    const auto first = 9 * static_cast<std::ptrdiff_t>(matrix.row_begin[static_cast<std::size_t>(begin)]);
-    const auto last = 9 * static_cast<std::ptrdiff_t>(matrix.row_begin[static_cast<std::size_t>(end)]);
-    shorten(matrix.values.data() + first, last - first, m_values.data() + first);
+void ShortBlocks::update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs) {
+  const auto num_rows = static_cast<std::size_t>(matrix.num_rows());
+  if (m_pattern != &matrix || m_revision.size() != num_rows) {
+    m_pattern = &matrix;
+    m_values.resize(static_cast<std::size_t>(matrix.values.size()));
+    m_inverse.assign(12 * num_rows, 0.0F);
+    m_revision.clear();
+    for (const std::uint32_t revision : matrix.revision) m_revision.push_back(revision - 1);
+  }
+  m_diagonal.resize(3, 3 * matrix.num_rows());
+  runs.each(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (auto row = static_cast<std::size_t>(begin); row < static_cast<std::size_t>(end); ++row) {
+      m_diagonal.middleCols<3>(3 * static_cast<Eigen::Index>(row)) = matrix.block(matrix.diagonal[row]);
+      if (m_revision[row] == matrix.revision[row]) continue;
+      m_revision[row] = matrix.revision[row];
+      const auto first = 9 * static_cast<std::ptrdiff_t>(matrix.row_begin[row]);
+      const auto last = 9 * static_cast<std::ptrdiff_t>(matrix.row_begin[row + 1]);
+      shorten(matrix.values.data() + first, last - first, m_values.data() + first);
+    }
+  });
+  whole.add_unstored_diagonal(m_diagonal);
+  runs.each(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t row = begin; row < end; ++row) {
+      const Mat3 inverse = invert_block(m_diagonal.middleCols<3>(3 * row));
+      for (int k = 0; k < 9; ++k)
+        m_inverse.data()[12 * row + 4 * (k / 3) + k % 3] = static_cast<float>(inverse(k));
+    }
   });
 }
 
-double ShortBlocks::multiply(const BlockMatrix& pattern, const Points& x, Points& y, OrderedRuns& rows) {
-  const std::ptrdiff_t num_rows = pattern.num_rows();
-  rows.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    for (std::ptrdiff_t row = begin; row < end; ++row)
-      for (std::ptrdiff_t k = 0; k < 3; ++k)
-        m_x.data()[4 * row + k] = static_cast<float>(x.data()[3 * row + k]);
-  });
-  return rows.sum(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    multiply_rows(pattern, m_values.data(), m_x.data(), begin, end, y.data());
-    return compute_dot(x.data(), y.data(), begin, end);
-  });
+double ShortBlocks::multiply(std::ptrdiff_t begin, std::ptrdiff_t end, const float* x, float* y) const {
+  return multiply_rows(*m_pattern, m_values.data(), x, begin, end, y);
+}
+
+ShortBlocks::Sums ShortBlocks::advance(std::ptrdiff_t begin, std::ptrdiff_t end, float alpha, float beta,
+                                       const float* w, const Iterate& to) const {
+  Sums sums;
+  advance_rows(m_inverse.data(), alpha, beta, w, begin, end, to, sums);
+  return sums;
 }
 
 }  // namespace argil::linear

@@ -1,21 +1,47 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "linear/block_matrix.h"
+#include "linear/operator.h"
 
 namespace argil::linear {
 
-/// A matrix in floats, for a product that reads half the memory: off by 1e-7 of Σ|A||x|.
+/// A matrix and the inverses of its diagonal blocks in floats, for products that read half the memory: off by
+/// 1e-7 of Σ|A||x|. Vectors have four numbers a row, the last of them 0.
 class ShortBlocks {
  public:
-  void update(const BlockMatrix& matrix, const OrderedRuns& rows);
-  /// y = A x; returns x·y. `pattern`: the matrix of the last update.
-  double multiply(const BlockMatrix& pattern, const Points& x, Points& y, OrderedRuns& rows);
+  /// Takes the rows that have changed since the last update; the inverses hold what `whole` does not store,
+  /// too.
+  void update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs);
+
+  /// What an iteration of conjugate gradients changes.
+  struct Iterate {
+    float* p = nullptr;  ///< direction
+    float* q = nullptr;  ///< A p
+    float* x = nullptr;
+    float* r = nullptr;  ///< b − A x
+    float* z = nullptr;  ///< D⁻¹ r
+  };
+  struct Sums {
+    double rr = 0.0;  ///< r·r
+    double rz = 0.0;  ///< r·z
+  };
+
+  // Rows begin … end−1:
+  double multiply(std::ptrdiff_t begin, std::ptrdiff_t end, const float* x,
+                  float* y) const;  ///< y = A x, x·y
+  /// p = z + β p, q = w + β q, x += α p, r −= α q, z = D⁻¹ r.
+  Sums advance(std::ptrdiff_t begin, std::ptrdiff_t end, float alpha, float beta, const float* w,
+               const Iterate& to) const;
 
  private:
-  std::vector<float> m_values;  // 9 a block
-  std::vector<float> m_x;       // 4 a row
+  const BlockMatrix* m_pattern = nullptr;
+  std::vector<float> m_values;            // 9 a block
+  std::vector<std::uint32_t> m_revision;  // of the rows that they are
+  Eigen::Matrix3Xd m_diagonal;
+  std::vector<float> m_inverse;  // of the diagonal blocks, 3 columns of four a row
 };
 
 }  // namespace argil::linear

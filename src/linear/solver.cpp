@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "linear/pcg.h"
+#include "linear/short_iteration.h"
 
 namespace argil::linear {
 namespace {
@@ -71,32 +72,28 @@ class DirectSolver final : public Solver {
   Points m_work;
 };
 
-/// Conjugate gradients over the diagonal blocks. A matrix that is stored is multiplied in floats where the
-/// tolerance leaves room for their rounding.
+/// Conjugate gradients over the diagonal blocks, in floats where the tolerance leaves room for their rounding
+/// and the matrix is stored.
 class JacobiIteration {
  public:
   JacobiIteration(const SolverParams& params, int threads)
       : m_tolerance(params.tolerance),
-        m_is_rounded(params.tolerance >= kRoomForFloats && params.kind != SolverKind::pcg_matrix_free),
-        m_rounded(threads),
+        m_is_short(params.tolerance >= kRoomForFloats && params.kind != SolverKind::pcg_matrix_free),
+        m_short(threads),
         m_jacobi(threads),
         m_iteration(threads) {}
 
   SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, int max_iterations,
                     Points& x) {
+    if (m_is_short) return m_short.solve(matrix, product, b, m_tolerance, max_iterations, x);
     m_jacobi.update(matrix, product);
-    const double size = b.norm();
-    if (!m_is_rounded || !(size > kSmallest && size < kLargest))
-      return m_iteration.solve(product, m_jacobi, b, m_tolerance, max_iterations, x);
-    m_rounded.update(matrix, product);
-    return m_iteration.solve(m_rounded, m_jacobi, b, m_tolerance, max_iterations, x);
+    return m_iteration.solve(product, m_jacobi, b, m_tolerance, max_iterations, x);
   }
 
  private:
-  static constexpr double kSmallest = 1e-10, kLargest = 1e10;  // of ‖b‖: far from where floats end
   double m_tolerance;
-  bool m_is_rounded;
-  RoundedOperator m_rounded;
+  bool m_is_short;
+  ShortIteration m_short;
   BlockJacobi m_jacobi;
   ConjugateGradients m_iteration;
 };

@@ -127,6 +127,7 @@ void Solid::assemble_rows() {
       gather_row<4>(static_cast<int>(row), share);
     else
       gather_row<10>(static_cast<int>(row), share);
+    ++m_matrix.revision[r];
     m_matrix.block(m_matrix.diagonal[r]).diagonal().array() += share.mass * m_mass(m_node_of_row[r]);
   });
   std::fill(m_is_tet_changed.begin(), m_is_tet_changed.end(), char{0});
@@ -202,6 +203,7 @@ void Solid::add_contacts(std::span<const PointStiffness> contacts) {
         if (place < 0) continue;
         m_matrix.block(place) += contact.weight[i] * contact.weight[j] * block;
         m_is_row_stale[static_cast<std::size_t>(row)] = 1;
+        ++m_matrix.revision[static_cast<std::size_t>(row)];
       }
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "base/check.h"
 #include "base/lanes.h"
 
 namespace argil::solid {
@@ -21,8 +22,12 @@ struct Four<double> {
   using At = double __attribute__((vector_size(32), aligned(8), may_alias));
 };
 template <class Real>
-ARGIL_INLINE const auto& four_at(const Real* from) {
-  return *reinterpret_cast<const typename Four<Real>::At*>(from);
+ARGIL_INLINE const auto& four_at(const Real* at) {
+  return *reinterpret_cast<const typename Four<Real>::At*>(at);
+}
+template <class Real>
+ARGIL_INLINE auto& four_at(Real* at) {
+  return *reinterpret_cast<typename Four<Real>::At*>(at);
 }
 
 // Templates for floats and double; in floats, which are there for speed, compiled for every processor below.
@@ -51,10 +56,10 @@ ARGIL_INLINE double set_volume_changes(const int* node_begin, const int* row, co
   return squares;
 }
 
-/// y += Σ factor θ_a over the entries of rows begin … end−1.
+/// y += Σ factor θ_a over the entries of rows begin … end−1, four numbers a row.
 template <class Real>
 ARGIL_INLINE void add_volume_changes(const int* row_begin, const int* node, const Real* factor,
-                                     const Real* theta, std::ptrdiff_t begin, std::ptrdiff_t end, double* y) {
+                                     const Real* theta, std::ptrdiff_t begin, std::ptrdiff_t end, Real* y) {
   for (std::ptrdiff_t row = begin; row < end; ++row) {
     typename Four<Real>::At even = {}, odd = {};
     std::ptrdiff_t e = row_begin[row];
@@ -63,8 +68,7 @@ ARGIL_INLINE void add_volume_changes(const int* row_begin, const int* node, cons
       odd += four_at(factor + 4 * e + 4) * theta[node[e + 1]];
     }
     if (e < row_begin[row + 1]) even += four_at(factor + 4 * e) * theta[node[e]];
-    even += odd;
-    for (int k = 0; k < 3; ++k) y[3 * row + k] += static_cast<double>(even[k]);
+    four_at(y + 4 * row) += even + odd;
   }
 }
 
@@ -87,7 +91,7 @@ ARGIL_EVERY_PROCESSOR double set_volume_changes(const int* node_begin, const int
 }
 ARGIL_EVERY_PROCESSOR void add_volume_changes(const int* row_begin, const int* node, const float* factor,
                                               const float* theta, std::ptrdiff_t begin, std::ptrdiff_t end,
-                                              double* y) {
+                                              float* y) {
   add_volume_changes<float>(row_begin, node, factor, theta, begin, end, y);
 }
 ARGIL_EVERY_PROCESSOR void add_squares(const int* row_begin, const float* factor, std::ptrdiff_t begin,
@@ -131,8 +135,10 @@ NodalProduct::NodalProduct(const NodalVolume& nodal, const std::vector<int>& nod
     factors.by_node.resize(4 * m_row.size());
     factors.by_row.resize(4 * m_node.size());
     factors.x.resize(4 * node_of_row.size());
+    factors.y.resize(4 * node_of_row.size());
     factors.theta.resize(begin.size() - 1);
   };
+  m_runs.prepare(num_nodes());
   if (is_short)
     make_room(m_short);
   else
@@ -172,6 +178,11 @@ double NodalProduct::add(const Points& x, Points& y) {
   return m_is_short ? add_product(x, m_short, y) : add_product(x, m_long, y);
 }
 
+double NodalProduct::add(const float* x, float* y) {
+  ARGIL_ASSERT(m_is_short);
+  return add_product(x, m_short, y);
+}
+
 template <class Real>
 double NodalProduct::add_product(const Points& x, Factors<Real>& factors, Points& y) {
   m_runs.each(num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -179,13 +190,25 @@ double NodalProduct::add_product(const Points& x, Factors<Real>& factors, Points
       for (std::ptrdiff_t k = 0; k < 3; ++k)
         factors.x.data()[4 * row + k] = static_cast<Real>(x.data()[3 * row + k]);
   });
+  std::fill(factors.y.begin(), factors.y.end(), Real{});
+  const double product = add_product(factors.x.data(), factors, factors.y.data());
+  m_runs.each(num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t row = begin; row < end; ++row)
+      for (std::ptrdiff_t k = 0; k < 3; ++k)
+        y.data()[3 * row + k] += static_cast<double>(factors.y.data()[4 * row + k]);
+  });
+  return product;
+}
+
+template <class Real>
+double NodalProduct::add_product(const Real* x, Factors<Real>& factors, Real* y) {
   const double squares = m_runs.sum(num_nodes(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    return set_volume_changes(m_node_begin.data(), m_row.data(), factors.by_node.data(), factors.x.data(),
-                              begin, end, factors.theta.data());
+    return set_volume_changes(m_node_begin.data(), m_row.data(), factors.by_node.data(), x, begin, end,
+                              factors.theta.data());
   });
   m_runs.each(num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     add_volume_changes(m_row_begin.data(), m_node.data(), factors.by_row.data(), factors.theta.data(), begin,
-                       end, y.data());
+                       end, y);
   });
   return squares;
 }

@@ -24,6 +24,8 @@ class NodalProduct {
 
   /// y += s Σ g_a (g_a·x) / D_a; returns x · what was added. A column a row of the matrix.
   double add(const Points& x, Points& y);
+  /// The same in a team, with factors in floats; four numbers a row.
+  double add(const float* x, float* y);
   /// The same matrix's 3×3 diagonal blocks, side by side.
   void add_diagonal(Eigen::Matrix3Xd& blocks) const;
 
@@ -33,13 +35,15 @@ class NodalProduct {
   struct Factors {
     std::vector<Real> by_node;  // the entries of a node in the order of its ring
     std::vector<Real> by_row;   // the same once more, row by row
-    std::vector<Real> x;        // 4 a row
+    std::vector<Real> x, y;     // 4 a row
     std::vector<Real> theta;    // of each node
   };
   template <class Real>
   void update_factors(double scale, Factors<Real>& factors);
   template <class Real>
   double add_product(const Points& x, Factors<Real>& factors, Points& y);
+  template <class Real>
+  double add_product(const Real* x, Factors<Real>& factors, Real* y);
 
   std::ptrdiff_t num_nodes() const { return static_cast<std::ptrdiff_t>(m_node_begin.size()) - 1; }
   std::ptrdiff_t num_rows() const { return static_cast<std::ptrdiff_t>(m_row_begin.size()) - 1; }

@@ -15,7 +15,7 @@ class Solid::Product final : public linear::Operator {
   double multiply(const Points& x, Points& y) override {
     if (!m_solid.has_only_diagonal()) {
       const double stored = linear::multiply(m_solid.m_matrix, x, y, m_solid.m_rows);
-      return stored + add_unstored(x, y);
+      return stored + (m_solid.m_nodal_product ? m_solid.m_nodal_product->add(x, y) : 0.0);
     }
     const MatrixShares share = m_solid.shares();
     Points& u = m_solid.m_direction;
@@ -42,7 +42,7 @@ class Solid::Product final : public linear::Operator {
     return ordered_sum(x.size(), [&](std::ptrdiff_t i) { return x(i) * y(i); });
   }
 
-  double add_unstored(const Points& x, Points& y) override {
+  double add_unstored(const float* x, float* y) override {
     return m_solid.m_nodal_product ? m_solid.m_nodal_product->add(x, y) : 0.0;
   }
   void add_unstored_diagonal(Eigen::Matrix3Xd& blocks) override {

@@ -6,6 +6,8 @@
 
 #include "base/rng.h"
 #include "linear/pcg.h"
+#include "linear/short_blocks.h"
+#include "linear/short_iteration.h"
 #include "linear/solver.h"
 
 namespace argil::linear {
@@ -79,12 +81,16 @@ class WithOuterProduct final : public Operator {
   WithOuterProduct(const BlockMatrix& stored, Points u) : m_stored(stored, 1), m_u(std::move(u)) {}
   double multiply(const Points& x, Points& y) override {
     const double dot = m_stored.multiply(x, y);
-    return dot + add_unstored(x, y);
-  }
-  double add_unstored(const Points& x, Points& y) override {
     const double along = m_u.cwiseProduct(x).sum();
     y += along * m_u;
-    return along * along;
+    return dot + along * along;
+  }
+  double add_unstored(const float* x, float* y) override {
+    const Eigen::Map<const Eigen::Matrix4Xf> at(x, 4, m_u.cols());
+    const Eigen::Matrix3Xf u = m_u.cast<float>();
+    const float along = u.cwiseProduct(at.topRows<3>()).sum();
+    Eigen::Map<Eigen::Matrix4Xf>(y, 4, m_u.cols()).topRows<3>() += along * u;
+    return static_cast<double>(along * along);
   }
   void add_unstored_diagonal(Eigen::Matrix3Xd& blocks) override {
     for (Eigen::Index row = 0; row < m_u.cols(); ++row)
@@ -137,12 +143,16 @@ TEST(BlockMatrix, MultipliesAsADenseMatrixDoes) {
     const Eigen::VectorXd expected = to_dense(a) * x.reshaped();
     EXPECT_LT((y.reshaped() - expected).norm(), 1e-14 * expected.norm()) << rows;
     EXPECT_NEAR(dot, expected.dot(x.reshaped()), 1e-13 * expected.norm() * x.norm()) << rows;
-    RoundedOperator rounded(3);
+    ShortBlocks rounded;
     MatrixOperator product(a, 1);
-    rounded.update(a, product);
-    rounded.multiply(x, y);
-    EXPECT_LT((y.reshaped() - expected).norm(), 1e-7 * expected.norm()) << rows;  // a float has 2⁻²⁴
-    EXPECT_GT((y.reshaped() - expected).norm(), 1e-10 * expected.norm()) << rows;
+    rounded.update(a, product, runs);
+    Eigen::Matrix4Xf short_x = Eigen::Matrix4Xf::Zero(4, rows), short_y(4, rows);
+    short_x.topRows<3>() = x.cast<float>();
+    const double short_dot = rounded.multiply(0, rows, short_x.data(), short_y.data());
+    const Eigen::VectorXd found = short_y.topRows<3>().cast<double>().reshaped();
+    EXPECT_LT((found - expected).norm(), 2e-7 * expected.norm()) << rows;  // a float has 2⁻²⁴
+    EXPECT_GT((found - expected).norm(), 1e-10 * expected.norm()) << rows;
+    EXPECT_NEAR(short_dot, expected.dot(x.reshaped()), 1e-6 * expected.norm() * x.norm()) << rows;
   }
 }
 
@@ -273,6 +283,40 @@ TEST(IterativeSolver, TakesWhatTheMatrixDoesNotStore) {
         ASSERT_TRUE(solver->solve(a, product, b, x).converged);
         EXPECT_LT((whole * x.reshaped() - b.reshaped()).norm(), 1.01 * tolerance * b.norm());
       }
+}
+
+TEST(ShortIteration, TakesTheRowsThatChangedAndGivesEqualBitsOnAnyNumberOfThreads) {
+  const Points b = make_random_vector(500, 31);
+  Points first;
+  for (const int threads : {1, 2, 4, 7}) {
+    BlockMatrix a = make_random_spd(500, 32);
+    ShortIteration iteration(threads);
+    Points x;
+    for (int step = 0; step < 4; ++step) {
+      for (std::size_t r = static_cast<std::size_t>(step); r < 500; r += 5) {
+        a.block(a.diagonal[r]) *= 1.5;
+        ++a.revision[r];
+      }
+      MatrixOperator product(a, threads);
+      x = Points::Zero(3, 500);
+      ASSERT_TRUE(iteration.solve(a, product, b, 1e-5, 100, x).converged);
+      EXPECT_LT((to_dense(a) * x.reshaped() - b.reshaped()).norm(), 1.1e-5 * b.norm()) << step;
+    }
+    if (threads == 1) first = x;
+    EXPECT_TRUE((x.array() == first.array()).all()) << threads;
+  }
+}
+
+TEST(ShortIteration, TakesNumbersOfAnySize) {
+  const BlockMatrix a = make_random_spd(50, 33);
+  for (const double size : {1e-60, 1e60}) {  // beyond what a float holds
+    const Points b = size * make_random_vector(50, 34);
+    MatrixOperator product(a, 1);
+    ShortIteration iteration(1);
+    Points x = Points::Zero(3, 50);
+    ASSERT_TRUE(iteration.solve(a, product, b, 1e-4, 100, x).converged);
+    EXPECT_LT((to_dense(a) * x.reshaped() - b.reshaped()).norm(), 1.1e-4 * b.norm());
+  }
 }
 
 TEST(DirectSolver, FactorisesOnlyWhenTheMatrixChanged) {

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "linear/short_blocks.h"
+
+namespace argil::linear {
+
+/// The method of ConjugateGradients over the diagonal blocks, in floats but for its sums: what is added to x
+/// is found from b − A x, which is taken in double, so that floats round only what the solve changes. For
+/// tolerances above kRoomForFloats. Each iteration goes over the rows twice. Bits do not depend on `threads`.
+class ShortIteration {
+ public:
+  explicit ShortIteration(int threads) : m_threads(threads), m_runs(threads) {}
+
+  /// `matrix` must be what it was in every call but for its values.
+  SolveReport solve(const BlockMatrix& matrix, Operator& whole, const Points& b, double tolerance,
+                    int max_iterations, Points& x);
+
+ private:
+  SolveReport iterate(Operator& whole, double first, double goal, int max_iterations);
+
+  int m_threads;
+  OrderedRuns m_runs;
+  ShortBlocks m_blocks;
+  Points m_product;
+  std::vector<float> m_r, m_z, m_w, m_p, m_q, m_x;  // four a row
+  std::vector<double> m_products;                   // z·w of each run
+  std::vector<ShortBlocks::Sums> m_sums;            // of each run
+};
+
+}  // namespace argil::linear
