@@ -28,6 +28,19 @@ std::string find_real_name(const std::string& name) {
   return ignored ? name : target.string();
 }
 
+/// The library keeps what it knows of a file's structure, by default up to 32 MB, and of each open series the
+/// last chunks, by default 1 MB of them.
+bool limit_caches(hid_t access) {
+  constexpr std::size_t kStructure = std::size_t{4} << 20;
+  constexpr std::size_t kChunks = std::size_t{128} << 10;  // some whole chunks of a series
+  constexpr std::size_t kSlots = 521;                      // the library's own number
+  H5AC_cache_config_t config = {};
+  config.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+  if (H5Pget_mdc_config(access, &config) < 0) return false;
+  config.max_size = kStructure;
+  return H5Pset_mdc_config(access, &config) >= 0 && H5Pset_cache(access, 0, kSlots, kChunks, 0.75) >= 0;
+}
+
 // `journalled`: real name of a file that is to be written; empty: it is read.
 Handle access_properties(const std::string& name, const std::string& journalled) {
   Handle access = property(H5Pcreate(H5P_FILE_ACCESS));
@@ -38,6 +51,7 @@ Handle access_properties(const std::string& name, const std::string& journalled)
   ok = ok &&
        H5Pset_file_locking(access.id(), true, true) >= 0;  // true, true: go on where the system has no locks
 #endif
+  ok = ok && limit_caches(access.id());
   if (!journalled.empty()) ok = ok && use_commit_driver(access.id(), journalled);
   if (!ok) throw IoError(name, "cannot set up HDF5: " + take_reason());
   return access;

@@ -339,14 +339,16 @@ std::string print_resolved(const Scenario& scenario) {
 
 std::string print_portable(const Scenario& scenario) {
   Scenario copy = scenario;
-  const std::filesystem::path folder = std::filesystem::absolute(scenario.file).parent_path();
+  // Absolute both: the same text however the scenario was named.
+  const std::filesystem::path folder =
+      std::filesystem::absolute(scenario.file).lexically_normal().parent_path();
   Json object = Json::object();
   for (const Parameter& row : make_parameter_table(copy, scenario.file)) {
     if (row.applies && !row.applies()) continue;
     Json value = row.write();
     if (row.type == ValueType::path && value != "") {
       const std::filesystem::path file = value.get<std::string>();
-      value = file.lexically_relative(folder).generic_string();
+      value = std::filesystem::absolute(file).lexically_normal().lexically_relative(folder).generic_string();
     }
     object[Json::json_pointer(row.pointer)] = value;
   }

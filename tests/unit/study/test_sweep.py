@@ -16,6 +16,7 @@ from pathlib import Path
 
 ARGIL = str(Path(sys.argv.pop(1)).resolve())
 BASE = Path(__file__).resolve().parents[2] / "golden" / "ball.json"
+SCRIPTS = Path(__file__).resolve().parents[3] / "scripts"
 SHORT = {"/trace/duration_s": [0.028]}
 
 
@@ -118,6 +119,15 @@ class Sweep(unittest.TestCase):
             self.call("run", self.points, "--block", 2, "--index", block)
         self.assertEqual(self.collect(), table)
 
+    def test_points_are_the_same_by_any_name(self):
+        self.expand_and_run()
+        lines = self.points.read_text()
+        for name in ("points.jsonl", "./points.jsonl", f"../{self.folder.name}/points.jsonl"):
+            self.call("expand", "sweep.json", "-o", name)
+            self.assertEqual(self.points.read_text(), lines)
+            self.assertEqual(self.call("missing", name), "")
+            self.call("run", name, "--index", 0)
+
     def test_failed_and_refused_points_are_named_with_their_reason(self):
         self.expand(list=[{"/trace/duration_s": 0.01}, {"/dynamics/min_volume_ratio": 0.9999},
                           {"/trace/device_to_world/translation_m": [0, 0, -0.03]}])
@@ -141,6 +151,24 @@ class Sweep(unittest.TestCase):
         for suffix in (".csv", ".h5"):
             self.assertEqual((self.folder / f"serial{suffix}").read_bytes(),
                              (self.folder / f"parallel{suffix}").read_bytes())
+
+    def test_snakemake_gives_the_table_of_a_serial_run_and_asks_again_when_the_points_change(self):
+        if not shutil.which("snakemake"):
+            self.skipTest("needs Snakemake (package snakemake)")
+
+        def make():
+            subprocess.run(["snakemake", "-s", SCRIPTS / "sweep.snakefile", "--cores", "2", "--config", f"points={self.points.name}"],
+                           cwd=self.folder, check=True, capture_output=True,
+                           env={**os.environ, "PATH": f"{Path(ARGIL).parent}:{os.environ['PATH']}", "HOME": str(self.folder)})
+            return (self.folder / "points.csv").read_bytes()
+
+        for saturations in ([0.1, 0.9], [0.1, 0.5]):
+            self.expand(grid={**SHORT, "/body/initial_saturation": saturations})
+            table = make()
+            self.collect("serial")  # of the points that are there, all of which have ended
+            self.assertEqual(table, (self.folder / "serial.csv").read_bytes())
+            self.assertEqual(table.count(b"done"), 2)
+            self.assertIn(str(saturations[1]).encode(), table)
 
 
 if __name__ == "__main__":
