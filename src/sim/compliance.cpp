@@ -23,9 +23,45 @@ LocalCompliance::LocalCompliance(const ContactSurface& surface, int num_nodes)
   m_load.setZero(3, num_nodes);
 }
 
-StepStatus LocalCompliance::find_columns(const BodyAtFrame& body, std::size_t place) {
+namespace {
+
+/// Number of vertices whose columns one physics step solves for at most.
+constexpr int kSolvedAStep = 4;
+
+}  // namespace
+
+void LocalCompliance::learn(const BodyAtFrame& body, int vertex) {
+  if (m_known_of_vertex[static_cast<std::size_t>(vertex)] >= 0) return;
+  const std::size_t place = m_known.size();
+  const auto needed = 3 * static_cast<Eigen::Index>(place + 1);
+  if (m_columns.cols() < needed) {
+    m_columns.conservativeResize(m_displacement.size(), 2 * needed);
+    m_between.conservativeResize(2 * needed, 2 * needed);
+  }
+  m_known_of_vertex[static_cast<std::size_t>(vertex)] = static_cast<int>(place);
+  m_known.push_back(vertex);
+  m_is_guess.push_back(1);
+  m_force.push_back(Vec3::Zero());
+  m_held.push_back(Vec3::Zero());
+  guess_columns(body, place);
+}
+
+void LocalCompliance::guess_columns(const BodyAtFrame& body, std::size_t place) {
   if (!m_is_prepared) body.solid.prepare_response(body.state, body.step_s);
   m_is_prepared = true;
+  const std::span<const int> nodes = body.surface.nodes(m_known[place]);
+  const std::span<const double> weights = body.surface.weights(m_known[place]);
+  auto columns = m_columns.middleCols<3>(3 * static_cast<Eigen::Index>(place));
+  columns.setZero();
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    columns.middleRows<3>(m_row_of_node[static_cast<std::size_t>(nodes[k])]) =
+        weights[k] * m_guess_factor * body.solid.compute_local_response(nodes[k]);
+  update_between(body.surface, place);
+}
+
+StepStatus LocalCompliance::solve_columns(const BodyAtFrame& body, std::size_t place) {
+  guess_columns(body, place);
+  const double guessed = between(place, place).trace() / m_guess_factor;
   const std::span<const int> nodes = body.surface.nodes(m_known[place]);
   const std::span<const double> weights = body.surface.weights(m_known[place]);
   for (int axis = 0; axis < 3; ++axis) {
@@ -36,23 +72,32 @@ StepStatus LocalCompliance::find_columns(const BodyAtFrame& body, std::size_t pl
     for (std::size_t s = 0; s < m_nodes.size(); ++s)
       column.segment<3>(3 * static_cast<Eigen::Index>(s)) = m_response.col(m_nodes[s]);
   }
+  m_is_guess[place] = 0;
+  update_between(body.surface, place);
+  const double solved = between(place, place).trace();
+  if (guessed > 0.0) m_guess_factor = std::max(1.0, solved / guessed);
   return StepStatus::ok();
 }
 
-StepStatus LocalCompliance::learn(const BodyAtFrame& body, int vertex) {
-  if (m_known_of_vertex[static_cast<std::size_t>(vertex)] >= 0) return StepStatus::ok();
-  const std::size_t place = m_known.size();
-  const auto needed = 3 * static_cast<Eigen::Index>(place + 1);
-  if (m_columns.cols() < needed) {
-    Eigen::MatrixXd grown = Eigen::MatrixXd::Zero(m_displacement.size(), 2 * needed);
-    grown.leftCols(m_columns.cols()) = m_columns;
-    m_columns.swap(grown);
+/// Symmetric, as solves are but for their tolerance. A guess moves its own nodes alone, so that between a
+/// guess and a solution there is nothing: with either kind by itself the whole is positive semidefinite.
+void LocalCompliance::update_between(const ContactSurface& surface, std::size_t place) {
+  const auto moved = [&](std::size_t i, std::size_t j) {
+    const std::span<const int> nodes = surface.nodes(m_known[i]);
+    const std::span<const double> weights = surface.weights(m_known[i]);
+    Mat3 sum = Mat3::Zero();
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      sum += weights[k] * m_columns.block<3, 3>(m_row_of_node[static_cast<std::size_t>(nodes[k])],
+                                                3 * static_cast<Eigen::Index>(j));
+    return sum;
+  };
+  for (std::size_t i = 0; i < m_known.size(); ++i) {
+    Mat3 block = Mat3::Zero();
+    if (m_is_guess[i] == m_is_guess[place]) block = 0.5 * (moved(i, place) + moved(place, i).transpose());
+    const auto row = 3 * static_cast<Eigen::Index>(i), column = 3 * static_cast<Eigen::Index>(place);
+    m_between.block<3, 3>(row, column) = block;
+    m_between.block<3, 3>(column, row) = block.transpose();
   }
-  m_known_of_vertex[static_cast<std::size_t>(vertex)] = static_cast<int>(place);
-  m_known.push_back(vertex);
-  m_force.push_back(Vec3::Zero());
-  m_held.push_back(Vec3::Zero());
-  return find_columns(body, place);
 }
 
 /// The last known vertex takes the place of the one that is forgotten.
@@ -63,11 +108,16 @@ void LocalCompliance::forget(std::size_t place) {
     m_known_of_vertex[static_cast<std::size_t>(m_known[last])] = static_cast<int>(place);
     m_columns.middleCols<3>(3 * static_cast<Eigen::Index>(place)) =
         m_columns.middleCols<3>(3 * static_cast<Eigen::Index>(last));
+    const auto from = 3 * static_cast<Eigen::Index>(last), to = 3 * static_cast<Eigen::Index>(place);
+    m_between.middleCols<3>(to) = m_between.middleCols<3>(from);
+    m_between.middleRows<3>(to) = m_between.middleRows<3>(from);
     m_known[place] = m_known[last];
+    m_is_guess[place] = m_is_guess[last];
     m_force[place] = m_force[last];
     m_held[place] = m_held[last];
   }
   m_known.pop_back();
+  m_is_guess.pop_back();
   m_force.pop_back();
   m_held.pop_back();
 }
@@ -84,16 +134,39 @@ StepStatus LocalCompliance::begin_frame(const BodyAtFrame& body, const Points& x
     const double yielded = spring.normal.dot(compute_mean(body.surface, spring, m_own));
     const Vec3 acted = share * (spring.force - spring.stiffness * yielded) * spring.normal;
     for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) {
-      ARGIL_TRY(learn(body, spring.vertex[i]));
+      learn(body, spring.vertex[i]);
       m_held[place_of(spring.vertex[i])] += spring.weight[i] * acted;
     }
   }
   m_acting.clear();
   for (std::size_t i = m_known.size(); i-- > 0;)
     if (m_held[i].isZero(0.0) && m_force[i].isZero(0.0)) forget(i);
-  if (!m_known.empty()) ARGIL_TRY(find_columns(body, m_next_renewed++ % m_known.size()));
+  ARGIL_TRY(solve_due_columns(body));
   update_displacement();
   return StepStatus::ok();
+}
+
+StepStatus LocalCompliance::solve_due_columns(const BodyAtFrame& body) {
+  int solved = 0;
+  for (int guess = find_most_pressed_guess(); guess >= 0 && solved < kSolvedAStep; ++solved) {
+    ARGIL_TRY(solve_columns(body, static_cast<std::size_t>(guess)));
+    guess = find_most_pressed_guess();
+  }
+  if (solved < kSolvedAStep && !m_known.empty())
+    ARGIL_TRY(solve_columns(body, m_next_renewed++ % m_known.size()));
+  for (std::size_t i = 0; i < m_known.size(); ++i)
+    if (m_is_guess[i]) guess_columns(body, i);
+  return StepStatus::ok();
+}
+
+/// By what held it in the last step; −1: there is none.
+int LocalCompliance::find_most_pressed_guess() const {
+  int most = -1;
+  for (std::size_t i = 0; i < m_known.size(); ++i)
+    if (m_is_guess[i] &&
+        (most < 0 || m_held[i].squaredNorm() > m_held[static_cast<std::size_t>(most)].squaredNorm()))
+      most = static_cast<int>(i);
+  return most;
 }
 
 void LocalCompliance::update_displacement() {
@@ -111,11 +184,13 @@ void LocalCompliance::release() {
   update_displacement();
 }
 
-void LocalCompliance::exchange_state(Archive& archive) {
+void LocalCompliance::exchange_state(Archive& archive, const ContactSurface& surface) {
   ARGIL_ASSERT(m_acting.empty());
   archive.list("compliance/known", m_known);
   archive.list("compliance/force", m_force);
   archive.list("compliance/held", m_held);
+  archive.list("compliance/is_guess", m_is_guess);
+  archive.number("compliance/guess_factor", m_guess_factor);
   archive.number("compliance/next_renewed", m_next_renewed);
   const auto num_columns = 3 * static_cast<Eigen::Index>(m_known.size());
   Eigen::MatrixXd columns = m_columns.leftCols(archive.is_restoring() ? 0 : num_columns);
@@ -124,6 +199,8 @@ void LocalCompliance::exchange_state(Archive& archive) {
   m_columns = columns;
   for (std::size_t i = 0; i < m_known.size(); ++i)
     m_known_of_vertex.at(static_cast<std::size_t>(m_known[i])) = static_cast<int>(i);
+  m_between.resize(num_columns, num_columns);
+  for (std::size_t i = 0; i < m_known.size(); ++i) update_between(surface, i);
   update_displacement();
 }
 
@@ -152,47 +229,26 @@ void LocalCompliance::displace(const Points& x, Points& displaced) const {
 
 /// Row by row, for springs c and d: how far d's unit force moves the body at c along c's normal, and 1/k_c on
 /// the diagonal. The right side is f_in/k and what the present forces F have moved already.
-void LocalCompliance::assemble_balance(const ContactSurface& surface,
-                                       const std::vector<ContactSpring>& springs) {
+void LocalCompliance::assemble_balance(const std::vector<ContactSpring>& springs) {
   const std::size_t m = springs.size();
   m_balance.assign(m * m, 0.0);
   m_right.assign(m, 0.0);
-  // Only where springs act: the surface as a whole has many more rows.
-  const auto mean_at = [&](const ContactSpring& spring, const auto& displacement_at) {
-    Vec3 mean = Vec3::Zero();
-    for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) {
-      const std::span<const int> nodes = surface.nodes(spring.vertex[i]);
-      const std::span<const double> weights = surface.weights(spring.vertex[i]);
-      for (std::size_t k = 0; k < nodes.size(); ++k)
-        mean += spring.weight[i] * weights[k] *
-                displacement_at(m_row_of_node[static_cast<std::size_t>(nodes[k])]);
-    }
-    return mean;
-  };
-  const auto column_block = [this](int row, std::size_t place) {
-    return m_columns.block<3, 3>(row, 3 * static_cast<Eigen::Index>(place));
-  };
-  for (std::size_t d = 0; d < m; ++d)
-    for (std::size_t c = 0; c < m; ++c)
-      m_balance[c * m + d] = springs[c].normal.dot(mean_at(springs[c], [&](int row) {
-        Vec3 own = Vec3::Zero();
-        for (std::size_t i = 0; i < 3 && springs[d].vertex[i] >= 0; ++i)
-          own +=
-              springs[d].weight[i] * (column_block(row, place_of(springs[d].vertex[i])) * springs[d].normal);
-        return own;
-      }));
-  const auto present_at = [&](int row) {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t i = 0; i < m_known.size(); ++i)
-      if (!m_force[i].isZero(0.0)) sum += column_block(row, i) * m_force[i];
-    return sum;
-  };
   for (std::size_t c = 0; c < m; ++c) {
-    m_right[c] =
-        springs[c].force / springs[c].stiffness + springs[c].normal.dot(mean_at(springs[c], present_at));
-    for (std::size_t d = 0; d < c; ++d)  // equal but for the solver's tolerance
-      m_balance[c * m + d] = m_balance[d * m + c] = 0.5 * (m_balance[c * m + d] + m_balance[d * m + c]);
-    m_balance[c * m + c] += 1.0 / springs[c].stiffness;
+    const ContactSpring& at = springs[c];
+    m_right[c] = at.force / at.stiffness;
+    for (std::size_t i = 0; i < 3 && at.vertex[i] >= 0; ++i) {
+      const std::size_t place = place_of(at.vertex[i]);
+      const Vec3 direction = at.weight[i] * at.normal;
+      for (std::size_t k = 0; k < m_known.size(); ++k)
+        if (!m_force[k].isZero(0.0)) m_right[c] += direction.dot(between(place, k) * m_force[k]);
+      for (std::size_t d = 0; d <= c; ++d)
+        for (std::size_t j = 0; j < 3 && springs[d].vertex[j] >= 0; ++j)
+          m_balance[c * m + d] +=
+              springs[d].weight[j] *
+              direction.dot(between(place, place_of(springs[d].vertex[j])) * springs[d].normal);
+    }
+    for (std::size_t d = 0; d < c; ++d) m_balance[d * m + c] = m_balance[c * m + d];
+    m_balance[c * m + c] += 1.0 / at.stiffness;
   }
 }
 
@@ -228,9 +284,9 @@ bool LocalCompliance::solve_balance(std::size_t m) {
 StepStatus LocalCompliance::press(const BodyAtFrame& body, std::vector<ContactSpring>& springs) {
   for (const ContactSpring& spring : springs) {
     ARGIL_DCHECK(spring.stiffness > 0.0);
-    for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) ARGIL_TRY(learn(body, spring.vertex[i]));
+    for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) learn(body, spring.vertex[i]);
   }
-  assemble_balance(body.surface, springs);
+  assemble_balance(springs);
   const std::size_t m = springs.size();
   m_pressed.clear();
   for (std::size_t c = 0; c < m; ++c)

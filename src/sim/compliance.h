@@ -29,8 +29,10 @@ struct BodyAtFrame {
 
 /// How the surface yields between two physics steps: u = C (F − G), with F the present forces on its
 /// vertices, G those that acted in the last step, and C the nodes' displacement by a unit force on a touched
-/// vertex at the end of a step, τ² A⁻¹ Wᵀ, from the body's own matrix without contacts. Columns of C are
-/// found when a vertex is first touched and kept while it is; one of them is renewed a step.
+/// vertex at the end of a step, τ² A⁻¹ Wᵀ, from the body's own matrix without contacts. A vertex that is
+/// touched anew has guessed columns until the next physics step, so that a tick solves nothing: what its
+/// nodes yield while all others stay, times how much more the vertex solved for last yields than that. A step
+/// solves for no more than four vertices: those with guesses, most pressed first, then known ones by turns.
 class LocalCompliance {
  public:
   LocalCompliance(const ContactSurface& surface, int num_nodes);
@@ -46,8 +48,9 @@ class LocalCompliance {
   StepStatus begin_frame(const BodyAtFrame& body, const Points& x_before);
 
   /// Lets the surface yield under `springs`. In: the force of each if the surface stayed as it is. Out: the
-  /// forces f ≥ 0 in balance with the surface as it then is, f = f_in − k n·Δu, 0 where that were below. The
-  /// balance is unique and continuous in what it is given.
+  /// forces f ≥ 0 in balance with the surface as it then is, f = f_in − k n·Δu, 0 where that were below. Of
+  /// Δu, what guessed and solved vertices do to each other is left to the next tick's detection. The balance
+  /// is unique and continuous in what it is given.
   StepStatus press(const BodyAtFrame& body, std::vector<ContactSpring>& springs);
 
   /// Nothing presses any more; the surface comes back.
@@ -58,7 +61,7 @@ class LocalCompliance {
   /// n·u where a spring acts [m].
   double compute_yield(const ContactSurface& surface, const ContactSpring& spring) const;
   /// All that press takes from earlier ticks; right after begin_frame, or before the first.
-  void exchange_state(Archive& archive);
+  void exchange_state(Archive& archive, const ContactSurface& surface);
   int num_known() const { return static_cast<int>(m_known.size()); }
 
  private:
@@ -67,14 +70,21 @@ class LocalCompliance {
     double share;
     int group;
   };
-  StepStatus learn(const BodyAtFrame& body, int vertex);
-  StepStatus find_columns(const BodyAtFrame& body, std::size_t place);
+  void learn(const BodyAtFrame& body, int vertex);
+  void guess_columns(const BodyAtFrame& body, std::size_t place);
+  StepStatus solve_columns(const BodyAtFrame& body, std::size_t place);
+  StepStatus solve_due_columns(const BodyAtFrame& body);
+  int find_most_pressed_guess() const;
+  void update_between(const ContactSurface& surface, std::size_t place);
   void forget(std::size_t place);
   void update_displacement();
   Vec3 compute_mean(const ContactSurface& surface, const ContactSpring& spring,
                     const Eigen::VectorXd& displacement) const;
-  void assemble_balance(const ContactSurface& surface, const std::vector<ContactSpring>& springs);
+  void assemble_balance(const std::vector<ContactSpring>& springs);
   bool solve_balance(std::size_t num_springs);
+  auto between(std::size_t i, std::size_t j) const {
+    return m_between.block<3, 3>(3 * static_cast<Eigen::Index>(i), 3 * static_cast<Eigen::Index>(j));
+  }
   std::size_t place_of(int vertex) const {
     return static_cast<std::size_t>(m_known_of_vertex[static_cast<std::size_t>(vertex)]);
   }
@@ -84,6 +94,9 @@ class LocalCompliance {
   std::vector<int> m_known;            // vertices whose columns are known
   std::vector<int> m_known_of_vertex;  // −1: not known
   Eigen::MatrixXd m_columns;           // C: 3 rows a carrying node, 3 columns a known vertex
+  Eigen::MatrixXd m_between;           // 3×3 blocks of the balance: vertex i by a force on vertex j
+  std::vector<char> m_is_guess;        // of each known vertex
+  double m_guess_factor = 1.0;         // yield of the vertex solved for last over that of its nodes alone
   std::vector<Vec3> m_force, m_held;   // F and G of each known vertex
   std::vector<Acting> m_acting;        // since the last physics step
   Eigen::VectorXd m_displacement;      // u, 3 rows a carrying node

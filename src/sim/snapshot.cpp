@@ -88,7 +88,7 @@ void Simulation::exchange_contact_state(Archive& archive) {
   archive.list("contact/body_edge", body_edge);
   archive.list("contact/edge_stretch", inside.edge_stretch);
   exchange_springs(archive);
-  m_compliance.exchange_state(archive);
+  m_compliance.exchange_state(archive, m_surface);
   if (!archive.is_restoring()) return;
   m_gate.restore(gate_count, gate_force);
   inside.edges.clear();

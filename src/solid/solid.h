@@ -113,10 +113,12 @@ class Solid {
   StepStatus find_equilibrium(SolidState& state, const StepLoads& loads);
 
   /// Makes the matrix of a step of `step_s` seconds from the present kinematics, without contacts. It serves
-  /// find_response until the next step begins.
+  /// find_response and compute_local_response until the next step begins.
   void prepare_response(const SolidState& state, double step_s);
   /// How far forces (3×n) move every node by the end of such a step: τ² A⁻¹ f [m].
   StepStatus find_response(const Points& force, Tick tick, Points& displacement);
+  /// The same of one node by a force on it while all others stay: τ² Aᵢᵢ⁻¹ [m/N], a lower bound.
+  Mat3 compute_local_response(int node) const;
 
   /// What a step takes from the last ones besides the state, its moduli and its kinematics: what the solvers
   /// keep, and the counters.

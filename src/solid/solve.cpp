@@ -157,6 +157,16 @@ StepStatus Solid::find_response(const Points& force, Tick tick, Points& displace
   return StepStatus::ok();
 }
 
+Mat3 Solid::compute_local_response(int node) const {
+  const int row = m_row_of_node[static_cast<std::size_t>(node)];
+  if (row < 0) return Mat3::Zero();
+  Mat3 response =
+      m_tau * m_tau * Mat3(m_matrix.block(m_matrix.diagonal[static_cast<std::size_t>(row)])).inverse();
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    if (m_constraints.support(axis, node) >= 0) response(axis, axis) = 0.0;
+  return response;
+}
+
 void Solid::exchange_state(Archive& archive) {
   archive.number("solid/newton_iterations", m_counters.newton_iterations);
   archive.number("solid/linear_iterations", m_counters.linear_iterations);
