@@ -2,7 +2,7 @@
 """Runs an hour of ticks on a small ball, with frames, checkpoints and a hand that comes and goes, and prints what memory the
 process has at several times. Exit code 1 when it still grows: more in the last half than --growth MB.
 
-Usage: long_run.py ARGIL [--seconds 3600] [--growth 5]
+Usage: long_run.py ARGIL [--seconds 3600] [--growth 10]
 """
 import argparse
 import json
@@ -65,7 +65,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("argil")
     parser.add_argument("--seconds", type=float, default=3600.0)
-    parser.add_argument("--growth", type=float, default=5.0)
+    parser.add_argument("--growth", type=float, default=10.0)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as temp:
         folder = Path(temp)

@@ -144,6 +144,16 @@ void File::flush() {
   m_renamed_to.clear();
 }
 
+void File::sync() {
+  flush();
+  void* descriptor = nullptr;
+  if (H5Fget_vfd_handle(m_handle.id(), H5P_DEFAULT, &descriptor) < 0)
+    throw IoError(m_name, "cannot be synced: " + take_reason());
+  // EINVAL: a file system that has nothing to wait for.
+  if (fdatasync(*static_cast<int*>(descriptor)) != 0 && errno != EINVAL)
+    throw IoError(m_name, std::string("cannot be synced: ") + std::strerror(errno));
+}
+
 File::~File() {
   if (m_handle.id() < 0 || m_renamed_to.empty()) return;
   try {

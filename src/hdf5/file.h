@@ -166,6 +166,8 @@ class File {
 
   Group root() const;
   void flush();
+  /// Flushes and waits until the file's bytes are on the disk.
+  void sync();
   /// Closes and reports what could not be written; the destructor closes without a word.
   void close();
   const std::string& name() const { return m_name; }

@@ -268,6 +268,7 @@ void ResultFile::write_checkpoint(const Snapshot& state) {
     for (const auto& [name, array] : state)
       write_entities(group, dotted(name).c_str(), array, schema::kState);
     m_impl->write_all();
+    m_impl->file.sync();
   });
 }
 
@@ -280,7 +281,7 @@ void ResultFile::finish(const std::optional<Failure>& failure, bool interrupted)
     write_outcome(m_impl->root, failure       ? Outcome::failed
                                 : interrupted ? Outcome::interrupted
                                               : Outcome::done);
-    m_impl->file.flush();
+    m_impl->file.sync();
   });
   // The library closes a file when the last object in it is closed, and reports then what could not be
   // written.

@@ -69,6 +69,30 @@ class JsonReader {
     }
     return list;
   }
+  /// {"/pointer": [values…], …}
+  const Json& axes(const std::string& key, const Json& object) const {
+    if (!object.is_object() || object.empty())
+      refuse(key, "is not an object of axes", "give {\"/json/pointer\": [values], …}");
+    for (const auto& [pointer, values] : object.items()) {
+      check_pointer(key, pointer);
+      if (!values.is_array() || values.empty())
+        refuse(key, pointer + " has no list of values", "give for instance [1, 2, 5]");
+    }
+    return object;
+  }
+  /// Axes of one length, taken together.
+  std::vector<std::vector<Setting>> zip(const std::string& key, const Json& object) const {
+    std::vector<std::vector<Setting>> points(axes(key, object).begin()->size());
+    for (const auto& [pointer, values] : object.items()) {
+      if (values.size() != points.size())
+        refuse(key,
+               pointer + " has " + std::to_string(values.size()) + " values, the first axis " +
+                   std::to_string(points.size()),
+               "give lists of one length; they are taken together");
+      for (std::size_t i = 0; i < points.size(); ++i) points[i].push_back({pointer, values[i].dump()});
+    }
+    return points;
+  }
   void check_pointer(const std::string& key, const std::string& pointer) const {
     if (pointer.empty() || pointer[0] != '/')
       refuse(key, "\"" + pointer + "\" is no JSON pointer", "begin it with /, as in /dynamics/model");

@@ -17,34 +17,13 @@ std::string resolve(const std::string& study, const std::string& scenario) {
   return (std::filesystem::path(study).parent_path() / scenario).lexically_normal().string();
 }
 
-/// "along": {"/pointer": [values…], …}, lists of one length, taken together.
-std::vector<std::vector<Setting>> read_points(Reader& reader) {
-  const Json* along = reader.find("along");
-  if (!along) return {{}};
-  if (!along->is_object() || along->empty())
-    reader.refuse("along", "is not an object of lists", "give {\"/json/pointer\": [values], …}");
-  std::vector<std::vector<Setting>> points;
-  for (const auto& [pointer, values] : along->items()) {
-    reader.check_pointer("along", pointer);
-    if (!values.is_array() || values.empty())
-      reader.refuse("along", pointer + " has no list of values", "give for instance [1, 2, 5]");
-    if (points.empty()) points.resize(values.size());
-    if (points.size() != values.size())
-      reader.refuse("along",
-                    pointer + " has " + std::to_string(values.size()) + " values, the first key " +
-                        std::to_string(points.size()),
-                    "give lists of one length; they are taken together");
-    for (std::size_t i = 0; i < points.size(); ++i) points[i].push_back({pointer, values[i].dump()});
-  }
-  return points;
-}
-
 Curve read_curve(const Json& json, const std::string& file, const std::string& place) {
   Reader reader(json, file, place);
   Curve curve;
   curve.name = reader.text("name", "what the legend calls it");
   curve.settings = reader.settings("settings");
-  curve.points = read_points(reader);
+  const Json* along = reader.find("along");
+  curve.points = along ? reader.zip("along", *along) : std::vector<std::vector<Setting>>(1);
   reader.finish();
   return curve;
 }

@@ -43,36 +43,12 @@ PointList combine(const PointList& a, const PointList& b, const JsonReader& read
   return product;
 }
 
-const Json& require_axes(const JsonReader& reader, const std::string& key, const Json& axes) {
-  if (!axes.is_object() || axes.empty())
-    reader.refuse(key, "is not an object of axes", "give {\"/json/pointer\": [values], …}");
-  for (const auto& [pointer, values] : axes.items()) {
-    reader.check_pointer(key, pointer);
-    if (!values.is_array() || values.empty())
-      reader.refuse(key, pointer + " has no list of values", "give for instance [1, 2, 5]");
-  }
-  return axes;
-}
-
 PointList read_grid(const JsonReader& reader, const Json& axes) {
   PointList points = {{}};
-  for (const auto& [pointer, values] : require_axes(reader, "grid", axes).items()) {
+  for (const auto& [pointer, values] : reader.axes("grid", axes).items()) {
     PointList axis;
     for (const Json& value : values) axis.push_back({{pointer, value.dump()}});
     points = combine(points, axis, reader, "grid");
-  }
-  return points;
-}
-
-PointList read_zip(const JsonReader& reader, const Json& axes) {
-  PointList points(require_axes(reader, "zip", axes).begin()->size());
-  for (const auto& [pointer, values] : axes.items()) {
-    if (values.size() != points.size())
-      reader.refuse("zip",
-                    pointer + " has " + std::to_string(values.size()) + " values, the first axis " +
-                        std::to_string(points.size()),
-                    "give lists of one length; they are taken together");
-    for (std::size_t i = 0; i < points.size(); ++i) points[i].push_back({pointer, values[i].dump()});
   }
   return points;
 }
@@ -118,7 +94,7 @@ PointList read_sample(const Json& json, const std::string& file) {
   const auto count =
       static_cast<std::size_t>(reader.number("count", 1.0, 1.0, static_cast<double>(kMostPoints)));
   const auto seed = static_cast<std::uint64_t>(reader.number("seed", 0.0, 0.0, 0x1p53));
-  const Json& axes = require_axes(reader, "axes", reader.get("axes", "{\"/json/pointer\": [low, high], …}"));
+  const Json& axes = reader.axes("axes", reader.get("axes", "{\"/json/pointer\": [low, high], …}"));
   reader.finish();
   check_settings(count * axes.size(), reader, "axes");
   PointList points(count);
@@ -170,7 +146,7 @@ Sweep load_sweep(const std::string& file) {
   if (const Json* axes = reader.find("grid"))
     sweep.points = combine(sweep.points, read_grid(reader, *axes), reader, "grid");
   if (const Json* axes = reader.find("zip"))
-    sweep.points = combine(sweep.points, read_zip(reader, *axes), reader, "zip");
+    sweep.points = combine(sweep.points, reader.zip("zip", *axes), reader, "zip");
   if (const Json* list = reader.find("list"))
     sweep.points = combine(sweep.points, read_list(reader, *list), reader, "list");
   if (const Json* sample = reader.find("sample"))

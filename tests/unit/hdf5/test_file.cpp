@@ -108,6 +108,25 @@ TEST(Hdf5File, AKilledWriterLeavesTheFileOfItsLastFlush) {
     EXPECT_EQ(root.open_group(group).read_text("text").size(), 500U);
 }
 
+TEST(Hdf5File, ASyncIsAFlushAndGivesANewFileItsName) {
+  const TempFolder folder;
+  const std::string name = folder / "f.h5";
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    File file = File::create(name);
+    const Group root = file.root();
+    root.create_group("kept");
+    file.sync();
+    root.create_group("lost");
+    raise(SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(File::open_for_reading(name).root().names(), std::vector<std::string>{"kept"});
+}
+
 /// Adds row after row to a table and a list of groups, with a flush a row, until it is killed.
 [[noreturn]] void write_until_killed(const std::string& name, int microseconds) {
   itimerval timer = {};

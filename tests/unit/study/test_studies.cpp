@@ -251,7 +251,7 @@ TEST_F(Study, RefusesWhatItCannotRun) {
   expect(head + R"("refined": {"a": 1}, "curves": [{"name": "a"}]})",
          {"/refined", "\"a\" is no JSON pointer"});
   expect(head + R"("refined": {"/a": 1}, "curves": [{"name": "a", "along": {"/b": [1, 2], "/c": [1]}}]})",
-         {"/curves/0/along", "/c has 1 values, the first key 2"});
+         {"/curves/0/along", "/c has 1 values, the first axis 2"});
   expect(head + R"("refined": {"/a": 1}, "curve": [], "curves": [{"name": "a"}]})",
          {"/curve", "is not a known key", "did you mean curves?"});
   expect(head + R"("x": {"name": "x", "pointers": ["/a"], "values": [2, 1]}})",
