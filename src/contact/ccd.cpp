@@ -258,8 +258,9 @@ std::optional<double> find_time_of_impact(PairKind kind, const PairPath& path, d
     start[i] = path.t0[i] - path.t0[0];
     end[i] = path.t1[i] - path.t0[0];
   }
-  constexpr int kMaxSteps = 256;          // beyond, the answer stays on the safe side
-  constexpr double kFairProgress = 1e-3;  // of the time left; with less, the other directions are tried too
+  constexpr int kMaxSteps = 256;            // beyond, the answer stays on the safe side
+  constexpr double kLeastProgress = 1e-12;  // of the time left; rounding alone can give less: they meet
+  constexpr double kFairProgress = 1e-3;    // of the time left; with less, the other directions are tried too
   double t = 0.0;
   for (int step = 0; step < kMaxSteps; ++step) {
     // As long as the four points are not in one plane, the features do not meet.
@@ -292,7 +293,7 @@ std::optional<double> find_time_of_impact(PairKind kind, const PairPath& path, d
     if (share < kFairProgress && separation > 0.0) try_one(find_nearest_direction(kind, now));
     if (share >= 1.0) return {};
     t += share * (1.0 - t);
-    if (!(t > before)) break;
+    if (!(t - before > kLeastProgress * (1.0 - before))) break;
   }
   return t;
 }
