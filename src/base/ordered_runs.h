@@ -18,11 +18,10 @@ class OrderedRuns {
   /// first call of one size.
   template <class Body>
   double sum(std::ptrdiff_t count, Body body) {
-    const std::ptrdiff_t runs = count_runs(count);
     prepare(count);
     double* sums = m_sums.data();
-    parallel_for(runs, m_threads, [sums, count, &body](std::ptrdiff_t run) {
-      sums[run] = body(run * kLength, std::min((run + 1) * kLength, count));
+    each_run(count, [sums, &body](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
+      sums[i] = body(begin, end);
     });
     double total = 0.0;
     for (const double s : m_sums) total += s;
@@ -32,14 +31,23 @@ class OrderedRuns {
   void each(std::ptrdiff_t count, Body body) const {
     each_run(count, [&body](std::ptrdiff_t, std::ptrdiff_t begin, std::ptrdiff_t end) { body(begin, end); });
   }
-  /// body(run, begin, end) for every run.
+  /// body(i, begin, end) for the i-th of the runs that are visited.
   template <class Body>
   void each_run(std::ptrdiff_t count, Body body) const {
-    parallel_for(count_runs(count), m_threads, [count, &body](std::ptrdiff_t run) {
-      body(run, run * kLength, std::min((run + 1) * kLength, count));
+    const std::vector<int>* visited = m_visited;
+    parallel_for(count_runs(count), m_threads, [visited, count, &body](std::ptrdiff_t i) {
+      const std::ptrdiff_t run = visited ? (*visited)[static_cast<std::size_t>(i)] : i;
+      body(i, run * kLength, std::min((run + 1) * kLength, count));
     });
   }
-  static std::ptrdiff_t count_runs(std::ptrdiff_t count) { return (count + kLength - 1) / kLength; }
+  /// How many runs are visited.
+  std::ptrdiff_t count_runs(std::ptrdiff_t count) const {
+    return m_visited ? static_cast<std::ptrdiff_t>(m_visited->size()) : (count + kLength - 1) / kLength;
+  }
+  /// From now on only these runs, increasing; the list must outlive them. Null: all.
+  void visit(const std::vector<int>* runs) { m_visited = runs; }
+  static constexpr std::ptrdiff_t kLength = 32;
+
   /// Before a first sum of this many items in a team.
   void prepare(std::ptrdiff_t count) {
     const auto runs = static_cast<std::size_t>(count_runs(count));
@@ -47,8 +55,8 @@ class OrderedRuns {
   }
 
  private:
-  static constexpr std::ptrdiff_t kLength = 32;
   int m_threads;
+  const std::vector<int>* m_visited = nullptr;
   std::vector<double> m_sums;
 };
 

@@ -14,7 +14,9 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
   const std::ptrdiff_t num_rows = b.cols();
   for (std::vector<float>* vector : {&m_r, &m_z, &m_w, &m_p, &m_q, &m_x})
     vector->resize(static_cast<std::size_t>(4 * num_rows));
-  m_products.resize(static_cast<std::size_t>(OrderedRuns::count_runs(num_rows)));
+  if (m_is_changed) std::fill(m_z.begin(), m_z.end(), 0.0F);  // rows outside are read
+  m_is_changed = false;
+  m_products.resize(static_cast<std::size_t>(m_runs.count_runs(num_rows)));
   m_sums.resize(m_products.size());
   m_product.resize(3, num_rows);
 
@@ -49,8 +51,8 @@ SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, 
   in_team(m_threads, [&] {
     ShortBlocks::Sums sums;
     const auto advance = [&](double alpha, double beta) {
-      m_runs.each_run(num_rows, [&](std::ptrdiff_t run, std::ptrdiff_t begin, std::ptrdiff_t end) {
-        m_sums[static_cast<std::size_t>(run)] =
+      m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
+        m_sums[static_cast<std::size_t>(i)] =
             m_blocks.advance(begin, end, static_cast<float>(alpha), static_cast<float>(beta), m_w.data(), to);
       });
       sums = {};
@@ -75,8 +77,8 @@ SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, 
     bool is_positive = true;
     // Written so that a NaN residual leaves the loop as not converged.
     while (residual > goal && iterations < max_iterations) {
-      m_runs.each_run(num_rows, [&](std::ptrdiff_t run, std::ptrdiff_t begin, std::ptrdiff_t end) {
-        m_products[static_cast<std::size_t>(run)] = m_blocks.multiply(begin, end, m_z.data(), m_w.data());
+      m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
+        m_products[static_cast<std::size_t>(i)] = m_blocks.multiply(begin, end, m_z.data(), m_w.data());
       });
       double product = whole.add_unstored(m_z.data(), m_w.data());
       for (const double run : m_products) product += run;

@@ -17,11 +17,18 @@ class ShortIteration {
   SolveReport solve(const BlockMatrix& matrix, Operator& whole, const Points& b, double tolerance,
                     int max_iterations, Points& x);
 
+  /// From now on rows of these runs alone, as if there were no others. Null: all.
+  void visit(const std::vector<int>* runs) {
+    m_runs.visit(runs);
+    m_is_changed = true;
+  }
+
  private:
   SolveReport iterate(Operator& whole, double first, double goal, int max_iterations);
 
   int m_threads;
   OrderedRuns m_runs;
+  bool m_is_changed = true;
   ShortBlocks m_blocks;
   Points m_product;
   std::vector<float> m_r, m_z, m_w, m_p, m_q, m_x;  // four a row

@@ -89,6 +89,10 @@ class JacobiIteration {
     m_jacobi.update(matrix, product);
     return m_iteration.solve(product, m_jacobi, b, m_tolerance, max_iterations, x);
   }
+  bool visit(const std::vector<int>* runs) {
+    if (m_is_short) m_short.visit(runs);
+    return m_is_short;
+  }
 
  private:
   double m_tolerance;
@@ -109,6 +113,7 @@ class JacobiSolver final : public Solver {
     m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
     return report;
   }
+  bool visit(const std::vector<int>* runs) override { return m_iteration.visit(runs); }
 
  private:
   SolverParams m_params;
@@ -131,10 +136,11 @@ class KeptFactorSolver final : public Solver {
     m_guess = x;
     ++m_cost.solves;
     if (!m_has_factor) {
-      const SolveReport report = m_jacobi.solve(matrix, product, b, m_params.jacobi_iterations, x);
+      const int max_iterations = m_is_part ? m_params.max_iterations : m_params.jacobi_iterations;
+      const SolveReport report = m_jacobi.solve(matrix, product, b, max_iterations, x);
       m_cost.iterations += report.iterations;
       m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
-      if (report.converged || std::isinf(report.relative_residual)) return report;
+      if (report.converged || m_is_part || std::isinf(report.relative_residual)) return report;
       m_has_factor = true;
       x = m_guess;
     }
@@ -151,6 +157,11 @@ class KeptFactorSolver final : public Solver {
         (report.iterations + 1.0) * (count_entries(matrix) + 2.0 * m_factor->num_entries());
     m_cost.iterations += report.iterations;
     return report;
+  }
+
+  bool visit(const std::vector<int>* runs) override {
+    m_is_part = runs != nullptr && !m_has_factor && m_jacobi.visit(runs);
+    return m_is_part;
   }
 
   void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
@@ -196,7 +207,8 @@ class KeptFactorSolver final : public Solver {
   Eigen::Matrix3Xd m_factorised;  // values that the factor stands for, for a checkpoint
   ConjugateGradients m_iteration;
   Points m_guess;
-  bool m_has_factor;  // or does without as yet
+  bool m_has_factor;       // or does without as yet
+  bool m_is_part = false;  // of the system is solved; a factor is of the whole
   bool m_is_valid = false;
   bool m_is_fresh = false;
   int m_last_iterations = 0;

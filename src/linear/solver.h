@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "base/archive.h"
 #include "linear/block_matrix.h"
@@ -45,6 +46,11 @@ class Solver {
   /// `product` adds to it, which only the kinds without a factor's exactness take (pcg, pcg_jacobi). x holds
   /// the first guess. Not converged with an infinite residual: the matrix is not positive definite.
   virtual SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) = 0;
+
+  /// From now on the system of these runs of rows alone (base/ordered_runs.h; the list must outlive the
+  /// solves), as if there were no others: x stays as it is outside. Null: all. False when this kind solves
+  /// whole systems only.
+  virtual bool visit(const std::vector<int>* /*runs*/) { return false; }
 
   const SolverCost& cost() const { return m_cost; }
 

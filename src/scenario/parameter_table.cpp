@@ -348,6 +348,12 @@ void bind_dynamics(Binder& b, Scenario& s) {
       "pcg: a solve that takes more over diagonal blocks goes on with a kept factor, as do all later ones.");
   b.integer("/dynamics/solver/refactor_iterations", d.solver.refactor_iterations, between(1, 1e6),
             "A solve with more iterations over a kept factor has it renewed.");
+  b.choice<solid::Extent>(
+      "/dynamics/extent", d.extent, {{solid::Extent::whole, "whole"}, {solid::Extent::local, "local"}},
+      "Solve for the whole body, or for the region that moves; the rest stays where it is, with "
+      "its strain, until it would move.");
+  b.number("/dynamics/region_tolerance", d.region_tolerance, inside(0, 1), "",
+           "local: speed over the fastest node's below which nodes stay where they are.");
   b.number("/dynamics/rayleigh_mass_per_s", d.rayleigh_mass, not_negative(), "1/s", "a in D = a M + b K.");
   b.number("/dynamics/rayleigh_stiffness_s", d.rayleigh_stiffness, not_negative(), "s",
            "b in D = a M + b K.");

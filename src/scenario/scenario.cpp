@@ -190,6 +190,32 @@ bool is_anisotropic(const material::Moisture& m) {
          !material::is_isotropic(m.medium);
 }
 
+/// A step of a region needs elements that go in lanes, a solve of part of the rows, and loads that stay.
+void check_extent(const Scenario& s) {
+  const solid::SolidParams& p = s.params.solid;
+  if (s.mode != Mode::dynamic || p.extent == solid::Extent::whole) return;
+  const auto require = [&](bool is_met, const std::string& what, const std::string& remedy) {
+    if (!is_met) throw InputError(s.file, "/dynamics/extent", "local " + what, remedy + ", or use whole");
+  };
+  using linear::SolverKind;
+  require(p.element == solid::ElementKind::p1 && p.model != solid::StrainModel::neo_hookean &&
+              !is_anisotropic(s.params.moisture),
+          "is for p1 elements of the isotropic linear and corotational laws",
+          "change /dynamics or /material");
+  require(p.integrator == solid::Integrator::backward_euler && p.iteration == solid::Iteration::one,
+          "takes one linearised solve of backward_euler",
+          "change /dynamics/integrator and /dynamics/iteration");
+  require((p.solver.kind == SolverKind::pcg || p.solver.kind == SolverKind::pcg_jacobi) &&
+              p.solver.tolerance >= linear::kRoomForFloats,
+          "is solved by pcg or pcg_jacobi to a tolerance of 1e-4 or more", "change /dynamics/solver");
+  require(s.params.rates.between_frames != sim::BetweenFrames::compliant,
+          "does not go with a surface that yields between frames", "use re_evaluate");
+  require(s.params.water.swelling == 0.0, "does not go with clay that swells", "set /water/swelling to 0");
+  require(std::none_of(s.body.fixed.begin(), s.body.fixed.end(),
+                       [](const solid::Support& support) { return support.displacement.norm() > 0.0; }),
+          "needs supports that stay", "leave out their displacement");
+}
+
 /// What the elements and laws cannot do together.
 void check_solid(Scenario& s) {
   const solid::SolidParams& p = s.params.solid;
@@ -268,6 +294,7 @@ void check_combinations(Scenario& s) {
   check_solid(s);
   check_rates(s);
   check_between_frames(s);
+  check_extent(s);
   check_tables(s);
   check_pore_axes(s);
   check_medium(s);

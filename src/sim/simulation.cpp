@@ -39,6 +39,7 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
   m_x_before = m_state.solid.x;
   m_v_before = m_state.solid.v;
   m_yield.setZero(m_solid.elements().num_points());
+  m_is_flowing.resize(static_cast<std::size_t>(m_solid.elements().num_points() / kLanes + 1), 0);
   const bool keeps_volume = params.plasticity.enabled && params.plasticity.deviatoric;
   if (!m_moisture.is_isotropic() && keeps_volume)
     m_shape_stiffness.resize(static_cast<std::size_t>(m_body.mesh.num_tets()));
@@ -52,6 +53,7 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
   if (!m_is_moved && !is_loaded) fall_asleep();
   rest = refresh_materials(-1.0);
   ARGIL_ASSERT(rest.is_ok());
+  if (m_state.is_at_rest) m_solid.sleep_all();
 }
 
 StepStatus Simulation::settle() {
@@ -71,9 +73,13 @@ bool Simulation::tool_overlaps_body() const {
 void Simulation::apply_clay_kernel(double step_s) {
   if (!m_state.is_pressed || m_params.kernel.form == material::KernelForm::off) return;
   parallel_for(m_state.solid.v.cols(), m_params.threads, [&](std::ptrdiff_t v) {
-    const double r = (m_state.solid.x.col(v) - m_state.contact_centre).norm();
-    m_state.solid.v.col(v) *= material::compute_clay_factor(r, m_params.kernel, step_s);
+    if (!m_state.solid.v.col(v).isZero(0.0)) m_state.solid.v.col(v) *= clay_factor(v, step_s);
   });
+}
+
+double Simulation::clay_factor(Eigen::Index node, double step_s) const {
+  const double r = (m_state.solid.x.col(node) - m_state.contact_centre).norm();
+  return material::compute_clay_factor(r, m_params.kernel, step_s);
 }
 
 /// Books what hand, loads and supports gave the body in the step just taken, and stops a run in which it
@@ -119,20 +125,26 @@ Vec6 Simulation::compute_flow(int point, double step_s) const {
 /// Flow of every point whose elastic strain lies beyond its yield; others are not looked at one by one.
 void Simulation::apply_plastic_flow(double step_s) {
   if (!m_params.plasticity.enabled) return;
-  const TensorField& plastic = m_state.solid.plastic_strain;
-  m_state.plastic_dissipation += m_runs.sum(plastic.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const std::ptrdiff_t count = m_state.solid.plastic_strain.cols();
+  m_state.plastic_dissipation += m_runs.sum(count, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     double released = 0.0;
-    for (std::ptrdiff_t p = begin; p < end; p += kLanes) {
-      const std::ptrdiff_t last = std::min(p + kLanes, end);
-      unsigned flowing = m_is_flow_driven
-                             ? (1U << (last - p)) - 1U
-                             : material::find_flowing(m_solid.strain().data(), plastic.data(), m_yield.data(),
-                                                      m_params.plasticity, p, last);
-      for (; flowing != 0; flowing &= flowing - 1)
-        released += flow_at_point(static_cast<int>(p) + std::countr_zero(flowing), step_s);
-    }
+    for (std::ptrdiff_t p = begin; p < end; p += kLanes)
+      if (m_solid.moves(p / kLanes)) released += flow_at_points(p, std::min(p + kLanes, end), step_s);
     return released;
   });
+}
+
+/// Of at most kLanes points; returns what their flow dissipates [J].
+double Simulation::flow_at_points(std::ptrdiff_t begin, std::ptrdiff_t end, double step_s) {
+  unsigned flowing =
+      m_is_flow_driven ? (1U << (end - begin)) - 1U
+                       : material::find_flowing(m_solid.strain().data(), m_state.solid.plastic_strain.data(),
+                                                m_yield.data(), m_params.plasticity, begin, end);
+  m_is_flowing[static_cast<std::size_t>(begin / kLanes)] = flowing != 0;
+  double released = 0.0;
+  for (; flowing != 0; flowing &= flowing - 1)
+    released += flow_at_point(static_cast<int>(begin) + std::countr_zero(flowing), step_s);
+  return released;
 }
 
 /// Returns what flow dissipates [J]: at fixed strain, the elastic energy that it releases. The neo-Hookean
@@ -200,6 +212,7 @@ void Simulation::fall_asleep() {
   m_state.solid.v.setZero();
   m_state.solid.v_before.setZero();
   if (m_state.solid.x_before.size() > 0) m_state.solid.x_before = m_state.solid.x;
+  m_solid.sleep_all();
   m_rest_energy = m_solid.compute_elastic_energy(m_state.solid.plastic_strain);
   m_rest_plastic_strain = m_state.solid.plastic_strain.colwise().norm().maxCoeff();
 }
@@ -255,7 +268,7 @@ PhysicsRecord Simulation::physics_record() const {
   record.newton_iterations = m_solid.counters().newton_iterations;
   record.factorisations = m_solid.solver_cost().factorisations;
   record.residual = m_solid.counters().residual;
-  record.active_nodes = m_solid.num_free();
+  record.active_nodes = m_solid.num_active();
   record.min_volume_ratio = m_solid.min_volume_ratio();
   record.max_plastic_strain =
       is_at_rest ? m_rest_plastic_strain : m_state.solid.plastic_strain.colwise().norm().maxCoeff();

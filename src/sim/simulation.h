@@ -67,10 +67,12 @@ class Simulation {
   StepStatus yielding_contact_step();
   StepStatus water_step();
   StepStatus physics_step();
+  double clay_factor(Eigen::Index node, double step_s) const;
   void apply_clay_kernel(double step_s);
   StepStatus check_energy();
   Vec6 compute_flow(int point, double step_s) const;
   void apply_plastic_flow(double step_s);
+  double flow_at_points(std::ptrdiff_t begin, std::ptrdiff_t end, double step_s);
   double flow_at_point(int point, double step_s);
 
   // Between contacts, body and hand: hand.cpp.
@@ -143,6 +145,7 @@ class Simulation {
   std::vector<double> m_shape_stiffness;  // 2μ* per tet [Pa]; empty: isotropic stiffness
   bool m_is_flow_driven = false;          // plastic flow follows the stress, not the strain
   Field m_yield;                          // of each point: elastic strain norm [–]
+  std::vector<char> m_is_flowing;         // of each run of kLanes points, in the last step
   OrderedRuns m_runs;
   bool m_is_moved = false;                                  // some support moves
   double m_rest_energy = 0.0, m_rest_plastic_strain = 0.0;  // of the body while it is at rest

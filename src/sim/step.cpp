@@ -105,7 +105,8 @@ StepStatus Simulation::physics_step() {
   const double h = m_clock.seconds(m_params.rates.physics_period_ticks);
   solid::SolidState& solid = m_state.solid;
   m_external_force = m_state.contact_force + m_load_force;
-  const solid::StepLoads loads{m_external_force, m_contact_stiffness};
+  solid::StepLoads loads{m_external_force, m_contact_stiffness};
+  if (m_state.is_pressed) loads.mobility = [this, h](Eigen::Index node) { return clay_factor(node, h); };
   m_v_before = solid.v;
   ARGIL_TRY(m_solid.begin_step(solid, loads, h, m_clock.time_at_end(), m_clock.tick));
   for (bool solved = false; !solved;) {
@@ -138,6 +139,7 @@ StepStatus Simulation::physics_step() {
   }
   const StageScope scope(m_observer, Stage::plasticity);
   apply_plastic_flow(h);  // trial ε_p of every tet, committed at once
+  m_solid.settle_region(solid, m_is_flowing);
   if (m_params.rates.between_frames == BetweenFrames::compliant)
     ARGIL_TRY(m_compliance.begin_frame(body_at_frame(), m_x_before));
   m_state.contact_force.setZero();

@@ -29,23 +29,35 @@ bool Solid::has_isotropic_tets() const {
   return m_elements.nodes_per_tet == 4 && m_stiffness.empty();
 }
 
+/// And of a law that is quadratic in the strain: whose forces and energies do.
+bool Solid::has_plain_tets() const {
+  return has_isotropic_tets() && m_params.model != StrainModel::neo_hookean;
+}
+
+ForceArrays Solid::make_force_arrays(const TensorField& plastic_strain, double* corner_force) const {
+  return {m_elements.gradient.data(),
+          m_rotation.data(),
+          m_strain.data(),
+          plastic_strain.data(),
+          m_elements.weight.data(),
+          m_lambda.data(),
+          m_mu.data(),
+          m_nodal ? m_nodal_pressure.data() : nullptr,
+          m_params.model == StrainModel::linear,
+          corner_force};
+}
+
 void Solid::set_tet_forces() {
-  const ForceArrays tets{m_elements.gradient.data(),
-                         m_rotation.data(),
-                         m_strain.data(),
-                         m_plastic_strain->data(),
-                         m_elements.weight.data(),
-                         m_lambda.data(),
-                         m_mu.data(),
-                         m_nodal ? m_nodal_pressure.data() : nullptr,
-                         m_params.model == StrainModel::linear,
-                         m_corner_force.data()};
-  for_batches(m_elements.num_tets(), m_threads,
-              [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_corner_forces(tets, begin, end); });
+  const ForceArrays tets = make_force_arrays(*m_plastic_strain, m_corner_force.data());
+  const auto set = [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_corner_forces(tets, begin, end); };
+  if (m_has_old_forces)
+    for_batches(m_elements.num_tets(), m_threads, set);
+  else
+    each_batch(set);
 }
 
 void Solid::gather(Points& force) const {
-  m_rows.each(force.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  m_nodes.each(force.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v)
       sum_corner_forces(m_corner_force.data(), m_elements.node_corners.data(), m_elements.node_begin[v],
                         m_elements.node_begin[v + 1], force.data() + 3 * v);
@@ -54,13 +66,16 @@ void Solid::gather(Points& force) const {
 
 void Solid::assemble_internal_force() {
   update_volume_change(*m_plastic_strain);
-  if (has_isotropic_tets() && m_params.model != StrainModel::neo_hookean)
+  if (has_plain_tets())
     set_tet_forces();
   else if (m_elements.nodes_per_tet == 4)
     set_corner_forces<4>();
   else
     set_corner_forces<10>();
+  if (m_region && m_has_old_forces) m_nodes.visit(nullptr);
   gather(m_internal_force);
+  if (m_region && m_has_old_forces) m_nodes.visit(&m_region->nodes());
+  m_has_old_forces = false;
 }
 
 /// Corner forces of K u, where K takes the kept-rotation stiffness `kept` times and the tangent `exact`

@@ -104,7 +104,6 @@ void Solid::assemble_rows() {
                           share == m_stored_shares && share.exact == 0.0;
   mark_rows(!keeps_rest);
   m_stored_shares = share;
-  m_counters.assembled_rows += static_cast<int>(std::count(m_is_row_stale.begin(), m_is_row_stale.end(), 1));
   const bool is_simple = has_isotropic_tets() && share.exact == 0.0;
   const RowArrays rows{m_turned_gradient.data(),
                        m_elements.weight.data(),
@@ -114,9 +113,10 @@ void Solid::assemble_rows() {
                        m_elements.node_corners.data(),
                        m_block_of_corner_pair.data(),
                        m_matrix.values.data()};
-  parallel_for(num_free(), m_threads, [&](std::ptrdiff_t row) {
+  const auto assemble_row = [&](std::ptrdiff_t row) {
     const auto r = static_cast<std::size_t>(row);
-    if (!m_is_row_stale[r]) return;
+    if (!m_is_row_stale[r]) return 0;
+    m_is_row_stale[r] = 0;
     const auto node = static_cast<std::size_t>(m_node_of_row[r]);
     const int begin = m_matrix.row_begin[r];
     const int num_blocks = m_matrix.row_begin[r + 1] - begin;
@@ -129,9 +129,15 @@ void Solid::assemble_rows() {
       gather_row<10>(static_cast<int>(row), share);
     ++m_matrix.revision[r];
     m_matrix.block(m_matrix.diagonal[r]).diagonal().array() += share.mass * m_mass(m_node_of_row[r]);
-  });
+    return 1;
+  };
+  m_counters.assembled_rows +=
+      static_cast<int>(m_near_rows.sum(num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        int assembled = 0;
+        for (std::ptrdiff_t row = begin; row < end; ++row) assembled += assemble_row(row);
+        return assembled;
+      }));
   std::fill(m_is_tet_changed.begin(), m_is_tet_changed.end(), char{0});
-  std::fill(m_is_row_stale.begin(), m_is_row_stale.end(), char{0});
 }
 
 void Solid::mark_rows(bool all) {

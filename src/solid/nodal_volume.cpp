@@ -80,10 +80,12 @@ double NodalVolume::compute_energy(const Field& volume_change) const {
 }
 
 std::vector<std::vector<int>> NodalVolume::find_row_neighbours() const {
-  std::vector<std::vector<int>> rows;
+  const auto is_row = [](int row) { return row >= 0; };
+  std::vector<std::vector<int>> rows(
+      static_cast<std::size_t>(std::count_if(m_row_of_node.begin(), m_row_of_node.end(), is_row)));
   for (std::size_t i = 0; i < m_row_of_node.size(); ++i) {
     if (m_row_of_node[i] < 0) continue;
-    std::vector<int>& list = rows.emplace_back();
+    std::vector<int>& list = rows[static_cast<std::size_t>(m_row_of_node[i])];
     for (int a = m_begin[i]; a < m_begin[i + 1]; ++a) {
       const auto node = static_cast<std::size_t>(m_neighbour[static_cast<std::size_t>(a)]);
       for (int j = m_begin[node]; j < m_begin[node + 1]; ++j) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "base/check.h"
@@ -24,6 +25,8 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
       m_mass(params.density * m_elements.node_volume),
       m_static_mass(params.density * m_elements.shape_volume),
       m_rows(threads),
+      m_near_rows(threads),
+      m_nodes(threads),
       m_solver(linear::make_solver(
           params.iteration == Iteration::newton ? make_exact(params.solver) : params.solver, threads)) {
   const Eigen::Index num_points = m_elements.num_points();
@@ -49,7 +52,35 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   m_is_row_stale.resize(m_node_of_row.size(), 1);
   m_rhs.setZero(3, num_free());
   m_delta.setZero(3, num_free());
+  if (m_params.extent == Extent::local) {
+    m_region = std::make_unique<ActiveSet>(m_elements, m_node_of_row, m_row_of_node);
+    visit_region();
+  }
 }
+
+namespace {
+
+/// Puts points that are near one another in space near one another in the list, whatever order the mesh has:
+/// along the curve that visits the octants of a cube one after the other [Morton1966].
+void sort_along_curve(const Points& x, std::vector<int>& list) {
+  constexpr int kBits = 20;
+  const Vec3 low = x.rowwise().minCoeff();
+  const double scale = std::ldexp(1.0, kBits) / std::max((x.colwise() - low).maxCoeff(), 1e-300);
+  std::vector<std::pair<std::uint64_t, int>> codes;
+  for (const int n : list) {
+    std::uint64_t code = 0;
+    for (int k = 0; k < 3; ++k) {
+      const auto cell =
+          static_cast<std::uint64_t>(std::min((x(k, n) - low(k)) * scale, std::ldexp(1.0, kBits) - 1.0));
+      for (int bit = 0; bit < kBits; ++bit) code |= (cell >> bit & 1) << (3 * bit + k);
+    }
+    codes.emplace_back(code, n);
+  }
+  std::sort(codes.begin(), codes.end());
+  for (std::size_t i = 0; i < codes.size(); ++i) list[i] = codes[i].second;
+}
+
+}  // namespace
 
 /// Rows of the free nodes and the matrix's pattern.
 void Solid::number_rows() {
@@ -58,10 +89,12 @@ void Solid::number_rows() {
   for (int n = 0; n < m_elements.num_nodes(); ++n) {
     for (int k = 0; k < 3; ++k)
       if (m_constraints.support(k, n) >= 0) m_held_components.push_back({n, k});
-    if (m_constraints.is_held(n)) continue;
-    const int row = num_free();
+    if (!m_constraints.is_held(n)) m_node_of_row.push_back(n);
+  }
+  sort_along_curve(m_elements.rest, m_node_of_row);
+  for (int row = 0; row < num_free(); ++row) {
+    const int n = m_node_of_row[static_cast<std::size_t>(row)];
     m_row_of_node[static_cast<std::size_t>(n)] = row;
-    m_node_of_row.push_back(n);
     if (!m_constraints.is_free(n)) m_held_rows.push_back(row);
   }
   if (m_params.element == ElementKind::p1_nodal)
@@ -79,10 +112,12 @@ void Solid::number_rows() {
     rows = m_nodal->find_row_neighbours();
   } else {
     const auto neighbours = find_node_neighbours(m_elements);
-    for (std::size_t row = 0; row < rows.size(); ++row)
+    for (std::size_t row = 0; row < rows.size(); ++row) {
       for (const int node : neighbours[static_cast<std::size_t>(m_node_of_row[row])])
         if (m_row_of_node[static_cast<std::size_t>(node)] >= 0)
           rows[row].push_back(m_row_of_node[static_cast<std::size_t>(node)]);
+      std::sort(rows[row].begin(), rows[row].end());
+    }
   }
   m_matrix = linear::make_block_matrix(rows);
   if (m_nodal && !m_nodal_product && !only_diagonal) m_nodal->connect(m_matrix);
@@ -106,6 +141,8 @@ SolidState Solid::make_rest_state() const {
 }
 
 void Solid::set_material(int tet, const TetMaterial& material) {
+  if (m_region)
+    for (const int node : m_elements.nodes.col(tet)) m_region->wake_node(node);
   m_material[static_cast<std::size_t>(tet)] = material;
   m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
   if (!m_stiffness.empty())
@@ -214,8 +251,7 @@ void Solid::set_tet_motion(const Points& x, bool keeps_frame) {
                        m_strain.data(),
                        m_volume_ratio.data(),
                        m_is_tet_changed.data()};
-  for_batches(m_elements.num_tets(), m_threads,
-              [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_motions(tets, begin, end); });
+  each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_motions(tets, begin, end); });
 }
 
 void Solid::set_quadratic_motion(const Points& x, bool keeps_frame) {
@@ -289,6 +325,13 @@ double Solid::compute_elastic_energy(int point, const Vec6& plastic_strain) cons
 }
 
 double Solid::compute_elastic_energy(const TensorField& plastic_strain) const {
+  if (has_plain_tets() && !m_nodal) {
+    const ForceArrays tets = make_force_arrays(plastic_strain, nullptr);
+    const std::ptrdiff_t count = m_elements.num_tets();
+    return ordered_sum((count + kLanes - 1) / kLanes, [&](std::ptrdiff_t batch) {
+      return compute_energy(tets, batch * kLanes, std::min((batch + 1) * kLanes, count));
+    });
+  }
   const double own = ordered_sum(m_elements.num_points(), [&](std::ptrdiff_t p) {
     return compute_elastic_energy(static_cast<int>(p), plastic_strain.col(p));
   });

@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "base/archive.h"
 #include "base/status.h"
+#include "solid/active_set.h"
 #include "solid/elements.h"
 #include "solid/law.h"
 #include "solid/nodal_product.h"
 #include "solid/supports.h"
+#include "solid/tet_lanes.h"
 
 namespace argil::solid {
 
@@ -58,6 +61,8 @@ struct StepCounters {
 struct StepLoads {
   const Points& force;                            ///< 3×n external forces [N] without gravity
   std::span<const PointStiffness> contacts = {};  ///< and how those of contacts grow as the body moves on
+  /// Extent::local: share of a node's speed that the step will leave it; empty: all of it.
+  std::function<double(Eigen::Index)> mobility = {};
 };
 
 /// Finite elements in time. A step in the order in which sim/step.cpp calls its stages: begin_step, then
@@ -97,6 +102,15 @@ class Solid {
   void finish_step(SolidState& state);  ///< v ← v', and what bdf2 must remember
   void move(SolidState& state) const;   ///< x ← x̂ + τ v; prescribed components go where they must
 
+  /// Extent::local, after a step's kinematics and flow: runs that have been slow for some steps, and whose
+  /// tets do not flow, fall asleep and lose their speed. `is_flowing`: of each run of kLanes tets.
+  void settle_region(SolidState& state, const std::vector<char>& is_flowing);
+  void wake_all();   ///< the whole body moves again
+  void sleep_all();  ///< none of it until something acts; it has no speed
+  /// May the tets of this run of kLanes move?
+  bool moves(std::ptrdiff_t batch) const { return !m_region || m_region->moves(static_cast<int>(batch)); }
+  int num_active() const { return m_region ? m_region->num_awake_rows() : num_free(); }
+
   /// How the force of contact i, of which a step was told, changed while the body moved: what to add [N] for
   /// the force that acted.
   Vec3 compute_contact_change(std::span<const PointStiffness> contacts, std::size_t i) const;
@@ -123,7 +137,8 @@ class Solid {
   /// What a step takes from the last ones besides the state, its moduli and its kinematics: what the solvers
   /// keep, and the counters.
   void exchange_state(Archive& archive);
-  /// What the matrix remembers of earlier rotations; restored once the tets have their size at rest.
+  /// What the matrix remembers of earlier rotations, and which part of the body sleeps; restored once the
+  /// tets have their moduli and size at rest.
   void exchange_frames(Archive& archive);
 
   const Elements& elements() const { return m_elements; }
@@ -160,6 +175,16 @@ class Solid {
 
   // solid.cpp
   void number_rows();
+  template <class Body>
+  void each_batch(Body body) const {
+    if (m_region)
+      for_batches(m_region->batches(), m_elements.num_tets(), m_threads, body);
+    else
+      for_batches(m_elements.num_tets(), m_threads, body);
+  }
+  void wake_region(const StepLoads& loads);
+  void grow_region(const StepLoads& loads);
+  void visit_region();
   double frame_tolerance() const;
   void set_tet_motion(const Points& x, bool keeps_frame);
   void set_quadratic_motion(const Points& x, bool keeps_frame);
@@ -172,6 +197,8 @@ class Solid {
   // assembly.cpp
   void assemble_internal_force();
   bool has_isotropic_tets() const;
+  bool has_plain_tets() const;
+  ForceArrays make_force_arrays(const TensorField& plastic_strain, double* corner_force) const;
   void set_tet_forces();
   template <int N>
   void set_corner_forces();
@@ -263,10 +290,16 @@ class Solid {
   std::vector<int> m_held_rows;                       // rows with a held component
   std::vector<int> m_block_of_corner_pair;  // N² a tet: place of block (i, j), −1 where there is none
   linear::BlockMatrix m_matrix;
-  MatrixShares m_stored_shares;        // of the matrix that is stored
-  std::vector<char> m_is_tet_changed;  // its stiffness or frame, since then
-  std::vector<char> m_is_row_stale;    // holds something that the next matrix may not
-  OrderedRuns m_rows;
+  MatrixShares m_stored_shares;         // of the matrix that is stored
+  std::vector<char> m_is_tet_changed;   // its stiffness or frame, since then
+  std::vector<char> m_is_row_stale;     // holds something that the next matrix may not
+  OrderedRuns m_rows;                   // that are solved for
+  OrderedRuns m_near_rows;              // and those that awake tets pull at
+  OrderedRuns m_nodes;                  // of tets that move
+  std::unique_ptr<ActiveSet> m_region;  // Extent::local
+  bool m_has_old_forces = true;         // of tets that do not move: not found yet
+  double m_fastest = 0.0;               // speed of the last step [m/s]
+  Points m_last_load;                   // forces of the last step
   std::unique_ptr<linear::Solver> m_solver;
   std::unique_ptr<linear::Solver> m_static_solver;    // made at first use, as is the next:
   std::unique_ptr<linear::Solver> m_response_solver;  // each keeps a factor of its own

@@ -180,6 +180,11 @@ void Solid::exchange_state(Archive& archive) {
 }
 
 void Solid::exchange_frames(Archive& archive) {
+  if (m_region) {
+    m_region->exchange_state(archive);
+    archive.number("region/fastest", m_fastest);
+    archive.any_size("region/last_load", m_last_load);
+  }
   if (m_frame.size() == 0 || frame_tolerance() == 0.0) return;
   archive.array("solid/frame", m_frame);
   archive.array("solid/turned_gradient", m_turned_gradient);

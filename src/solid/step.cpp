@@ -148,7 +148,7 @@ void Solid::compute_residual(const StepLoads& loads) {
       spread(loads.contacts[i], compute_contact_fall(loads.contacts, i), m_product);
   const double a = m_is_static ? 0.0 : m_params.rayleigh_mass;
   const double inertia = m_is_static ? 0.0 : 1.0;
-  m_rows.each(num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  m_near_rows.each(num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row) {
       const int n = m_node_of_row[static_cast<std::size_t>(row)];
       const Vec3 force =
@@ -186,6 +186,7 @@ void Solid::set_residual_scale(const StepLoads& loads) {
 }
 
 bool Solid::assemble(const StepLoads& loads) {
+  if (m_region && !m_is_static) wake_region(loads);
   compute_residual(loads);
   if (is_explicit()) return false;
   if (is_newton()) {
@@ -198,6 +199,7 @@ bool Solid::assemble(const StepLoads& loads) {
   }
   m_is_projected = !is_newton();
   assemble_matrix(loads.contacts);
+  if (m_region && !m_is_static) grow_region(loads);
   return false;
 }
 
@@ -298,6 +300,7 @@ StepStatus Solid::iterate_static(const SolidState& state, const StepLoads& loads
 }
 
 StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
+  wake_all();
   constexpr double kSmallestShare = 1.0 / 1024.0;
   m_is_static = true;
   m_tau = 1.0;

@@ -164,6 +164,24 @@ ARGIL_EVERY_PROCESSOR void compute_corner_forces(const ForceArrays& tets, std::p
   write_lanes<12>(force, begin, end, tets.corner_force);
 }
 
+ARGIL_EVERY_PROCESSOR double compute_energy(const ForceArrays& tets, std::ptrdiff_t begin,
+                                            std::ptrdiff_t end) {
+  const std::ptrdiff_t last = end - 1;
+  Lanes strain[6], plastic[6], lambda, mu, weight;
+  read_lanes<6>(tets.strain, begin, last, strain);
+  read_lanes<6>(tets.plastic_strain, begin, last, plastic);
+  read_lanes<1>(tets.lambda, begin, last, &lambda);
+  read_lanes<1>(tets.mu, begin, last, &mu);
+  read_lanes<1>(tets.weight, begin, last, &weight);
+  Lanes squares = {};
+  for (int k = 0; k < 6; ++k) squares += (strain[k] - plastic[k]) * (strain[k] - plastic[k]);
+  const Lanes trace = strain[0] - plastic[0] + (strain[1] - plastic[1]) + (strain[2] - plastic[2]);
+  const Lanes energy = weight * (mu * squares + 0.5 * lambda * trace * trace);
+  double sum = 0.0;
+  for (std::ptrdiff_t t = begin; t < end; ++t) sum += energy[t - begin];
+  return sum;
+}
+
 ARGIL_EVERY_PROCESSOR void set_isotropic_row(const RowArrays& rows, int begin, int end, int first_block,
                                              int num_blocks) {
   // A column is a Quad.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "base/lanes.h"
 #include "base/parallel.h"
@@ -31,6 +32,15 @@ void for_batches(std::ptrdiff_t num_tets, int threads, Body body) {
                [&](std::ptrdiff_t batch) { body(batch * kLanes, std::min((batch + 1) * kLanes, num_tets)); });
 }
 
+/// The same for some of the runs: `batches`, increasing.
+template <class Body>
+void for_batches(const std::vector<int>& batches, std::ptrdiff_t num_tets, int threads, Body body) {
+  parallel_for(static_cast<std::ptrdiff_t>(batches.size()), threads, [&](std::ptrdiff_t i) {
+    const std::ptrdiff_t batch = batches[static_cast<std::size_t>(i)];
+    body(batch * kLanes, std::min((batch + 1) * kLanes, num_tets));
+  });
+}
+
 /// F = Σ xᵢ ⊗ ∇Nᵢ, R, ε = sym(RᵀF) − 1 and det F of tets begin … end−1, at most kLanes of them.
 void compute_motions(const TetArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
 
@@ -50,6 +60,9 @@ struct ForceArrays {
 
 /// fᵢ = V P ∇Nᵢ of the isotropic linear and corotational laws, as compute_piola has them.
 void compute_corner_forces(const ForceArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
+
+/// Their elastic energy V (μ ε_e:ε_e + ½ λ (tr ε_e)²) [J], of tets begin … end−1.
+double compute_energy(const ForceArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
 
 /// What rows of the matrix are gathered from.
 struct RowArrays {

@@ -52,6 +52,25 @@ TEST_F(ScenarioFile, PortableOneIsTheSameWhereverTheFolderLies) {
   EXPECT_EQ(print_portable(load_scenario(moved, {})), print_portable(load()));
 }
 
+TEST_F(ScenarioFile, LocalExtentIsRefusedWhereAStepNeedsTheWholeBody) {
+  const std::string local = "/dynamics/extent=local";
+  EXPECT_EQ(load({local}).params.solid.extent, solid::Extent::local);
+  const std::vector<std::vector<std::string>> needs_whole = {{"/dynamics/element=p2"},
+                                                             {"/dynamics/model=neo_hookean"},
+                                                             {"/dynamics/integrator=newmark"},
+                                                             {"/dynamics/iteration=newton"},
+                                                             {"/dynamics/solver/kind=cholesky"},
+                                                             {"/dynamics/solver/tolerance=1e-6"},
+                                                             {"/haptics/between_frames=compliant"},
+                                                             {"/water/swelling=0.02"}};
+  for (std::vector<std::string> settings : needs_whole) {
+    SCOPED_TRACE(settings.front());
+    settings.push_back(local);
+    ARGIL_EXPECT_THROW_WITH(load(settings), InputError, "/dynamics/extent: local");
+    ARGIL_EXPECT_THROW_WITH(load(settings), InputError, "or use whole");
+  }
+}
+
 TEST_F(ScenarioFile, ShownPaperPresetIsAFixedPointToo) {
   const std::string shown = print_resolved(load(kPaper));
   EXPECT_EQ(print_resolved(load_scenario(folder.write("shown.json", shown), {})), shown);

@@ -93,6 +93,11 @@ const std::vector<Variant>& variants() {
          p.rates.between_frames = BetweenFrames::re_evaluate;
        }},
       {"bdf2", [](Params& p) { p.solid.integrator = solid::Integrator::bdf2; }},
+      {"local",
+       [](Params& p) {
+         p.solid.extent = solid::Extent::local;
+         p.solid.region_tolerance = 0.1;
+       }},
       {"newmark", [](Params& p) { p.solid.integrator = solid::Integrator::newmark; }},
   };
   return kVariants;

@@ -1,0 +1,152 @@
+#include "solid/active_set.h"
+
+#include <algorithm>
+
+#include "base/lanes.h"
+#include "base/ordered_runs.h"
+
+namespace argil::solid {
+namespace {
+
+constexpr int kRun = static_cast<int>(OrderedRuns::kLength);
+
+void sort_unique(std::vector<int>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+}  // namespace
+
+ActiveSet::Table ActiveSet::make_table(std::vector<std::pair<int, int>>& pairs, int count) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  Table table;
+  table.begin.assign(static_cast<std::size_t>(count) + 1, 0);
+  for (const auto& [of, item] : pairs) {
+    ++table.begin[static_cast<std::size_t>(of) + 1];
+    table.item.push_back(item);
+  }
+  for (std::size_t i = 1; i < table.begin.size(); ++i) table.begin[i] += table.begin[i - 1];
+  return table;
+}
+
+ActiveSet::ActiveSet(const Elements& elements, const std::vector<int>& node_of_row,
+                     const std::vector<int>& row_of_node)
+    : m_num_rows(static_cast<int>(node_of_row.size())) {
+  for (const int row : row_of_node) m_run_of_node.push_back(row < 0 ? -1 : row / kRun);
+  std::vector<std::pair<int, int>> batches_of_run, runs_of_batch, nodes_of_batch;
+  for (int t = 0; t < elements.num_tets(); ++t)
+    for (const int node : elements.nodes.col(t)) {
+      nodes_of_batch.emplace_back(t / kLanes, node / kRun);
+      const int run = m_run_of_node[static_cast<std::size_t>(node)];
+      if (run < 0) continue;
+      batches_of_run.emplace_back(run, t / kLanes);
+      runs_of_batch.emplace_back(t / kLanes, run);
+    }
+  const int num_runs = (m_num_rows + kRun - 1) / kRun;
+  const int num_batches = (elements.num_tets() + kLanes - 1) / kLanes;
+  m_batches_of_run = make_table(batches_of_run, num_runs);
+  m_runs_of_batch = make_table(runs_of_batch, num_batches);
+  m_nodes_of_batch = make_table(nodes_of_batch, num_batches);
+  m_state.assign(static_cast<std::size_t>(num_runs), kAwake);
+  m_calm_steps.assign(m_state.size(), 0);
+  m_moves.assign(static_cast<std::size_t>(num_batches), 0);
+  update();
+}
+
+void ActiveSet::wake_all() {
+  for (int run = 0; run < num_runs(); ++run) wake(run);
+}
+
+void ActiveSet::sleep_all() {
+  std::fill(m_state.begin(), m_state.end(), kAsleep);
+  m_is_changed = true;
+}
+
+void ActiveSet::wake(int run) {
+  m_calm_steps[static_cast<std::size_t>(run)] = 0;
+  int& state = m_state[static_cast<std::size_t>(run)];
+  if (state == kAwake) return;
+  state = kAwake;
+  m_is_changed = true;
+}
+
+void ActiveSet::wake_node(int node) {
+  const int own = m_run_of_node[static_cast<std::size_t>(node)];
+  if (own < 0) return;
+  const bool was_awake = is_awake(own);
+  wake(own);
+  if (was_awake) return;
+  const auto [first, last] = m_batches_of_run.of(own);
+  for (auto batch = first; batch != last; ++batch) {
+    const auto [begin, end] = m_runs_of_batch.of(*batch);
+    for (auto run = begin; run != end; ++run) wake(*run);
+  }
+}
+
+void ActiveSet::wake_batches(const std::vector<char>& of_batch) {
+  for (const int batch : m_batches) {
+    if (of_batch[static_cast<std::size_t>(batch)] == 0) continue;
+    const auto [first, last] = m_runs_of_batch.of(batch);
+    for (auto run = first; run != last; ++run)
+      if (!is_awake(*run)) wake(*run);
+  }
+}
+
+void ActiveSet::make_drowsy(int run) {
+  m_state[static_cast<std::size_t>(run)] = kDrowsy;
+  m_is_changed = true;
+}
+
+bool ActiveSet::update() {
+  if (!m_is_changed && !m_has_drowsy) return false;
+  for (const int batch : m_batches) m_moves[static_cast<std::size_t>(batch)] = 0;
+  m_awake.clear();
+  m_batches.clear();
+  m_near.clear();
+  m_nodes.clear();
+  m_fringe.clear();
+  m_num_awake_rows = 0;
+  m_has_drowsy = false;
+  for (int run = 0; run < num_runs(); ++run) {
+    int& state = m_state[static_cast<std::size_t>(run)];
+    if (state == kAsleep) continue;
+    const auto [first, last] = m_batches_of_run.of(run);
+    m_batches.insert(m_batches.end(), first, last);
+    if (state == kAwake) {
+      m_awake.push_back(run);
+      m_num_awake_rows += std::min(kRun, m_num_rows - kRun * run);
+    } else {
+      state = kAsleep;
+      m_has_drowsy = true;  // and gone from the lists of the next update
+    }
+  }
+  sort_unique(m_batches);
+  for (const int batch : m_batches) {
+    m_moves[static_cast<std::size_t>(batch)] = 1;
+    const auto [run, last_run] = m_runs_of_batch.of(batch);
+    m_near.insert(m_near.end(), run, last_run);
+    const auto [nodes, last_nodes] = m_nodes_of_batch.of(batch);
+    m_nodes.insert(m_nodes.end(), nodes, last_nodes);
+  }
+  sort_unique(m_near);
+  sort_unique(m_nodes);
+  std::set_difference(m_near.begin(), m_near.end(), m_awake.begin(), m_awake.end(),
+                      std::back_inserter(m_fringe));
+  m_is_changed = false;
+  return true;
+}
+
+bool ActiveSet::has_any(int run, const std::vector<char>& of_batch) const {
+  const auto [first, last] = m_batches_of_run.of(run);
+  return std::any_of(first, last, [&](int batch) { return of_batch[static_cast<std::size_t>(batch)] != 0; });
+}
+
+void ActiveSet::exchange_state(Archive& archive) {
+  archive.list("region/state", m_state);
+  archive.list("region/calm_steps", m_calm_steps);
+  archive.number("region/has_drowsy", m_has_drowsy);
+  if (archive.is_restoring()) m_is_changed = true;
+}
+
+}  // namespace argil::solid

@@ -1,0 +1,97 @@
+// Extent::local: which part of the body a step solves for.
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "solid/solid.h"
+
+namespace argil::solid {
+namespace {
+
+constexpr double kStill = 1e-4;      // [m/s]: where nothing is faster, speeds are measured by this
+constexpr int kCalmSteps = 8;        // that a run must have been slow before it falls asleep
+constexpr double kSleepShare = 0.5;  // of the speed that wakes it, below which a run is slow
+
+}  // namespace
+
+void Solid::visit_region() {
+  m_rows.visit(&m_region->awake());
+  m_near_rows.visit(&m_region->near());
+  m_nodes.visit(&m_region->nodes());
+  const bool can_visit = m_solver->visit(&m_region->awake());
+  ARGIL_ASSERT(can_visit);
+}
+
+void Solid::wake_all() {
+  if (!m_region) return;
+  m_region->wake_all();
+  if (m_region->update()) visit_region();
+}
+
+void Solid::sleep_all() {
+  if (!m_region) return;
+  m_region->sleep_all();
+  m_has_old_forces = true;
+  if (m_region->update()) visit_region();
+}
+
+/// Forces that change and contacts wake their nodes, and those around.
+void Solid::wake_region(const StepLoads& loads) {
+  if (m_last_load.size() == 0) m_last_load.setZero(3, loads.force.cols());
+  for (Eigen::Index n = 0; n < loads.force.cols(); ++n)
+    if ((loads.force.col(n).array() != m_last_load.col(n).array()).any())
+      m_region->wake_node(static_cast<int>(n));
+  m_last_load = loads.force;
+  for (const PointStiffness& contact : loads.contacts)
+    for (std::size_t i = 0; i < contact.count(); ++i) m_region->wake_node(contact.vertex[i]);
+  if (m_region->update()) visit_region();
+}
+
+/// Rows that awake tets pull at wake where they would move: D⁻¹ r, the speed that they would take on if all
+/// others stayed, with what the step leaves of it.
+void Solid::grow_region(const StepLoads& loads) {
+  const double bound = m_params.region_tolerance * std::max(m_fastest, kStill);
+  for (const int run : m_region->fringe()) {
+    const std::size_t begin = static_cast<std::size_t>(run) * OrderedRuns::kLength;
+    const std::size_t end = std::min(begin + OrderedRuns::kLength, m_node_of_row.size());
+    for (std::size_t row = begin; row < end; ++row) {
+      const Eigen::Index node = m_node_of_row[row];
+      const double mobility = loads.mobility ? loads.mobility(node) : 1.0;
+      const Vec3 speed = linear::invert_block(m_matrix.block(m_matrix.diagonal[row])) *
+                         m_rhs.col(static_cast<Eigen::Index>(row));
+      if (!(mobility * speed.norm() > bound)) continue;
+      m_region->wake(run);
+      break;
+    }
+  }
+  if (!m_region->update()) return;
+  visit_region();
+  assemble_matrix(loads.contacts);
+}
+
+void Solid::settle_region(SolidState& state, const std::vector<char>& is_flowing) {
+  if (!m_region) return;
+  std::vector<double> fastest(m_region->awake().size());
+  m_fastest = 0.0;
+  for (std::size_t i = 0; i < fastest.size(); ++i) {
+    const std::size_t begin = static_cast<std::size_t>(m_region->awake()[i]) * OrderedRuns::kLength;
+    const std::size_t end = std::min(begin + OrderedRuns::kLength, m_node_of_row.size());
+    for (std::size_t row = begin; row < end; ++row)
+      fastest[i] = std::max(fastest[i], state.v.col(m_node_of_row[row]).norm());
+    m_fastest = std::max(m_fastest, fastest[i]);
+  }
+  m_region->wake_batches(is_flowing);
+  const double bound = kSleepShare * m_params.region_tolerance * std::max(m_fastest, kStill);
+  for (std::size_t i = 0; i < fastest.size(); ++i) {
+    const int run = m_region->awake()[i];
+    int& calm = m_region->calm_steps(run);
+    calm = fastest[i] <= bound && !m_region->has_any(run, is_flowing) ? calm + 1 : 0;
+    if (calm < kCalmSteps) continue;
+    m_region->make_drowsy(run);
+    const std::size_t begin = static_cast<std::size_t>(run) * OrderedRuns::kLength;
+    const std::size_t end = std::min(begin + OrderedRuns::kLength, m_node_of_row.size());
+    for (std::size_t row = begin; row < end; ++row) state.v.col(m_node_of_row[row]).setZero();
+  }
+}
+
+}  // namespace argil::solid

@@ -1,0 +1,136 @@
+// Steps of the region that moves against steps of the whole body: the same where nothing may be left out,
+// nearer to it the less may be, and what is left out stays where it is.
+#include <gtest/gtest.h>
+
+#include "contact/tool_shape.h"
+#include "sim/simulation.h"
+#include "support/block_mesh.h"
+
+namespace argil::sim {
+namespace {
+
+constexpr double kToolRadius = 0.006;
+constexpr int kTicks = 150;
+
+Params make_params(solid::Extent extent, double tolerance) {
+  Params p;
+  p.elastic = {1e5, 0.3};
+  p.plasticity.yield = 0.02;
+  p.kernel.form = material::KernelForm::rate;
+  p.kernel.radius = 0.02;
+  p.contact = {200.0, 200.0};
+  p.solid.rayleigh_stiffness = 1e-3;
+  p.solid.extent = extent;
+  p.solid.region_tolerance = tolerance;
+  return p;
+}
+
+/// A bar of 0.4 m that lies on its long side.
+Body make_bar() {
+  Body body;
+  body.mesh = test::make_block(80, 4, 3, Vec3(0.4, 0.02, 0.015));
+  body.topology = mesh::make_topology(body.mesh);
+  solid::Support bottom;
+  bottom.region.kind = solid::Region::Kind::half_space;
+  bottom.region.offset = 1e-9;
+  body.supports.push_back(bottom);
+  body.initial_saturation = Field::Zero(body.mesh.num_tets());
+  return body;
+}
+
+/// Down on one end of it, up again.
+device::DeviceSample hand_at(Tick tick) {
+  device::DeviceSample sample;
+  const double depth = 3e-5 * std::min<double>(static_cast<double>(tick), 100.0 - static_cast<double>(tick));
+  sample.position = {0.0503, 0.0102, 0.015 + kToolRadius + 0.0002 - depth};
+  sample.mode = device::ToolMode::push;
+  return sample;
+}
+
+struct PressRun {
+  std::vector<Vec3> force;
+  int most_active = 0;
+  Points x;
+};
+
+PressRun run(const Params& params) {
+  Simulation simulation(make_bar(), contact::make_sphere_tool(kToolRadius, 2), params, hand_at(0));
+  PressRun result;
+  for (Tick k = 1; k <= kTicks; ++k) {
+    const StepStatus status = simulation.tick(hand_at(k));
+    EXPECT_TRUE(status.is_ok()) << k;
+    result.force.push_back(simulation.state().hand_force);
+    result.most_active = std::max(result.most_active, simulation.physics_record().active_nodes);
+  }
+  result.x = simulation.state().solid.x;
+  return result;
+}
+
+double largest_difference(const PressRun& a, const PressRun& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.force.size(); ++i)
+    largest = std::max(largest, (a.force[i] - b.force[i]).norm());
+  return largest;
+}
+
+TEST(LocalExtent, IsTheWholeBodyWhereNothingMayBeLeftOut) {
+  Params params = make_params(solid::Extent::whole, 1e-300);
+  params.solid.gravity = Vec3(0, 0, -9.81);  // the body does not sleep when the run begins
+  const PressRun whole = run(params);
+  params.solid.extent = solid::Extent::local;
+  const PressRun local = run(params);
+  EXPECT_EQ(local.most_active, whole.most_active);
+  EXPECT_TRUE((local.x.array() == whole.x.array()).all());
+  EXPECT_EQ(largest_difference(local, whole), 0.0);
+}
+
+TEST(LocalExtent, ComesNearerToTheWholeTheLessItLeavesOut) {
+  const PressRun whole = run(make_params(solid::Extent::whole, 1e-3));
+  double peak = 0.0;
+  for (const Vec3& force : whole.force) peak = std::max(peak, force.norm());
+  ASSERT_GT(peak, 0.1);
+  double last = peak;
+  int last_active = 0;
+  for (const double tolerance : {0.1, 0.01, 0.001}) {
+    const PressRun local = run(make_params(solid::Extent::local, tolerance));
+    const double error = largest_difference(local, whole);
+    EXPECT_LT(error, 0.5 * last) << tolerance;
+    EXPECT_GT(local.most_active, last_active) << tolerance;
+    last = error;
+    last_active = local.most_active;
+  }
+  EXPECT_LT(last, 2e-3 * peak);
+  const PressRun coarse = run(make_params(solid::Extent::local, 0.1));
+  EXPECT_LT(coarse.most_active, whole.most_active / 2);
+}
+
+TEST(LocalExtent, LeavesTheRestWhereItIsAndSleepsWhenNothingActs) {
+  Simulation simulation(make_bar(), contact::make_sphere_tool(kToolRadius, 2),
+                        make_params(solid::Extent::local, 0.05), hand_at(0));
+  const Points start = simulation.state().solid.x;
+  for (Tick k = 1; k <= 40; ++k) ASSERT_TRUE(simulation.tick(hand_at(k)).is_ok());
+  int moved = 0;
+  for (Eigen::Index n = 0; n < start.cols(); ++n) moved += simulation.state().solid.x.col(n) != start.col(n);
+  EXPECT_GT(moved, 0);
+  EXPECT_LE(moved, simulation.solid().num_free());
+  for (Eigen::Index n = 0; n < start.cols(); ++n)
+    if (start(0, n) > 0.3) {
+      EXPECT_TRUE(simulation.state().solid.x.col(n) == start.col(n)) << n;
+    }
+  for (Tick k = 41; k <= 600; ++k) ASSERT_TRUE(simulation.tick(hand_at(std::min<Tick>(k, 100))).is_ok());
+  EXPECT_EQ(simulation.physics_record().active_nodes, 0);
+}
+
+TEST(LocalExtent, GivesEqualBitsOnAnyNumberOfThreads) {
+  Params params = make_params(solid::Extent::local, 0.02);
+  const PressRun one = run(params);
+  for (const int threads : {2, 3}) {
+    params.threads = threads;
+    const PressRun more = run(params);
+    EXPECT_TRUE((more.x.array() == one.x.array()).all()) << threads;
+    EXPECT_EQ(more.most_active, one.most_active);
+  }
+}
+
+}  // namespace
+}  // namespace argil::sim
