@@ -11,6 +11,9 @@
 
 namespace argil::contact::test {
 
+inline constexpr double kR = 0.008;  ///< radius of the sphere that is the tool [m]
+inline constexpr double kK = 100.0;  ///< stiffness of a pair [N/m]
+
 /// Closed slab: n×n squares of two triangles each on top, whose height over (x, y) is `height`, and the same
 /// flat at z = −thickness. Top vertices first, row by row.
 template <class Height>
@@ -59,7 +62,7 @@ struct Scene {
   Pose pose;
   Contacts contacts;
 
-  Scene(const mesh::TriangleMesh& b, const mesh::TriangleMesh& tool, const Vec3& start, double k = 100.0)
+  Scene(const mesh::TriangleMesh& b, const mesh::TriangleMesh& tool, const Vec3& start, double k = kK)
       : body(b), detector(b.triangles, b.num_vertices(), tool, {k, k}) {
     pose.position = start;
   }

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "contact/tool_shape.h"
-#include "support/block_mesh.h"
 #include "support/one_node.h"
+#include "support/skin_body.h"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 namespace {
@@ -60,25 +60,12 @@ TEST(CompliantFriction, OfASlidingPlateIsCoulombsForHandAndBody) {
   EXPECT_NEAR(aside * (simulation.state().solid.x(0, 3) - x), kFriction * normal, 1e-3 * normal);
 }
 
-/// Block on the ground whose skin is its boundary shrunk by `scale` towards the middle; 1: the boundary.
 Simulation make_block_simulation(Params params, SurfaceKind kind, double scale) {
-  const Vec3 size(0.04, 0.04, 0.02);
-  Body body;
-  body.mesh = test::make_block(6, 6, 3, size);
-  body.topology = mesh::make_topology(body.mesh);
-  solid::Support bottom;
-  bottom.region.kind = solid::Region::Kind::half_space;
-  bottom.region.offset = 1e-9;
-  body.supports.push_back(bottom);
-  body.initial_saturation = Field::Zero(body.mesh.num_tets());
-  body.skin.triangles = body.topology.boundary;
-  body.skin.vertices = ((scale * (body.mesh.vertices.colwise() - size / 2)).colwise() + size / 2).eval();
-  body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, "skin");
   params.contact_surface = kind;
   params.contact.penalty = contact::PenaltyKind::continuous;
   device::DeviceSample start;
   start.position = {0.0211, 0.0197, 0.031};
-  return Simulation(std::move(body), contact::make_sphere_tool(0.008, 2), params, start);
+  return Simulation(test::make_skin_block(scale), contact::make_sphere_tool(0.008, 2), params, start);
 }
 
 device::DeviceSample slide(double tip, double aside) {

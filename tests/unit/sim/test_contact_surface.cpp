@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
-#include "support/block_mesh.h"
+#include "support/skin_body.h"
 
 namespace argil::sim {
 namespace {
@@ -14,21 +14,7 @@ namespace {
 constexpr double kToolRadius = 0.008;
 const Vec3 kSize(0.04, 0.04, 0.02);
 
-/// Block whose skin is its boundary shrunk by `scale` towards the middle.
-Body make_body(double scale) {
-  Body body;
-  body.mesh = test::make_block(6, 6, 3, kSize);
-  body.topology = mesh::make_topology(body.mesh);
-  solid::Support bottom;
-  bottom.region.kind = solid::Region::Kind::half_space;
-  bottom.region.offset = 1e-9;
-  body.supports.push_back(bottom);
-  body.initial_saturation = Field::Zero(body.mesh.num_tets());
-  body.skin.triangles = body.topology.boundary;
-  body.skin.vertices = ((scale * (body.mesh.vertices.colwise() - kSize / 2)).colwise() + kSize / 2).eval();
-  body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, "skin");
-  return body;
-}
+using test::make_skin_block;
 
 Params make_params(SurfaceKind kind) {
   Params p;
@@ -52,14 +38,15 @@ device::DeviceSample at_height(double tip, device::ToolMode mode = device::ToolM
 }
 
 Simulation start(const Params& params, double scale) {
-  return Simulation(make_body(scale), contact::make_sphere_tool(kToolRadius, 2), params, at_height(0.025));
+  return Simulation(make_skin_block(scale), contact::make_sphere_tool(kToolRadius, 2), params,
+                    at_height(0.025));
 }
 
 class EverySurface : public testing::TestWithParam<std::pair<SurfaceKind, solid::ElementKind>> {};
 
 TEST_P(EverySurface, CarriesForceAndTorqueToTheNodesToRounding) {
   const auto [kind, element] = GetParam();
-  const Body body = make_body(0.8);
+  const Body body = make_skin_block(0.8);
   const solid::Elements elements = solid::make_elements(body.mesh, body.topology, element);
   const ContactSurface surface(kind, body, elements);
   Rng rng(5, "surface");
@@ -150,7 +137,7 @@ TEST(Skin, AFreeBodyTakesUpTheMomentumThatTheHandGives) {
   // With the contact's stiffness in the solve: what its nodes yield, the hand feels too. Also of what
   // resists.
   for (const auto& [damping, friction] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.5}, {1.0, 0.5}}) {
-    Body body = make_body(0.8);
+    Body body = make_skin_block(0.8);
     body.supports.clear();
     Params params = make_params(SurfaceKind::skin);
     params.contact.damping = damping;
@@ -176,7 +163,7 @@ TEST(Skin, AFreeBodyTakesUpTheAngularMomentumThatTheHandGives) {
   // Σ X × m v' is the torque's impulse, about the hand's point and with the yield and all that resists.
   for (const SurfaceKind kind : {SurfaceKind::cage, SurfaceKind::skin})
     for (const auto& [damping, friction] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.5}, {1.0, 0.5}}) {
-      Body body = make_body(0.8);
+      Body body = make_skin_block(0.8);
       body.supports.clear();
       const Points X = body.mesh.vertices;
       Params params = make_params(kind);

@@ -3,7 +3,7 @@
 
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
-#include "support/block_mesh.h"
+#include "support/skin_body.h"
 
 namespace argil::sim {
 namespace {
@@ -13,19 +13,9 @@ constexpr double kThickness = 0.002;
 constexpr double kWidth = 0.04;
 
 Simulation make_plate(int physics_period_ticks, SurfaceKind surface) {
-  Body body;
-  body.mesh = test::make_block(10, 10, 2, Vec3(kWidth, kWidth, kThickness));
-  body.topology = mesh::make_topology(body.mesh);
-  for (const Vec3& normal : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
-    solid::Support side;
-    side.region.kind = solid::Region::Kind::half_space;
-    side.region.normal = normal;
-    side.region.offset = normal.sum() > 0.0 ? 1e-9 : -kWidth + 1e-9;
-    body.supports.push_back(side);
-  }
-  body.initial_saturation = Field::Zero(body.mesh.num_tets());
-  body.skin = {body.mesh.vertices, body.topology.boundary};
-  body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, "skin");
+  Body body = test::make_skin_body(test::make_block(10, 10, 2, Vec3(kWidth, kWidth, kThickness)), 1.0);
+  for (const Vec3& normal : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
+    body.supports.push_back(test::hold_half_space(normal, normal.sum() > 0.0 ? 1e-9 : -kWidth + 1e-9));
   Params p;
   p.elastic = {1e5, 0.3};
   p.plasticity.enabled = false;
