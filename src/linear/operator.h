@@ -9,6 +9,7 @@ struct SolveReport {
   int iterations = 0;              ///< 0: solved by a factor
   double relative_residual = 0.0;  ///< ‖b − A x‖₂ over its value at the first guess, by recurrence; of a
                                    ///< factor over ‖b‖₂; infinite: A was seen not to be positive definite
+  bool wants_stored = false;  ///< not converged, and may with a factor of all of A, were it stored
 };
 
 /// A symmetric positive definite matrix by its product alone.
@@ -19,6 +20,7 @@ class Operator {
   virtual double multiply(const Points& x, Points& y) = 0;
 
   // Where A is a stored matrix and something that is not stored:
+  virtual bool has_unstored() const { return false; }
   /// y += the latter times x; returns x · what was added. Called by all threads of a team (base/parallel.h),
   /// with four floats a row, the last of them 0.
   virtual double add_unstored(const float* x, float* y);

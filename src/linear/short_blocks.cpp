@@ -85,7 +85,8 @@ ARGIL_EVERY_PROCESSOR void shorten(const double* from, std::ptrdiff_t count, flo
 
 void ShortBlocks::update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs) {
   const auto num_rows = static_cast<std::size_t>(matrix.num_rows());
-  if (m_pattern != &matrix || m_revision.size() != num_rows) {
+  if (m_pattern != &matrix || m_revision.size() != num_rows ||
+      m_values.size() != static_cast<std::size_t>(matrix.values.size())) {
     m_pattern = &matrix;
     m_values.resize(static_cast<std::size_t>(matrix.values.size()));
     m_inverse.assign(12 * num_rows, 0.0F);

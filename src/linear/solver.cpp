@@ -141,6 +141,7 @@ class KeptFactorSolver final : public Solver {
       m_cost.iterations += report.iterations;
       m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
       if (report.converged || m_is_part || std::isinf(report.relative_residual)) return report;
+      if (product.has_unstored()) return {false, report.iterations, report.relative_residual, true};
       m_has_factor = true;
       x = m_guess;
     }

@@ -65,14 +65,23 @@ void Solid::assemble_matrix(std::span<const PointStiffness> contacts) {
   mask_rows();
 }
 
-/// Does the matrix leave out the nodes' stiffness of p1_nodal? Its factors take a third of the memory and no
-/// assembly; but a Cholesky factor of the rest alone is no exact one, and Newton's matrix may need two sets
-/// of factors, for elasticity and damping.
+/// Does the matrix leave out the nodes' stiffness of p1_nodal, to begin with? Its factors take a third of the
+/// memory and no assembly; but a Cholesky factor of the rest alone is no exact one, and Newton's matrix may
+/// need two sets of factors, for elasticity and damping.
 bool Solid::keeps_nodal_factors() const {
   using linear::SolverKind;
   const SolverKind kind = m_params.solver.kind;
   return (kind == SolverKind::pcg || kind == SolverKind::pcg_jacobi) &&
          m_params.iteration == Iteration::one && m_params.model != StrainModel::neo_hookean;
+}
+
+/// From now on the matrix holds it after all: where a factor is needed, or more exactness than floats have.
+void Solid::store_nodal_stiffness() {
+  if (!m_nodal_product) return;
+  m_nodal_product.reset();
+  make_pattern();
+  m_stored_shares = {};
+  std::fill(m_is_row_stale.begin(), m_is_row_stale.end(), char{1});
 }
 
 void Solid::update_nodal_stiffness() {

@@ -84,7 +84,6 @@ void sort_along_curve(const Points& x, std::vector<int>& list) {
 
 /// Rows of the free nodes and the matrix's pattern.
 void Solid::number_rows() {
-  const int N = m_elements.nodes_per_tet;
   m_row_of_node.assign(static_cast<std::size_t>(m_elements.num_nodes()), -1);
   for (int n = 0; n < m_elements.num_nodes(); ++n) {
     for (int k = 0; k < 3; ++k)
@@ -103,7 +102,11 @@ void Solid::number_rows() {
     m_nodal_product =
         std::make_unique<NodalProduct>(*m_nodal, m_node_of_row, m_row_of_node, m_constraints,
                                        m_params.solver.tolerance >= linear::kRoomForFloats, m_threads);
+  make_pattern();
+}
 
+void Solid::make_pattern() {
+  const int N = m_elements.nodes_per_tet;
   const bool only_diagonal = m_params.solver.kind == linear::SolverKind::pcg_matrix_free;
   std::vector<std::vector<int>> rows(m_node_of_row.size());
   if (only_diagonal) {
@@ -121,6 +124,7 @@ void Solid::number_rows() {
   }
   m_matrix = linear::make_block_matrix(rows);
   if (m_nodal && !m_nodal_product && !only_diagonal) m_nodal->connect(m_matrix);
+  m_block_of_corner_pair.clear();
   m_block_of_corner_pair.reserve(static_cast<std::size_t>(N * N) * m_material.size());
   for (int t = 0; t < m_elements.num_tets(); ++t)
     for (int i = 0; i < N; ++i)

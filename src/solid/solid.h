@@ -229,7 +229,9 @@ class Solid {
   void mark_rows(bool all);
   template <int N>
   void gather_row(int row, const MatrixShares& share);
+  void make_pattern();
   bool keeps_nodal_factors() const;
+  void store_nodal_stiffness();
   void update_nodal_stiffness();
   void add_nodal_stiffness(const Eigen::Matrix3Xd& gradient, double scale);
   void add_contacts(std::span<const PointStiffness> contacts);
@@ -242,7 +244,9 @@ class Solid {
   void predict(const SolidState& state, const StepLoads& loads, double step_s);
   bool place_supports(double time, double share);
   void compute_residual(const StepLoads& loads);
-  double compute_rounding_force() const;
+  void set_rounding();
+  double compute_excess() const;
+  StepStatus check_resolution(const SolidState& state) const;
   Vec3 applied_force(const StepLoads& loads, Eigen::Index node) const;
   void set_residual_scale(const StepLoads& loads);
   double compute_potential(const StepLoads& loads);
@@ -319,8 +323,11 @@ class Solid {
   Points m_product, m_direction, m_zero;          // working arrays, 3×n; the last one stays zero
   Points m_rhs, m_delta;                          // a column a row
   double m_residual_scale = 0.0;
-  double m_corner_scale = 0.0;  // Σ‖corner force‖²
-  double m_rounding = 0.0;      // what rounding alone leaves of a residual
+  double m_corner_scale = 0.0;      // Σ‖corner force‖²
+  Field m_rounding;                 // what rounding alone leaves of the internal force at each node [N]
+  bool m_is_shifted = false;        // some support is not where it was at rest
+  bool m_is_driven = false;         // something acts in this step: a body left alone is not stirred
+  bool m_is_moved_by_load = false;  // statics: some solve was made
   double m_potential = 0.0, m_potential_scale = 0.0, m_potential_rounding = 0.0;
   StepCounters m_counters;
   int m_iterations = 0;                 // Newton's, of the present step or share of the load

@@ -42,6 +42,7 @@ class Solid::Product final : public linear::Operator {
     return ordered_sum(x.size(), [&](std::ptrdiff_t i) { return x(i) * y(i); });
   }
 
+  bool has_unstored() const override { return m_solid.m_nodal_product != nullptr; }
   double add_unstored(const float* x, float* y) override {
     return m_solid.m_nodal_product ? m_solid.m_nodal_product->add(x, y) : 0.0;
   }
@@ -84,7 +85,8 @@ StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
     return StepStatus::failed({tick, "solid", -1, "system matrix is not positive definite, pivot", 0.0, 0.0});
   if (!report.converged)
     return StepStatus::failed({tick, "solid", -1, "relative residual of the linear solve",
-                               report.relative_residual, m_params.solver.tolerance});
+                               report.relative_residual,
+                               (is_newton() ? make_exact(m_params.solver) : m_params.solver).tolerance});
   if (!is_newton()) {
     set_iterate(1.0);
     solved = !exchange_contacts(loads.contacts);
@@ -93,7 +95,7 @@ StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
   }
   if (m_iterations > m_params.newton_max_iterations)
     return StepStatus::failed({tick, "solid", -1, "Newton's relative residual",
-                               m_rhs.norm() / m_residual_scale, m_params.newton_tolerance});
+                               compute_excess() / m_residual_scale, m_params.newton_tolerance});
   return search_line(loads, tick);
 }
 
@@ -108,19 +110,29 @@ linear::SolverParams Solid::make_exact(linear::SolverParams solver) {
 /// A δ = r. First guess: the body goes on as before; when contacts were exchanged, the step with the others.
 linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
   if (num_free() == 0) return {true, 0, 0.0};
-  if (is_newton()) m_delta.setZero();
-  for (int row = 0; row < num_free() && is_first; ++row) {
-    const int n = m_node_of_row[static_cast<std::size_t>(row)];
-    m_delta.col(row) = m_v_start.col(n) - m_v.col(n);
-  }
-  for (const int row : m_held_rows)
-    for (int k = 0; k < 3; ++k)
-      if (m_constraints.support(k, m_node_of_row[static_cast<std::size_t>(row)]) >= 0) m_delta(k, row) = 0.0;
+  const auto guess = [&] {
+    if (is_newton()) m_delta.setZero();
+    for (int row = 0; row < num_free() && is_first; ++row) {
+      const int n = m_node_of_row[static_cast<std::size_t>(row)];
+      m_delta.col(row) = m_v_start.col(n) - m_v.col(n);
+    }
+    for (const int row : m_held_rows)
+      for (int k = 0; k < 3; ++k)
+        if (m_constraints.support(k, m_node_of_row[static_cast<std::size_t>(row)]) >= 0)
+          m_delta(k, row) = 0.0;
+  };
+  guess();
   Product product(*this, loads.contacts);
   if (m_is_static && !m_static_solver)
     m_static_solver = linear::make_solver(make_exact(m_params.solver), m_threads);
   linear::Solver& solver = m_is_static ? *m_static_solver : *m_solver;
-  const linear::SolveReport report = solver.solve(m_matrix, product, m_rhs, m_delta);
+  linear::SolveReport report = solver.solve(m_matrix, product, m_rhs, m_delta);
+  if (report.wants_stored) {
+    store_nodal_stiffness();
+    assemble_matrix(loads.contacts);
+    guess();
+    report = solver.solve(m_matrix, product, m_rhs, m_delta);
+  }
   m_counters.linear_iterations += report.iterations;
   m_counters.residual = report.relative_residual;
   return report;
@@ -128,6 +140,7 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
 
 void Solid::prepare_response(const SolidState& state, double step_s) {
   ARGIL_ASSERT(!is_explicit());
+  store_nodal_stiffness();  // its solves are exact ones
   m_is_static = false;
   m_plastic_strain = &state.plastic_strain;
   m_tau = compute_tau(state, step_s);
@@ -150,7 +163,7 @@ StepStatus Solid::find_response(const Points& force, Tick tick, Points& displace
   const linear::SolveReport report = m_response_solver->solve(m_matrix, product, m_rhs, m_delta);
   if (!report.converged)
     return StepStatus::failed({tick, "solid", -1, "relative residual of the compliance's solve",
-                               report.relative_residual, m_params.solver.tolerance});
+                               report.relative_residual, make_exact(m_params.solver).tolerance});
   for (int r = 0; r < num_free(); ++r)
     displacement.col(m_node_of_row[static_cast<std::size_t>(r)]) = m_delta.col(r);
   clear_held(displacement);
@@ -171,6 +184,9 @@ void Solid::exchange_state(Archive& archive) {
   archive.number("solid/newton_iterations", m_counters.newton_iterations);
   archive.number("solid/linear_iterations", m_counters.linear_iterations);
   archive.number("solid/residual", m_counters.residual);
+  bool stores_nodal = m_nodal && !m_nodal_product;
+  archive.number("solid/stores_nodal", stores_nodal);
+  if (stores_nodal) store_nodal_stiffness();
   m_solver->exchange_state(archive, "solver/", m_matrix);
   bool has_response_solver = m_response_solver != nullptr;
   archive.number("response/is_known", has_response_solver);

@@ -10,6 +10,7 @@
 
 #include "base/check.h"
 #include "base/ordered_sum.h"
+#include "base/parallel.h"
 #include "solid/solid.h"
 
 namespace argil::solid {
@@ -20,10 +21,6 @@ constexpr double kEnd = std::numeric_limits<double>::infinity();  // statics: su
 
 double sum_products(const Points& a, const Points& b) {
   return ordered_sum(a.cols(), [&](std::ptrdiff_t i) { return a.col(i).dot(b.col(i)); });
-}
-
-double compute_norm(const Points& a) {
-  return std::sqrt(sum_products(a, a));
 }
 
 }  // namespace
@@ -105,10 +102,12 @@ void Solid::predict(const SolidState& state, const StepLoads& loads, double step
 /// Puts the prescribed components of m_x where they are at `time`. True when any of them moved.
 bool Solid::place_supports(double time, double share) {
   bool has_moved = false;
+  m_is_shifted = false;
   for (const auto& [n, k] : m_held_components) {
     const auto support = static_cast<std::size_t>(m_constraints.support(k, n));
     m_held_x(k, n) = m_elements.rest(k, n) + share * compute_displacement(m_supports[support], time)(k);
     has_moved = has_moved || m_x(k, n) != m_held_x(k, n);
+    m_is_shifted = m_is_shifted || m_held_x(k, n) != m_elements.rest(k, n);
     m_x(k, n) = m_held_x(k, n);
   }
   return has_moved;
@@ -120,18 +119,40 @@ double Solid::gravity_mass(Eigen::Index node) const {
   return m_is_static ? m_static_mass(node) : m_mass(node);
 }
 
-/// What the rounding of positions alone may leave of a sum of internal forces [N]: ε |x| times each point's
-/// stiffness, as independent errors. Nothing smaller can be asked for, and a body at rest has nothing else.
-double Solid::compute_rounding_force() const {
+/// What rounding alone may leave of the sum of internal forces at each node [N]: that of its tets' corner
+/// forces, and of positions, ε |x| times their stiffness, as independent errors. Nothing smaller can be asked
+/// for, and a body at rest has nothing else. By nodes, so that a stiff or thin tet does not speak for the
+/// others.
+void Solid::set_rounding() {
   constexpr double kOperations = 8.0;  // roundings on the way from x to a point's force
+  constexpr double kLarger = 4.0;      // than its size to be expected is what some of many errors come to
   const double rounding = kOperations * std::numeric_limits<double>::epsilon() * m_x.cwiseAbs().maxCoeff();
   const int N = m_elements.nodes_per_tet;
-  return std::sqrt(ordered_sum(m_elements.num_points(), [&](std::ptrdiff_t p) {
-    const TetMaterial& material =
-        m_material[static_cast<std::size_t>(m_elements.tet_of_point(static_cast<int>(p)))];
-    const double stiffness = (material.lambda + 2.0 * material.mu) * m_elements.weight(p) *
-                             m_elements.gradient.middleCols(N * p, N).squaredNorm();
-    return std::pow(rounding * stiffness, 2);
+  const int Q = m_elements.points_per_tet;
+  m_rounding.resize(m_elements.num_nodes());
+  parallel_for(m_elements.num_nodes(), m_threads, [&](std::ptrdiff_t node) {
+    double squares = 0.0;
+    for (int c = m_elements.node_begin[static_cast<std::size_t>(node)];
+         c < m_elements.node_begin[static_cast<std::size_t>(node) + 1]; ++c) {
+      const int corner = m_elements.node_corners[static_cast<std::size_t>(c)];
+      const TetMaterial& material = m_material[static_cast<std::size_t>(corner / N)];
+      double stiffness = 0.0;
+      for (Eigen::Index p = Q * (corner / N); p < Q * (corner / N + 1); ++p)
+        stiffness += (material.lambda + 2.0 * material.mu) * m_elements.weight(p) *
+                     m_elements.gradient.col(N * p + corner % N).norm() *
+                     m_elements.gradient.middleCols(N * p, N).norm();
+      squares +=
+          std::pow(rounding * stiffness, 2) + std::pow(kRounding * m_corner_force.col(corner).norm(), 2);
+    }
+    m_rounding(node) = kLarger * std::sqrt(squares);
+  });
+}
+
+/// Norm of the residual beyond what rounding leaves of it.
+double Solid::compute_excess() const {
+  return std::sqrt(ordered_sum(num_free(), [&](std::ptrdiff_t row) {
+    const int node = m_node_of_row[static_cast<std::size_t>(row)];
+    return std::pow(std::max(0.0, m_rhs.col(row).norm() - m_tau * m_rounding(node)), 2);
   }));
 }
 
@@ -170,7 +191,7 @@ Vec3 Solid::applied_force(const StepLoads& loads, Eigen::Index node) const {
 /// at rest is found to be so, the rounding of corner forces and of the positions that they come from.
 void Solid::set_residual_scale(const StepLoads& loads) {
   const double inertia = m_is_static ? 0.0 : 1.0;
-  m_residual_scale = ordered_sum(num_free(), [&](std::ptrdiff_t row) {
+  const double given = ordered_sum(num_free(), [&](std::ptrdiff_t row) {
     const int n = m_node_of_row[static_cast<std::size_t>(row)];
     return inertia * m_mass(n) * (m_v_hat.col(n).norm() + m_v.col(n).norm()) +
            m_tau * applied_force(loads, n).norm();
@@ -178,11 +199,19 @@ void Solid::set_residual_scale(const StepLoads& loads) {
   const double reactions = ordered_sum(m_elements.num_nodes(), [&](std::ptrdiff_t n) {
     return (m_constraints.support.col(n).array() >= 0).select(m_internal_force.col(n), Vec3::Zero()).norm();
   });
-  m_residual_scale += m_tau * reactions;
-  m_rounding = m_tau * (compute_rounding_force() + kRounding * std::sqrt(m_corner_scale));
+  m_residual_scale = given + m_tau * reactions;
+  m_is_driven = given > 0.0 || m_is_shifted;
+  set_rounding();
   // Of the energy: force times what rounding moves each corner.
   const auto corners = static_cast<double>(m_elements.nodes.size());
   m_potential_rounding = kRounding * m_x.cwiseAbs().maxCoeff() * std::sqrt(corners * m_corner_scale);
+  if (m_params.model != StrainModel::neo_hookean) return;
+  // Whose energy is what is left of terms of the size of its moduli.
+  m_potential_rounding += kRounding * ordered_sum(m_elements.num_points(), [&](std::ptrdiff_t p) {
+                            const auto tet =
+                                static_cast<std::size_t>(m_elements.tet_of_point(static_cast<int>(p)));
+                            return (m_material[tet].lambda + m_material[tet].mu) * m_elements.weight(p);
+                          });
 }
 
 bool Solid::assemble(const StepLoads& loads) {
@@ -190,11 +219,15 @@ bool Solid::assemble(const StepLoads& loads) {
   compute_residual(loads);
   if (is_explicit()) return false;
   if (is_newton()) {
-    if (compute_norm(m_rhs) <= m_params.newton_tolerance * m_residual_scale + m_rounding) {
+    // At least one solve where something acts: what it does may be small beside the rounding of stiffer
+    // parts.
+    const bool may_end = m_iterations > 0 || !m_is_driven;
+    if (may_end && compute_excess() <= m_params.newton_tolerance * m_residual_scale) {
       if (!exchange_contacts(loads.contacts)) return true;
       m_iterations = 1;  // of the next round; not the step's first
       compute_residual(loads);
     }
+    m_is_moved_by_load = true;
     m_potential = compute_potential(loads);
   }
   m_is_projected = !is_newton();
@@ -301,6 +334,7 @@ StepStatus Solid::iterate_static(const SolidState& state, const StepLoads& loads
 
 StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
   wake_all();
+  store_nodal_stiffness();
   constexpr double kSmallestShare = 1.0 / 1024.0;
   m_is_static = true;
   m_tau = 1.0;
@@ -309,6 +343,7 @@ StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
   m_v_start.setZero(3, m_elements.num_nodes());
   m_x_start = state.x;
   m_counters = {};
+  m_is_moved_by_load = false;
   start_contacts(loads.contacts.size());
   double done = 0.0;
   for (double step = 1.0; done < 1.0;) {
@@ -331,7 +366,21 @@ StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
       return StepStatus::failed(std::move(failure));
     }
   }
-  return StepStatus::ok();
+  return check_resolution(state);
+}
+
+/// Positions are rounded to ε |x|: far from the origin, or under a small load, no digit of a displacement is
+/// left.
+StepStatus Solid::check_resolution(const SolidState& state) const {
+  constexpr double kDigits = 100.0;
+  const double bound = kDigits * std::numeric_limits<double>::epsilon() * state.x.cwiseAbs().maxCoeff();
+  const double largest = std::sqrt((state.x - m_elements.rest).colwise().squaredNorm().maxCoeff());
+  if (!m_is_moved_by_load || largest >= bound) return StepStatus::ok();
+  return StepStatus::failed(
+      {0, "solid", -1,
+       "largest displacement [m] under the loads, which the rounding of positions this far from "
+       "the origin hides: move the body there, or give a larger load",
+       largest, bound});
 }
 
 }  // namespace argil::solid

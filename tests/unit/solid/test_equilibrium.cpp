@@ -1,0 +1,132 @@
+// Equilibria where rounding and stiffness differ by many orders within one body, and nearly incompressible
+// ones by every solver.
+#include "support/solid_scene.h"
+
+namespace argil::solid {
+namespace {
+
+using test::Scene;
+
+constexpr double kLength = 0.5;
+
+std::vector<int> find_end(const mesh::TetMesh& mesh, double at) {
+  std::vector<int> nodes;
+  for (int n = 0; n < static_cast<int>(mesh.vertices.cols()); ++n)
+    if (std::abs(mesh.vertices(0, n) - at) < 1e-9) nodes.push_back(n);
+  return nodes;
+}
+
+/// Bar of 6×2×2 cells, held at x = 0, whose middle node of the first section lies `gap` of a cell before the
+/// next.
+Scene make_bar_with_sliver(const SolidParams& params, double gap) {
+  mesh::TetMesh mesh = test::make_block(6, 2, 2, Vec3(kLength, 0.1, 0.1));
+  for (Eigen::Index n = 0; n < mesh.vertices.cols(); ++n)
+    if ((mesh.vertices.col(n) - Vec3(kLength / 6, 0.05, 0.05)).norm() < 1e-9)
+      mesh.vertices(0, n) += (1.0 - gap) * kLength / 6;
+  return {mesh, {test::hold_nodes(find_end(mesh, 0.0))}, params, 1e5, 0.3};
+}
+
+double bend(Scene& scene) {
+  const std::vector<int> tip = find_end(scene.mesh, kLength);
+  for (const int n : tip) scene.load.col(n) = Vec3(0, 0, -0.01);
+  const StepStatus status = scene.find_equilibrium();
+  EXPECT_TRUE(status.is_ok()) << status.failure().quantity << ' ' << status.failure().value;
+  return scene.displacement()(2, tip.front());
+}
+
+TEST(FindEquilibrium, OfABodyWithASliverIsNearlyThatWithout) {
+  for (const StrainModel model : {StrainModel::linear, StrainModel::corotational, StrainModel::neo_hookean}) {
+    SolidParams params;
+    params.model = model;
+    Scene thick = make_bar_with_sliver(params, 1e-4);
+    const double expected = bend(thick);  // tets of a ten-thousandth of a cell: already as good as none
+    ASSERT_LT(expected, -1e-5);
+    for (const double gap : {1e-8, 1e-10, 1e-12}) {
+      Scene scene = make_bar_with_sliver(params, gap);
+      EXPECT_NEAR(bend(scene), expected, 1e-3 * -expected) << gap;
+    }
+  }
+}
+
+TEST(FindEquilibrium, OfASoftBarBesideAStiffOneIsTheClosedForm) {
+  for (const StrainModel model : {StrainModel::linear, StrainModel::corotational, StrainModel::neo_hookean})
+    for (const double ratio : {1.0, 1e6, 1e9})
+      for (const double pull : {1.0, 1e-2, 1e-4}) {
+        SolidParams params;
+        params.model = model;
+        const mesh::TetMesh mesh = test::make_block(10, 2, 2, Vec3(kLength, 0.1, 0.1));
+        Support slide = test::hold_nodes(find_end(mesh, 0.0));
+        Scene scene(mesh, {slide}, params, 1e5, 0.0);  // ν = 0: no strain across
+        for (int t = 0; t < mesh.num_tets(); ++t) {
+          double middle = 0.0;
+          for (int i = 0; i < 4; ++i) middle += 0.25 * mesh.vertices(0, mesh.tets(i, t));
+          scene.solid.set_material(t, test::make_material(middle < 0.5 * kLength ? 1e5 * ratio : 1e5, 0.0));
+        }
+        const std::vector<int> tip = find_end(mesh, kLength);
+        // Consistent nodal forces of a uniform pull: a third of the area of the triangles around each node.
+        for (Eigen::Index f = 0; f < scene.solid.elements().surface.cols(); ++f) {
+          const auto face = scene.solid.elements().surface.col(f);
+          bool is_tip = true;
+          for (int k = 0; k < 3; ++k) is_tip = is_tip && std::abs(mesh.vertices(0, face(k)) - kLength) < 1e-9;
+          for (int k = 0; k < 3 && is_tip; ++k) scene.load(0, face(k)) += pull * 0.5 * 0.05 * 0.05 / 3.0;
+        }
+        const StepStatus status = scene.find_equilibrium();
+        EXPECT_TRUE(status.is_ok()) << static_cast<int>(model) << ' ' << ratio << ' ' << pull << ' '
+                                    << status.failure().quantity << ' ' << status.failure().value;
+        const double expected = pull / 1e5 * 0.5 * kLength * (1.0 + 1.0 / ratio);
+        for (const int n : tip)
+          EXPECT_NEAR(scene.displacement()(0, n), expected, 1e-4 * expected) << ratio << ' ' << pull;
+      }
+}
+
+TEST(FindEquilibrium, SaysWhenPositionsHoldNoDigitOfTheDisplacement) {
+  SolidParams params;
+  mesh::TetMesh mesh = test::make_block(4, 2, 2, Vec3(kLength, 0.1, 0.1));
+  const std::vector<int> held = find_end(mesh, 0.0);
+  const std::vector<int> tip = find_end(mesh, kLength);
+  mesh.vertices.colwise() += Vec3(1e3, 1e3, 1e3);
+  Scene scene(mesh, {test::hold_nodes(held)}, params, 1e5, 0.3);
+  for (const int n : tip) scene.load(0, n) = 1e-9;
+  const StepStatus status = scene.find_equilibrium();
+  ASSERT_FALSE(status.is_ok());
+  EXPECT_NE(status.failure().quantity.find("rounding of positions"), std::string::npos);
+}
+
+TEST(NodalVolumes, GiveTheSameEquilibriumByEverySolver) {
+  using linear::SolverKind;
+  for (const double nu : {0.4999, 0.49999}) {
+    const auto find = [&](SolverKind kind) {
+      SolidParams params;
+      params.element = ElementKind::p1_nodal;
+      params.solver.kind = kind;
+      params.solver.max_iterations = 20000;
+      const mesh::TetMesh mesh = test::make_block(12, 3, 3, Vec3(kLength, 0.1, 0.1));
+      Scene scene(mesh, {test::hold_nodes(find_end(mesh, 0.0))}, params, 1e5, nu);
+      for (const int n : find_end(mesh, kLength)) scene.load.col(n) = Vec3(0, 0, -0.01);
+      const StepStatus status = scene.find_equilibrium();
+      EXPECT_TRUE(status.is_ok()) << status.failure().quantity << ' ' << status.failure().value;
+      return scene.displacement();
+    };
+    const Points expected = find(SolverKind::cholesky);
+    for (const SolverKind kind : {SolverKind::pcg, SolverKind::pcg_cholesky, SolverKind::supernodal})
+      EXPECT_LT((find(kind) - expected).cwiseAbs().maxCoeff(), 1e-8 * expected.cwiseAbs().maxCoeff())
+          << nu << ' ' << static_cast<int>(kind);
+  }
+}
+
+TEST(NodalVolumes, TakeAFactorOfAllTheirStiffnessInLongSteps) {
+  SolidParams params;  // the default solver
+  params.element = ElementKind::p1_nodal;
+  const mesh::TetMesh mesh = test::make_block(12, 3, 3, Vec3(kLength, 0.1, 0.1));
+  Scene scene(mesh, {test::hold_nodes(find_end(mesh, 0.0))}, params, 1e5, 0.4999);
+  for (const int n : find_end(mesh, kLength)) scene.load.col(n) = Vec3(0, 0, -0.01);
+  for (int step = 0; step < 5; ++step) {
+    ASSERT_TRUE(scene.step(0.1).is_ok());
+    if (step == 0) continue;
+    EXPECT_LT(scene.solid.counters().linear_iterations,
+              30);  // over a factor of the tets' own part: twice as many
+  }
+}
+
+}  // namespace
+}  // namespace argil::solid
