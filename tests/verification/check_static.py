@@ -109,7 +109,7 @@ def support_and_load(nodes):
                           "upper_m": (high + length).tolist(), "pressure_Pa": 900}]}}
 
 
-def compare(argil, name, body, element, is_uneven=False):
+def compare(argil, name, body, element, is_uneven=False, poissons_ratio=0.3):
     """Runs a body in both programs and prints how far they are apart. True when that is within the demand."""
     with tempfile.TemporaryDirectory() as name_of_folder:
         folder = pathlib.Path(name_of_folder)
@@ -119,7 +119,9 @@ def compare(argil, name, body, element, is_uneven=False):
             modulus = 1e5 * 10.0 ** np.random.default_rng(7).uniform(-1, 1, len(tets))
             sp.write_mesh(folder / "uneven.msh", vertices, tets, modulus)
             body = {"mesh": {"file": "uneven.msh", "youngs_modulus_field": "modulus"}}
-        scenario = sp.make_scenario({**body, **support_and_load(vertices)}, "linear", element)
+        scenario = sp.make_scenario({**body, **support_and_load(vertices)}, "linear", element,
+                                    poissons_ratio=poissons_ratio)
+        scenario["dynamics"]["allow_locking"] = True  # it is the same in both programs
         rest, tets, moved = sp.run_argil(argil, folder, scenario)
         problem = sp.pose(scenario, rest, tets, modulus)
         material = scenario["material"]
@@ -149,7 +151,9 @@ def main(argil, data):
     box = {"shape": {"kind": "box", "size_m": 0.1, "target_tets": 500, "skin_triangles": 0}}
     dinosaur = {"shape": {"kind": "dinosaur", "size_m": 0.2, "target_tets": 2500, "skin_triangles": 0}}
     cases = [("box", box, "p1"), ("box", box, "p2"), ("box, uneven modulus", box, "p1", True),
-             ("box, uneven modulus", box, "p2", True), ("dinosaur", dinosaur, "p1")]
+             ("box, uneven modulus", box, "p2", True), ("dinosaur", dinosaur, "p1"),
+             ("box, ν = 0.49", box, "p1", False, 0.49), ("box, ν = 0.49", box, "p2", False, 0.49),
+             ("box, uneven, ν = 0.49", box, "p1", True, 0.49)]
     public = (("bar-2523.msh", "p1"), ("bar-2523.msh", "p2"), ("torus.msh", "p2"), ("sphere5K.msh", "p1"))
     for file, element in public:
         if data and (data / "tets" / file).exists():
