@@ -1,6 +1,7 @@
 // Extent::local: which part of the body a step solves for.
 
 #include <algorithm>
+#include <utility>
 
 #include "base/check.h"
 #include "solid/solid.h"
@@ -11,6 +12,12 @@ namespace {
 constexpr double kStill = 1e-4;      // [m/s]: where nothing is faster, speeds are measured by this
 constexpr int kCalmSteps = 8;        // that a run must have been slow before it falls asleep
 constexpr double kSleepShare = 0.5;  // of the speed that wakes it, below which a run is slow
+
+/// First row of a run, and the one after its last.
+std::pair<std::size_t, std::size_t> find_rows(int run, std::size_t num_rows) {
+  const std::size_t begin = static_cast<std::size_t>(run) * OrderedRuns::kLength;
+  return {begin, std::min(begin + OrderedRuns::kLength, num_rows)};
+}
 
 }  // namespace
 
@@ -52,8 +59,7 @@ void Solid::wake_region(const StepLoads& loads) {
 void Solid::grow_region(const StepLoads& loads) {
   const double bound = m_params.region_tolerance * std::max(m_fastest, kStill);
   for (const int run : m_region->fringe()) {
-    const std::size_t begin = static_cast<std::size_t>(run) * OrderedRuns::kLength;
-    const std::size_t end = std::min(begin + OrderedRuns::kLength, m_node_of_row.size());
+    const auto [begin, end] = find_rows(run, m_node_of_row.size());
     for (std::size_t row = begin; row < end; ++row) {
       const Eigen::Index node = m_node_of_row[row];
       const double mobility = loads.mobility ? loads.mobility(node) : 1.0;
@@ -71,11 +77,11 @@ void Solid::grow_region(const StepLoads& loads) {
 
 void Solid::settle_region(SolidState& state, const std::vector<char>& is_flowing) {
   if (!m_region) return;
-  std::vector<double> fastest(m_region->awake().size());
+  std::vector<double>& fastest = m_run_speed;
+  fastest.assign(m_region->awake().size(), 0.0);
   m_fastest = 0.0;
   for (std::size_t i = 0; i < fastest.size(); ++i) {
-    const std::size_t begin = static_cast<std::size_t>(m_region->awake()[i]) * OrderedRuns::kLength;
-    const std::size_t end = std::min(begin + OrderedRuns::kLength, m_node_of_row.size());
+    const auto [begin, end] = find_rows(m_region->awake()[i], m_node_of_row.size());
     for (std::size_t row = begin; row < end; ++row)
       fastest[i] = std::max(fastest[i], state.v.col(m_node_of_row[row]).norm());
     m_fastest = std::max(m_fastest, fastest[i]);
@@ -88,8 +94,7 @@ void Solid::settle_region(SolidState& state, const std::vector<char>& is_flowing
     calm = fastest[i] <= bound && !m_region->has_any(run, is_flowing) ? calm + 1 : 0;
     if (calm < kCalmSteps) continue;
     m_region->make_drowsy(run);
-    const std::size_t begin = static_cast<std::size_t>(run) * OrderedRuns::kLength;
-    const std::size_t end = std::min(begin + OrderedRuns::kLength, m_node_of_row.size());
+    const auto [begin, end] = find_rows(run, m_node_of_row.size());
     for (std::size_t row = begin; row < end; ++row) state.v.col(m_node_of_row[row]).setZero();
   }
 }

@@ -304,6 +304,7 @@ class Solid {
   bool m_has_old_forces = true;         // of tets that do not move: not found yet
   double m_fastest = 0.0;               // speed of the last step [m/s]
   Points m_last_load;                   // forces of the last step
+  std::vector<double> m_run_speed;      // of the fastest node of each run that is awake
   std::unique_ptr<linear::Solver> m_solver;
   std::unique_ptr<linear::Solver> m_static_solver;    // made at first use, as is the next:
   std::unique_ptr<linear::Solver> m_response_solver;  // each keeps a factor of its own
