@@ -40,7 +40,11 @@ def read_memory(pid):
 
 def watch(command, folder, seconds):
     """Prints a line when each share of the run is over, by the program's own progress bar. Returns what it had each time."""
-    screen, terminal = pty.openpty()
+    try:
+        screen, terminal = pty.openpty()
+    except OSError as missing:
+        print(f"skipped: the progress bar wants a terminal, and there is none to be had ({missing})")
+        sys.exit(77)
     seen, shares = [], list(SHARES)
     with subprocess.Popen(command, cwd=folder, stdout=terminal, stderr=terminal) as run:
         os.close(terminal)
