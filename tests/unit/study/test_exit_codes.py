@@ -241,15 +241,17 @@ class ExitCodes(unittest.TestCase):
         time.sleep(0.5)
 
     def test_130_a_terminated_run_goes_on_where_it_was_and_has_one_writer(self):
-        write_press(self.folder / "press.csv", 6.0, 0.0435)
+        write_press(self.folder / "press.csv", 10.0, 0.0435)
         command = [ARGIL, "run", "scene.json", "-o", "out.h5", "-q", "--set", "/haptics/physics_period_ticks=5"]
         with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True) as run:
             self.wait_for("out.h5")
+            run.send_signal(signal.SIGSTOP)  # however long the others take, it is not over when they are
             for more in ([], ["--resume"]):
                 code, _, error = self.call(*command[1:], *more)
                 self.assertEqual(code, 4)
                 self.assertIn("out.h5: another process has this file open", error)
             run.send_signal(signal.SIGTERM)
+            run.send_signal(signal.SIGCONT)
             _, error = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 130, error)
         self.assertIn("go on with --resume", error)
