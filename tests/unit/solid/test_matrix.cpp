@@ -85,5 +85,21 @@ TEST(MatrixUpdate, GathersAllRowsForAnotherStep) {
   EXPECT_EQ(scene.solid.counters().assembled_rows, scene.solid.num_free());
 }
 
+TEST(Matrix, IsTakenAnewByASolverInFloatsWhereModuliChange) {
+  const auto move = [](linear::SolverKind kind) {
+    SolidParams params;
+    params.solver.kind = kind;
+    test::Scene scene(test::make_block(3, 2, 2, Vec3(0.3, 0.2, 0.2)), {0, 1, 2}, params, 1e5, 0.3);
+    scene.load.col(20) = Vec3(1, 2, 3);
+    EXPECT_TRUE(scene.step(0.05).is_ok());
+    for (int t = 0; t < scene.mesh.num_tets(); ++t)
+      scene.solid.set_material(t, test::make_material(1e3, 0.3));
+    EXPECT_TRUE(scene.step(0.05).is_ok());
+    return scene.displacement();
+  };
+  const Points expected = move(linear::SolverKind::cholesky);
+  EXPECT_LT((move(linear::SolverKind::pcg) - expected).norm(), 0.01 * expected.norm());  // solved to 1e-3
+}
+
 }  // namespace
 }  // namespace argil::solid
