@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/types.h"
+#include "device/sample.h"
 
 namespace argil::device {
 
@@ -14,12 +14,6 @@ enum class Passivity {
 struct TickMotion {
   Vec3 path = Vec3::Zero();  ///< [m]
   Vec3 turn = Vec3::Zero();  ///< axis times angle [rad]
-};
-
-/// Force and torque on the hand about its point.
-struct Wrench {
-  Vec3 force = Vec3::Zero();   ///< [N]
-  Vec3 torque = Vec3::Zero();  ///< [N m]
 };
 
 /// ∫ F·v + T·ω dt of a wrench that is held during the tick [J].

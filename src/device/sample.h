@@ -37,4 +37,17 @@ struct DeviceSample {
   ToolMode mode = ToolMode::push;
 };
 
+/// Force and torque on the hand about its point.
+struct Wrench {
+  Vec3 force = Vec3::Zero();   ///< [N]
+  Vec3 torque = Vec3::Zero();  ///< [N m]
+};
+
+/// x_world = rotation · (scale · x_device) + translation; orientations and forces turn with `rotation`.
+struct DeviceToWorld {
+  double scale = 1.0;
+  Quat rotation = Quat::Identity();
+  Vec3 translation = Vec3::Zero();  ///< [m]
+};
+
 }  // namespace argil::device

@@ -7,13 +7,6 @@
 
 namespace argil::device {
 
-/// x_world = rotation · (scale · x_device) + translation; orientations turn with `rotation`.
-struct DeviceToWorld {
-  double scale = 1.0;
-  Quat rotation = Quat::Identity();
-  Vec3 translation = Vec3::Zero();  ///< [m]
-};
-
 /// How a trace file is read when its header does not say.
 struct TraceOptions {
   DeviceToWorld device_to_world;           ///< applied after the header's own transform

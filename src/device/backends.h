@@ -1,0 +1,18 @@
+#pragma once
+
+// The kinds of devices, each behind HapticDevice; devices.h chooses one by name.
+
+#include <memory>
+
+#include "device/devices.h"
+
+namespace argil::device::internal {
+
+std::unique_ptr<HapticDevice> make_simulated(const DeviceOptions& options);
+
+/// `v`, or zero when it is not finite: no device renders what is no force.
+inline Vec3 finite_or_zero(const Vec3& v) {
+  return v.allFinite() ? v : Vec3::Zero().eval();
+}
+
+}  // namespace argil::device::internal
