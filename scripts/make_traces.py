@@ -147,6 +147,7 @@ TRACES = {  # file: place, strokes before time zero of the tremor, strokes from 
 
 RATE_HZ = 1000
 GRID_MM = 0.06  # what the device resolves
+STEP_MM = 0.1  # between the samples of the straight line
 TREMOR_BAND_HZ = (8.0, 12.0)
 TREMOR_AMPLITUDE_MM = 0.07  # √2 times the root mean square, of each coordinate
 TREMOR_SINES = 6  # of each coordinate, one in each equal part of the band
@@ -267,6 +268,20 @@ def make_trace(place, before, after):
     return f"# argil-trace: 1\n# device: {DEVICE}\n# units: m\n# rate_hz: {RATE_HZ}\n# sha256: {digest}\n{body}"
 
 
+def make_approach():
+    """A straight way from 4 mm above the block to 4 mm within and as many samples of rest, STEP_MM apart and without
+    time: /trace/default_rate_hz gives the speed."""
+    contact, radius = BLOCK.contact, BLOCK.tool_radius
+    count = round(8 / STEP_MM)
+    heights = [4 - 8 * i / count for i in range(count + 1)] + [-4.0] * count
+    rows = (f"{1e-3 * contact[0]:.5f},{1e-3 * contact[1]:.5f},{1e-3 * (contact[2] + radius + height):.5f},0,0,0,1,push\n"
+            for height in heights)
+    body = "x_m,y_m,z_m,qx,qy,qz,qw,mode\n" + "".join(rows)
+    digest = hashlib.sha256(body.encode()).hexdigest()
+    return (f"# argil-trace: 1\n# device: straight line in steps of {STEP_MM} mm, by scripts/make_traces.py\n"
+            f"# units: m\n# sha256: {digest}\n{body}")
+
+
 def find_difference(file, text):
     """What differs between a file and the text that it should hold; nothing when they are equal."""
     if not file.is_file():
@@ -286,9 +301,9 @@ def main():
     parser.add_argument("--out", type=Path, default=folder, metavar="FOLDER", help="default: traces/")
     options = parser.parse_args()
     num_different = 0
-    for name, motion in TRACES.items():
+    texts = {name: make_trace(*motion) for name, motion in TRACES.items()} | {"approach.csv": make_approach()}
+    for name, text in texts.items():
         file = options.out / name
-        text = make_trace(*motion)
         if options.check:
             difference = find_difference(file, text)
             if difference:
@@ -297,7 +312,7 @@ def main():
         else:
             options.out.mkdir(parents=True, exist_ok=True)
             file.write_text(text, newline="\n")
-            print(f"{file}: {duration(motion[1]) + duration(motion[2]):g} s")
+            print(file)
     return 1 if num_different else 0
 
 

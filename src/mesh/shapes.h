@@ -23,6 +23,12 @@ ImplicitSurface make_implicit_shape(const Shape& shape);
 /// Tetrahedral body of a shape with about `target_tets` tets. Box and cylinder have sharp edges.
 TetMesh make_shape_mesh(const Shape& shape, int target_tets);
 
+/// Flattens a tet in the body, near the top of its axis, to see what a sliver does to a method: a vertex
+/// within the body moves towards the opposite face until the height is `share` of what it was, 0 < share < 1.
+/// So do its tets whose faces lie in the same plane; the others grow. The body's surface and volume stay.
+/// Throws InputError when no vertex can.
+void flatten_tet(TetMesh& mesh, double share);
+
 /// Triangle skin of a shape with at least `min_triangles` triangles, closed and manifold.
 TriangleMesh make_shape_skin(const Shape& shape, int min_triangles);
 

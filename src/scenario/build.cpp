@@ -59,12 +59,13 @@ std::string describe_cage(const embed::CageReport& report) {
   return text.str();
 }
 
-/// A refused shape came from the scenario: say from where.
-mesh::TetMesh make_shape(const Scenario& s) {
+/// What `make` refuses came from the scenario's `pointer`: say so.
+template <class Make>
+auto from_scenario(const Scenario& s, const char* pointer, const Make& make) {
   try {
-    return mesh::make_shape_mesh(s.body.shape, s.body.target_tets);
+    return make();
   } catch (const InputError& error) {
-    throw InputError(s.file, "/body/shape", error.what(), "");
+    throw InputError(s.file, pointer, error.what(), "");
   }
 }
 
@@ -81,8 +82,11 @@ void make_mesh(const Scenario& s, Scene& scene) {
         scene.notes.push_back(describe_cage(cage.report));
         body.mesh = std::move(cage.mesh);
       } else {
-        body.mesh = make_shape(s);
+        body.mesh = from_scenario(s, "/body/shape",
+                                  [&] { return mesh::make_shape_mesh(s.body.shape, s.body.target_tets); });
       }
+      if (s.body.sliver < 1.0)
+        from_scenario(s, "/body/shape/sliver", [&] { mesh::flatten_tet(body.mesh, s.body.sliver); });
       break;
     case BodyKind::surface:
       body.skin = mesh::read_triangle_mesh(s.body.file, s.body.scale);

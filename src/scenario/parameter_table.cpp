@@ -92,6 +92,9 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
   b.integer("/body/shape/skin_triangles", body.skin_triangles, between(0, 5e6),
             "Skin with at least so many triangles; 0: none.")
       .applies = only(BodyKind::shape);
+  b.number("/body/shape/sliver", body.sliver, {0.0, 1.0, true, false}, "",
+           "Height of one tet near the top as a share of what it was, to see what a bad tet does; 1: none.")
+      .applies = only(BodyKind::shape);
   b.path("/body/surface/file", body.file, folder,
          "Triangle surface (OBJ, STL, PLY); it becomes the skin in a cage.")
       .applies = only(BodyKind::surface);

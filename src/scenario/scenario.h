@@ -36,6 +36,7 @@ struct BodySpec {
   mesh::Shape shape;             ///< shape
   int target_tets = 10000;       ///< shape; surface without a cage file
   int skin_triangles = 20000;    ///< shape: at least so many; 0: no skin
+  double sliver = 1.0;           ///< shape: height of one tet over what it was [–]; 1: as it was
   std::string saturation_field;  ///< mesh: cell data with the initial saturation; empty: uniform
   std::string modulus_field;     ///< mesh: cell data with Young's modulus [Pa]; empty: the material's
   std::string

@@ -113,5 +113,30 @@ TEST(MakeShapeSkin, CreaturesAreMirroredInY) {
   }
 }
 
+TEST(FlattenTet, LowersOneTetAndKeepsTheBody) {
+  for (const ShapeKind kind : kAllShapes)
+    for (const double share : {0.5, 1e-3, 1e-7}) {
+      SCOPED_TRACE(testing::Message() << "shape " << static_cast<int>(kind) << ", share " << share);
+      const TetMesh sound = make_shape_mesh({kind, 0.1}, 2000);
+      TetMesh mesh = sound;
+      flatten_tet(mesh, share);
+      const Field before = compute_volumes(sound.vertices, sound.tets);
+      const Field after = compute_volumes(mesh.vertices, mesh.tets);
+      const Field ratio = after.cwiseQuotient(before);
+      EXPECT_NEAR(ratio.minCoeff(), share, 1e-9);            // on the same base
+      EXPECT_LE((ratio.array() < share + 1e-9).count(), 4);  // with what shares its plane
+      EXPECT_NEAR(after.sum(), before.sum(), 1e-12 * before.sum());
+      EXPECT_EQ(((mesh.vertices - sound.vertices).colwise().norm().array() > 0.0).count(), 1);
+      EXPECT_EQ(make_topology(mesh).boundary, make_topology(sound).boundary);
+    }
+}
+
+TEST(FlattenTet, RefusesABodyWithoutVerticesWithin) {
+  TetMesh one;
+  one.vertices = Points::Identity(3, 4);
+  one.tets = Eigen::Vector4i(3, 0, 1, 2);
+  EXPECT_THROW(flatten_tet(one, 0.5), InputError);
+}
+
 }  // namespace
 }  // namespace argil::mesh
