@@ -298,8 +298,8 @@ StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frame) {
                              m_params.min_volume_ratio});
 }
 
-Field Solid::compute_volume_changes(const TensorField& plastic_strain) const {
-  Field change(m_elements.num_tets());
+void Solid::compute_volume_changes(const TensorField& plastic_strain, Field& change) const {
+  change.resize(m_elements.num_tets());
   m_rows.each(change.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t t = begin; t < end; ++t)
       change(t) =
@@ -307,14 +307,14 @@ Field Solid::compute_volume_changes(const TensorField& plastic_strain) const {
               ? compute_volume_change(m_params.model, motion(static_cast<int>(t)), plastic_strain.col(t))
               : (m_strain.col(t) - plastic_strain.col(t)).head<3>().sum();
   });
-  return change;
 }
 
 /// p1_nodal: the nodes' mean volume change at the present kinematics.
 void Solid::update_volume_change(const TensorField& plastic_strain) {
   if (!m_nodal) return;
   m_nodal->update_stiffness();
-  m_nodal->average(compute_volume_changes(plastic_strain), m_volume_change);
+  compute_volume_changes(plastic_strain, m_tet_volume_change);
+  m_nodal->average(m_tet_volume_change, m_volume_change);
   m_nodal_pressure = m_excess_bulk.cwiseProduct(m_volume_change);
 }
 
@@ -341,7 +341,9 @@ double Solid::compute_elastic_energy(const TensorField& plastic_strain) const {
   });
   if (!m_nodal) return own;
   m_nodal->update_stiffness();
-  return own + m_nodal->compute_energy(compute_volume_changes(plastic_strain));
+  Field change;
+  compute_volume_changes(plastic_strain, change);
+  return own + m_nodal->compute_energy(change);
 }
 
 double Solid::compute_kinetic_energy(const SolidState& state) const {

@@ -190,7 +190,7 @@ class Solid {
   void set_quadratic_motion(const Points& x, bool keeps_frame);
   Elasticity elasticity(int tet) const;
   PointMotion motion(int point) const;
-  Field compute_volume_changes(const TensorField& plastic_strain) const;
+  void compute_volume_changes(const TensorField& plastic_strain, Field& change) const;
   void update_volume_change(const TensorField& plastic_strain);
   StepStatus update_motion(const Points& x, Tick tick, bool keeps_frame);
 
@@ -277,8 +277,9 @@ class Solid {
   TensorField m_strain;
   Field m_volume_ratio;  // det F
   double m_min_volume_ratio = 1.0;
-  Field m_volume_change;   // p1_nodal: θ of each tet's nodes, their mean
-  Field m_nodal_pressure;  // and the stress that it is [Pa]
+  Field m_tet_volume_change;  // p1_nodal: θ of each tet
+  Field m_volume_change;      // p1_nodal: θ of each tet's nodes, their mean
+  Field m_nodal_pressure;     // and the stress that it is [Pa]
 
   Eigen::Matrix3Xd m_kept_rotation;                     // damping's R where it is not the present one
   Eigen::Matrix3Xd m_turned_gradient;                   // Q ∇N, N columns a point, for the matrix

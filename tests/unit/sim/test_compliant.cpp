@@ -1,27 +1,13 @@
 // The surface that yields between physics steps: with friction, on a skin, and what it takes from the heap.
-// Heap use counts Eigen's own route to it (malloc), which glibc lets a program replace; sanitizers replace it
-// themselves, so that this is left out there.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstddef>
 #include <numbers>
 
 #include "contact/tool_shape.h"
+#include "support/heap_count.h"
 #include "support/one_node.h"
 #include "support/skin_body.h"
-
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-namespace {
-std::size_t s_allocations = 0;
-}
-extern "C" void* __libc_malloc(std::size_t size);     // NOLINT: glibc's name
-extern "C" void* malloc(std::size_t size) noexcept {  // NOLINT
-  ++s_allocations;
-  return __libc_malloc(size);
-}
-#define ARGIL_COUNTS_HEAP
-#endif
 
 namespace argil::sim {
 namespace {
@@ -140,9 +126,9 @@ TEST(CompliantCost, NoHeapInATickBetweenPhysicsSteps) {
       for (int k = 0; k < count * kPeriod; ++k) {
         const double angle = 2.0 * std::numbers::pi * k / (4 * kPeriod);
         const device::DeviceSample sample = slide(0.0165 + 2e-5 * std::sin(angle), 2e-5 * std::cos(angle));
-        const std::size_t before = s_allocations;
+        const std::size_t before = test::count_allocations();
         ASSERT_TRUE(simulation.tick(sample).is_ok());
-        if (!simulation.physics_due_last_tick()) in_ticks += s_allocations - before;
+        if (!simulation.physics_due_last_tick()) in_ticks += test::count_allocations() - before;
       }
     };
     lap(40);

@@ -1,23 +1,11 @@
-// No allocation in the calls of a water step. Counts operator new and Eigen's own route to the heap (malloc),
-// which glibc lets a program replace; sanitizers replace it themselves, so the test is left out there.
+// No allocation in the calls of a water step.
 #include <gtest/gtest.h>
 
-#include <cstddef>
-
 #include "support/block_mesh.h"
+#include "support/heap_count.h"
 #include "water/water.h"
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-
-namespace {
-std::size_t s_allocations = 0;
-}
-
-extern "C" void* __libc_malloc(std::size_t size);     // NOLINT: glibc's name
-extern "C" void* malloc(std::size_t size) noexcept {  // NOLINT
-  ++s_allocations;
-  return __libc_malloc(size);
-}
+#ifdef ARGIL_COUNTS_HEAP
 
 namespace argil::water {
 namespace {
@@ -37,24 +25,24 @@ TEST(PoreWater, AllocatesNothingOnceItIsMade) {
     const int triangle[] = {5, 17};
     const double area[] = {1e-4, 1e-4};
     double mass = 0.0;
-    const std::size_t before = s_allocations;
+    const std::size_t before = test::count_allocations();
     for (int i = 0; i < 200; ++i) {
       water.exchange(triangle, area, i < 100 ? 1 : -1, 0.01);
       water.diffuse(2.0);
       water.collect_changed(1e-4, changed);
       mass += water.mass() + water.ledger_error();
     }
-    EXPECT_EQ(s_allocations - before, 0U);
+    EXPECT_EQ(test::count_allocations() - before, 0U);
     EXPECT_GT(mass, 0.0);
     EXPECT_EQ(water.num_active(), mesh.num_tets());  // the front went through the whole body meanwhile
   }
 }
 
 TEST(AllocationCount, SeesAnAllocation) {
-  const std::size_t before = s_allocations;
+  const std::size_t before = test::count_allocations();
   const Field field = Field::Zero(1000);
   const std::vector<int> list(1000, 1);
-  EXPECT_GE(s_allocations - before, 2U);
+  EXPECT_GE(test::count_allocations() - before, 2U);
   EXPECT_EQ(field.sum() + list[3], 1.0);
 }
 

@@ -1,0 +1,147 @@
+// What a whole tick takes from the heap once its lists have grown to what the scene needs: nothing.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "contact/tool_shape.h"
+#include "sim/simulation.h"
+#include "support/block_mesh.h"
+#include "support/heap_count.h"
+
+#ifdef ARGIL_COUNTS_HEAP
+
+namespace argil::sim {
+namespace {
+
+constexpr double kToolRadius = 0.006;
+constexpr int kPeriod = 20;  // ticks of a round
+
+Params make_params() {
+  Params p;
+  p.elastic = {1e5, 0.3};
+  p.plasticity.yield = 0.02;
+  p.plasticity.creep_per_s = 20.0;
+  p.plasticity.max = 0.5;
+  p.kernel.form = material::KernelForm::rate;
+  p.kernel.k1 = 2.0;
+  p.kernel.k2 = 60.0;
+  p.kernel.radius = 0.02;
+  p.contact = {200.0, 200.0};
+  p.contact.friction = 0.3;
+  p.solid.rayleigh_stiffness = 1e-3;
+  p.rates.water_period_ticks = 10;
+  p.water.diffusivity = 5e-6;
+  p.water.wetting_flux = 1.0;
+  return p;
+}
+
+Body make_block_body() {
+  Body body;
+  body.mesh = test::make_block(6, 6, 4, Vec3(0.03, 0.03, 0.02));
+  body.topology = mesh::make_topology(body.mesh);
+  solid::Support bottom;
+  bottom.region.kind = solid::Region::Kind::half_space;
+  bottom.region.offset = 1e-9;
+  body.supports.push_back(bottom);
+  body.initial_saturation = Field::Constant(body.mesh.num_tets(), 0.2);
+  return body;
+}
+
+/// A small round on the top, pressed in.
+device::DeviceSample hand_at(int tick, device::ToolMode mode) {
+  const double angle = 2.0 * std::numbers::pi * tick / kPeriod;
+  device::DeviceSample sample;
+  sample.position = {0.0153 + 2e-4 * std::sin(angle), 0.0152 + 2e-4 * std::cos(angle),
+                     0.02 + kToolRadius - 4e-4 + 1e-4 * std::sin(angle)};
+  sample.mode = mode;
+  return sample;
+}
+
+/// Allocations of five rounds after fifteen.
+std::size_t count_in_ticks(const Params& params, device::ToolMode mode) {
+  device::DeviceSample away = hand_at(0, mode);
+  away.position.z() += 0.002;
+  Simulation simulation(make_block_body(), contact::make_sphere_tool(kToolRadius, 2), params, away);
+  std::size_t in_ticks = 0;
+  double work = 0.0;
+  for (int k = 1; k <= 20 * kPeriod; ++k) {
+    const std::size_t before = test::count_allocations();
+    const bool is_ok = simulation.tick(hand_at(k, mode)).is_ok();
+    if (k > 15 * kPeriod) in_ticks += test::count_allocations() - before;
+    EXPECT_TRUE(is_ok);
+    if (!is_ok) break;
+    work += simulation.state().hand_force.norm();
+  }
+  EXPECT_GT(work, 1.0);
+  return in_ticks;
+}
+
+struct Case {
+  const char* name;
+  void (*change)(Params&);
+  device::ToolMode mode = device::ToolMode::push;
+};
+
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name;
+}
+
+class Tick : public testing::TestWithParam<Case> {};
+
+TEST_P(Tick, TakesNothingFromTheHeapAfterItsWarmUp) {
+  Params params = make_params();
+  GetParam().change(params);
+  EXPECT_EQ(count_in_ticks(params, GetParam().mode), 0U);
+}
+
+const Case kCases[] = {
+    {"push", [](Params&) {}},
+    {"two_threads", [](Params& p) { p.threads = 2; }},
+    {"pull",
+     [](Params& p) {
+       p.contact = {20.0, 20.0};
+     },
+     device::ToolMode::pull},
+    {"wet", [](Params&) {}, device::ToolMode::wet},
+    {"dry", [](Params&) {}, device::ToolMode::dry},
+    {"hold", [](Params& p) { p.rates.physics_period_ticks = 10; }},
+    {"re_evaluate",
+     [](Params& p) {
+       p.rates.physics_period_ticks = 10;
+       p.rates.between_frames = BetweenFrames::re_evaluate;
+     }},
+    {"compliant",
+     [](Params& p) {
+       p.rates.physics_period_ticks = 10;
+       p.rates.between_frames = BetweenFrames::compliant;
+     }},
+    {"p2", [](Params& p) { p.solid.element = solid::ElementKind::p2; }},
+    {"linear", [](Params& p) { p.solid.model = solid::StrainModel::linear; }},
+    {"neo_hookean", [](Params& p) { p.solid.model = solid::StrainModel::neo_hookean; }},
+    {"p1_nodal", [](Params& p) { p.solid.element = solid::ElementKind::p1_nodal; }},
+    {"bdf2", [](Params& p) { p.solid.integrator = solid::Integrator::bdf2; }},
+    {"explicit",
+     [](Params& p) {
+       p.solid.integrator = solid::Integrator::symplectic_euler;
+       p.solid.rayleigh_stiffness = 0.0;
+       p.rates.haptic_period = 1e-4;
+     }},
+    {"newton", [](Params& p) { p.solid.iteration = solid::Iteration::newton; }},
+    {"local", [](Params& p) { p.solid.extent = solid::Extent::local; }},
+};
+
+INSTANTIATE_TEST_SUITE_P(Heap, Tick, testing::ValuesIn(kCases),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(HeapCount, SeesAnAllocation) {
+  const std::size_t before = test::count_allocations();
+  const std::vector<int> list(1000, 1);
+  const Field field = Field::Zero(1000);
+  EXPECT_GE(test::count_allocations() - before, 2U);
+  EXPECT_EQ(field.sum() + list[3], 1.0);
+}
+
+}  // namespace
+}  // namespace argil::sim
+
+#endif
