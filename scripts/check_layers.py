@@ -3,7 +3,7 @@
 
 A folder includes only itself and the folders that its row allows ("all above": every lower layer), always by the
 path from src/; its CMakeLists.txt names every folder it includes and none that its row forbids; and a library has
-one folder that includes it.
+one folder that includes it. The folders of the loop take nothing that locks or calls the system.
 
 Usage: check_layers.py [--root PROJECT]
 """
@@ -14,6 +14,10 @@ from pathlib import Path
 
 # Start of an included header's name → the one folder (or file) that may include it.
 LIBRARIES = {"hdf5": "hdf5", "cholmod": "linear", "umfpack": "linear", "nlohmann/": "scenario", "CLI/": "main.cpp"}
+# What no folder of the loop may include: a tick neither locks nor calls the system.
+LOOP = {"material", "linear", "water", "solid", "embed", "sim"}
+SYSTEM = re.compile(r"(mutex|shared_mutex|thread|condition_variable|future|semaphore|chrono|ctime|fstream|iostream"
+                    r"|filesystem|unistd\.h|pthread\.h|sys/.*)$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 ROW = re.compile(r"^\| (\d+) \| `([\w.]+)` \|.*\| ([^|]+) \|$", re.MULTILINE)
 MODULE = re.compile(r"argil_module\((\w+)([^)]*)\)")
@@ -55,6 +59,8 @@ def find_include_breaches(source, file, allowed):
                 used.add(folder)
                 if folder not in allowed[place]:
                     breaches.append(f'{file}: "{name}": {place} may not include {folder}')
+        if bracket == "<" and place in LOOP and SYSTEM.match(name):
+            breaches.append(f"{file}: <{name}>: the loop neither locks nor calls the system")
         for start, owner in LIBRARIES.items():
             if bracket == "<" and name.startswith(start) and place != owner:
                 breaches.append(f"{file}: <{name}>: only {owner} includes it")
