@@ -5,7 +5,8 @@ A motion is a list of strokes between way-points, each the minimum-jerk path of 
 1985], plus physiological tremor (8 to 12 Hz), seen through a device that resolves only steps of a grid. What a
 real device adds and this one does not: a low-pass filter of its driver, joint angles in place of Cartesian
 steps, and a hand that the force pushes back. Without the filter the speed between two samples jumps by a whole
-grid step, the harder case for a simulator.
+grid step, the harder case for a simulator. Places marked smooth get the planned way alone: scenes whose forces are to
+converge with finer steps need a motion that does.
 
 Nothing but Python's standard library is used and every number is rounded to the digits written, so the files
 are the same bytes on every machine.
@@ -30,6 +31,7 @@ class Place(NamedTuple):
     normal: tuple  # outward, of any length
     slide: tuple  # direction of sliding, of any length; its part along the normal is left out
     tool_radius: float
+    is_smooth: bool = False  # the way itself, without tremor and device, so that finer steps see the same motion
 
 
 class Stroke(NamedTuple):
@@ -45,8 +47,10 @@ class Stroke(NamedTuple):
 
 HAUNCH = Place(contact=(-6.0, -30.4, 62.0), normal=(0.0, -1.0, 0.0), slide=(0.35, 0.0, -0.94), tool_radius=8.0)
 
-BLOCK = Place(contact=(0.0, 0.0, 30.0), normal=(0.0, 0.0, 1.0), slide=(1.0, 0.0, 0.0), tool_radius=24.0)
-POST = Place(contact=(-25.0, 0.0, 85.0), normal=(-1.0, 0.0, 0.0), slide=(0.0, 0.0, 1.0), tool_radius=8.0)
+BLOCK = Place(contact=(0.37, 0.21, 30.0), normal=(0.0, 0.0, 1.0), slide=(1.0, 0.0, 0.0), tool_radius=24.0,
+              is_smooth=True)
+POST = Place(contact=(-25.0, 0.23, 85.0), normal=(-1.0, 0.0, 0.0), slide=(0.0, 0.0, 1.0), tool_radius=8.0,
+             is_smooth=True)
 
 START = Stroke("push", 0.0, 25.0, 0.0, 0.0)  # where every motion begins
 
@@ -155,6 +159,7 @@ DEVICE = (
     f"synthetic hand at {RATE_HZ} Hz, steps of {GRID_MM} mm, tremor of {TREMOR_AMPLITUDE_MM} mm at "
     f"{TREMOR_BAND_HZ[0]:g} to {TREMOR_BAND_HZ[1]:g} Hz, by scripts/make_traces.py"
 )
+SMOOTH = f"the planned way of a hand at {RATE_HZ} Hz, by scripts/make_traces.py"
 
 # ---- Vectors and quaternions (x, y, z, w) ----------------------------------------------------------------------
 
@@ -238,6 +243,10 @@ def duration(strokes):
     return sum(stroke.seconds for stroke in strokes)
 
 
+def without_minus_zero(cell):
+    return cell[1:] if cell.startswith("-0.") and not cell.strip("-0.") else cell
+
+
 def make_rows(place, before, after):
     """The samples of a trace, one line each. The tremor's clock starts after `before`, so that the samples of
     `after` do not depend on what came first."""
@@ -253,19 +262,23 @@ def make_rows(place, before, after):
         strokes, local = (before, time + duration(before)) if tick < 0 else (after, time)
         height, slid, tilt, aside, mode = way_at(strokes, local)
         hand = added(place.contact, scaled(normal, place.tool_radius + height), scaled(slide, slid),
-                     scaled(tilt_axis, aside), tremor(time))
+                     scaled(tilt_axis, aside), (0.0, 0.0, 0.0) if place.is_smooth else tremor(time))
         # Rotations about one axis: interpolating the angle is the slerp.
         turn = quaternion_product(rotation_about(tilt_axis, math.radians(tilt)), upright)
-        position = (1e-3 * GRID_MM * round(x / GRID_MM) for x in hand)
-        cells = [f"{(tick - first) / RATE_HZ:.3f}", *(f"{x:.5f}" for x in position), *(f"{q:.6f}" for q in turn), mode]
-        yield ",".join("0.000000" if cell == "-0.000000" else cell for cell in cells) + "\n"
+        if place.is_smooth:
+            position = (f"{1e-3 * x:.9f}" for x in hand)
+        else:
+            position = (f"{1e-3 * GRID_MM * round(x / GRID_MM):.5f}" for x in hand)
+        cells = [f"{(tick - first) / RATE_HZ:.3f}", *position, *(f"{q:.6f}" for q in turn), mode]
+        yield ",".join(without_minus_zero(cell) for cell in cells) + "\n"
 
 
 def make_trace(place, before, after):
     """The whole file, as the format in src/device/README.md wants it."""
     body = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,mode\n" + "".join(make_rows(place, before, after))
     digest = hashlib.sha256(body.encode()).hexdigest()
-    return f"# argil-trace: 1\n# device: {DEVICE}\n# units: m\n# rate_hz: {RATE_HZ}\n# sha256: {digest}\n{body}"
+    device = SMOOTH if place.is_smooth else DEVICE
+    return f"# argil-trace: 1\n# device: {device}\n# units: m\n# rate_hz: {RATE_HZ}\n# sha256: {digest}\n{body}"
 
 
 def make_approach():

@@ -53,7 +53,9 @@ class Traces(unittest.TestCase):
             self.assertIn(f"# sha256: {hashlib.sha256(body).hexdigest()}".encode(), text)
 
     def test_samples_come_at_1_khz_on_the_grid_with_unit_quaternions(self):
-        for name in make_traces.TRACES:
+        for name, (place, _, _) in make_traces.TRACES.items():
+            if place.is_smooth:
+                continue
             _, rows = read(name)
             for number, row in enumerate(rows):
                 self.assertEqual(row[0], f"{number / 1000:.3f}")
@@ -61,6 +63,13 @@ class Traces(unittest.TestCase):
                     micrometres = round(1e6 * float(cell))
                     self.assertEqual(micrometres % 60, 0, f"{name} row {number}: {cell}")
                 self.assertAlmostEqual(math.hypot(*map(float, row[4:8])), 1.0, delta=2e-6)  # 6 printed digits
+
+    def test_a_smooth_press_is_half_way_at_half_time_and_fastest_there(self):
+        _, rows = read("block_light.csv")
+        z = [float(row[3]) for row in rows[100:221]]  # the press, 0.12 s, from 1 mm above to 2 mm within
+        self.assertAlmostEqual(z[0] - z[120], 0.003, delta=1e-9)
+        self.assertAlmostEqual(z[60], 0.5 * (z[0] + z[120]), delta=1e-9)
+        self.assertAlmostEqual((z[59] - z[61]) / 0.002, 15 / 8 * 0.003 / 0.12, delta=1e-4)
 
     def test_the_wet_motion_presses_with_the_samples_of_the_dry_one(self):
         _, dry = read("press_flank.csv")
