@@ -71,6 +71,8 @@ void Simulation::exchange_contact_state(Archive& archive) {
   Vec3 gate_force = m_gate.last_force();
   archive.number("hand/gate_count", gate_count);
   archive.array("hand/gate_last_force", gate_force);
+  Tick gate_withdrawn = m_gate.withdrawn();
+  archive.number("hand/gate_withdrawn", gate_withdrawn);
 
   contact::ContactState inside = m_detector.state();
   archive.list("contact/tool_vertex", inside.tool_vertex);
@@ -90,7 +92,7 @@ void Simulation::exchange_contact_state(Archive& archive) {
   exchange_springs(archive);
   m_compliance.exchange_state(archive, m_surface);
   if (!archive.is_restoring()) return;
-  m_gate.restore(gate_count, gate_force);
+  m_gate.restore(gate_count, gate_force, gate_withdrawn);
   inside.edges.clear();
   for (std::size_t i = 0; i < tool_edge.size(); ++i) inside.edges.emplace_back(tool_edge[i], body_edge.at(i));
   m_detector.restore(inside);

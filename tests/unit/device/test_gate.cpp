@@ -93,12 +93,66 @@ TEST(OutputGate, LimitsTheRateOfASuddenReversal) {
 }
 
 TEST(OutputGate, WorksInTheStatedOrder) {
-  // Clamp 100 → 4, ramp at half: 2, slew 1 a period from 0: 1. Slew before ramp would give 0.5.
-  OutputGate gate(limits(4.0, 1.0 / kPeriod, 2 * kPeriod), kPeriod);
+  // Second period: clamp 100 → 4, slew from 1 by 1: 2, ramp at a quarter: 0.5, watchdog at a half: 0.25.
+  // Ramp before slew would give min(1, 1) = 1, slew before clamp the same as here but without its event.
+  DeviceLimits l = limits(4.0, 1.0 / kPeriod, 4 * kPeriod);
+  l.watchdog.release_s = 2 * kPeriod;
+  OutputGate gate(l, kPeriod);
   EXPECT_EQ(gate.apply(Vec3(100, 0, 0), Vec3::Zero()).force.x(), 0.0);
-  const GatedForce out = gate.apply(Vec3(100, 0, 0), Vec3::Zero());
-  EXPECT_NEAR(out.force.x(), 1.0, 1e-15);
-  EXPECT_EQ(out.events, kGateClamped | kGateRamp | kGateSlew);
+  const GatedForce out = gate.apply(Vec3(100, 0, 0), Vec3::Zero(), HandFeed::stale);
+  EXPECT_NEAR(out.force.x(), 0.25, 1e-15);
+  EXPECT_EQ(out.events, kGateClamped | kGateSlew | kGateRamp | kGateWatchdog);
+}
+
+TEST(OutputGate, SendsNothingAndLetsTheRampWaitBeforeTheFirstSample) {
+  OutputGate gate(limits(3.3, kNoSlew, 2 * kPeriod), kPeriod);
+  for (int tick = 0; tick < 10; ++tick) {
+    const GatedForce out = gate.apply(Vec3(2, kNaN, 0), Vec3(0, 1, 0), HandFeed::none);
+    EXPECT_EQ(out.force, Vec3::Zero());
+    EXPECT_EQ(out.torque, Vec3::Zero());
+    EXPECT_EQ(out.events, kGateNoSample);
+  }
+  for (const double share : {0.0, 0.5, 1.0})
+    EXPECT_EQ(gate.apply(Vec3(2, 0, 0), Vec3::Zero()).force.x(), 2.0 * share);
+}
+
+TEST(OutputGate, LetsGoOfAStaleForceAndComesBackByTheSameRamp) {
+  DeviceLimits l = limits(3.3, kNoSlew);
+  l.watchdog.release_s = 4 * kPeriod;
+  OutputGate gate(l, kPeriod);
+  const auto x = [&](HandFeed feed) { return gate.apply(Vec3(2, 0, 0), Vec3(0, 0, 1), feed); };
+  EXPECT_EQ(x(HandFeed::fresh).force.x(), 2.0);
+  for (const double share : {0.75, 0.5, 0.25, 0.0, 0.0, 0.0}) {
+    const GatedForce out = x(HandFeed::stale);
+    EXPECT_EQ(out.force.x(), 2.0 * share);
+    EXPECT_EQ(out.torque.z(), share);
+    EXPECT_EQ(out.events, kGateWatchdog);
+  }
+  for (const double share : {0.25, 0.5, 0.75}) {
+    const GatedForce out = x(HandFeed::fresh);
+    EXPECT_EQ(out.force.x(), 2.0 * share);
+    EXPECT_EQ(out.events, kGateWatchdog);
+  }
+  EXPECT_EQ(x(HandFeed::fresh).force.x(), 2.0);
+  EXPECT_EQ(x(HandFeed::fresh).events, kGateNone);
+}
+
+TEST(OutputGate, LetsGoAtOnceWhenItsReleaseTakesNoTime) {
+  DeviceLimits l = limits(3.3, kNoSlew);
+  l.watchdog.release_s = 0.0;
+  OutputGate gate(l, kPeriod);
+  EXPECT_EQ(gate.apply(Vec3(2, 0, 0), Vec3::Zero(), HandFeed::stale).force, Vec3::Zero());
+  EXPECT_EQ(gate.apply(Vec3(2, 0, 0), Vec3::Zero()).force.x(), 2.0);
+}
+
+TEST(JudgeFeed, IsStaleWhenSamplesOrPhysicsAreTooOldOrTheirAgeIsNoNumber) {
+  const WatchdogLimits l{0.02, 0.1, 0.05};
+  EXPECT_EQ(judge_feed(l, 1, 0.02, 0.1), HandFeed::fresh);
+  EXPECT_EQ(judge_feed(l, 1, 0.021, 0.0), HandFeed::stale);
+  EXPECT_EQ(judge_feed(l, 1, 0.0, 0.101), HandFeed::stale);
+  EXPECT_EQ(judge_feed(l, 1, kNaN, 0.0), HandFeed::stale);
+  EXPECT_EQ(judge_feed(l, 1, 0.0, kNaN), HandFeed::stale);
+  EXPECT_EQ(judge_feed(l, 0, 0.0, 0.0), HandFeed::none);
 }
 
 TEST(OutputGate, ReleasesTheHandAtTheSlewRateWhenTheForceStopsBeingFinite) {
@@ -120,7 +174,11 @@ TEST(OutputGate, ClampsTorqueOnlyWhenALimitIsStated) {
 
 TEST(OutputGate, KeepsItsPromiseForHostileSequences) {
   Rng rng(7, "gate");
-  OutputGate gate(limits(3.3, 800.0, 0.01, 0.1), kPeriod);
+  DeviceLimits l = limits(3.3, 800.0, 0.01, 0.1);
+  l.watchdog.release_s = 0.02;
+  OutputGate gate(l, kPeriod);
+  constexpr int kRampPeriods = 10;
+  constexpr double kStep = 0.8 + 3.3 / 20;  // a period's slew, and its share of the watchdog's release
   const double hostile[] = {kNaN, kInf, -kInf, 1e300, -1.79e308, 5e-324, -0.0, 0.0};
   Vec3 last = Vec3::Zero();
   for (int i = 0; i < 20000; ++i) {
@@ -130,12 +188,13 @@ TEST(OutputGate, KeepsItsPromiseForHostileSequences) {
     };
     const Vec3 force(draw(), draw(), draw());
     const Vec3 torque(draw(), draw(), draw());
-    const GatedForce out = gate.apply(force, torque);
+    const auto feed = rng.next_bits() % 2 == 0 ? HandFeed::fresh : HandFeed::stale;
+    const GatedForce out = gate.apply(force, torque, feed);
     ASSERT_TRUE(out.force.allFinite() && out.torque.allFinite()) << i;
     constexpr double kRounding = 4e-16;  // a few ulps of the norm, relative
     ASSERT_LE(out.force.norm(), 3.3 * (1 + kRounding)) << i;
     ASSERT_LE(out.torque.norm(), 0.1 * (1 + kRounding)) << i;
-    ASSERT_LE((out.force - last).norm(), 0.8 + 2e-15) << i;
+    ASSERT_LE((out.force - last).norm(), kStep + (i < kRampPeriods ? 3.3 / kRampPeriods : 0.0) + 2e-15) << i;
     last = out.force;
   }
 }
@@ -143,9 +202,9 @@ TEST(OutputGate, KeepsItsPromiseForHostileSequences) {
 TEST(OutputGate, GoesOnToTheSameBitsAfterRestore) {
   const DeviceLimits l = limits(3.0, 300.0, 0.005);
   OutputGate gate(l, kPeriod);
-  for (int i = 0; i < 3; ++i) gate.apply(Vec3(2, 1, 0), Vec3::Zero());
+  for (int i = 0; i < 3; ++i) gate.apply(Vec3(2, 1, 0), Vec3::Zero(), HandFeed::stale);
   OutputGate other(l, kPeriod);
-  other.restore(gate.count(), gate.last_force());
+  other.restore(gate.count(), gate.last_force(), gate.withdrawn());
   for (int i = 0; i < 10; ++i) {
     EXPECT_EQ(other.apply(Vec3(2, 1, 0), Vec3(1, 0, 0)).force,
               gate.apply(Vec3(2, 1, 0), Vec3(1, 0, 0)).force);
