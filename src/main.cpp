@@ -17,6 +17,7 @@
 #include "scenario/probe.h"
 #include "scenario/tolerance_file.h"
 #include "study/chart.h"
+#include "study/export.h"
 #include "study/files.h"
 #include "study/identity.h"
 #include "study/run.h"
@@ -125,6 +126,19 @@ int main(int argc, char** argv) {
   CLI::App* info = app.add_subcommand("info", "describe a result file");
   info->add_option("FILE", first, "result file")->required();
   info->callback([&] { code = print_info(first); });
+
+  study::ExportOptions exported;
+  CLI::App* exporting = app.add_subcommand("export", "write a result for a browser");
+  exporting->add_option("FILE", exported.result, "result file")->required();
+  exporting->add_option("--html", exported.html, "one page that shows the result without a network")
+      ->required();
+  exporting
+      ->add_option("--megabytes", exported.megabytes,
+                   "for the page's frames before compression; fewer are shown")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  exporting->add_flag("--cage", exported.cage, "show the cage also where there is a skin");
+  exporting->callback([&] { code = study::export_result(exported); });
 
   CLI::App* compare =
       app.add_subcommand("compare", "compare two result files bit by bit, or within tolerances");

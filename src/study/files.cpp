@@ -9,13 +9,6 @@
 namespace argil::study {
 namespace {
 
-/// `input` is called `what` in the message.
-void require_other_file(const std::string& output, const std::string& input, const std::string& what) {
-  std::error_code missing;  // a file that is not there is no input
-  if (std::filesystem::equivalent(output, input, missing))
-    throw InputError(output, "", "is " + what + " and would be overwritten", "give another name to -o");
-}
-
 bool has_ending(const std::string& file, const char* ending) {
   return std::filesystem::path(file).extension() == ending;
 }
@@ -30,6 +23,14 @@ void require_input_file(const std::string& file, const std::string& place) {
     throw InputError(file, place, "is a folder", "name a file in it");
   if (std::filesystem::is_character_file(file, error))  // may never end
     throw InputError(file, place, "is a device", "name a file");
+}
+
+void require_other_file(const std::string& output, const std::string& input, const std::string& what,
+                        const std::string& option) {
+  std::error_code missing;  // a file that is not there is no input
+  if (std::filesystem::equivalent(output, input, missing))
+    throw InputError(output, "", "is " + what + " and would be overwritten",
+                     "give another name to " + option);
 }
 
 std::string hash_file(const std::string& file) {

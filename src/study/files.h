@@ -10,6 +10,11 @@ namespace argil::study {
 /// read for any other reason is an IoError of its reader.)
 void require_input_file(const std::string& file, const std::string& place = "");
 
+/// Refuses an output that is the file `input`, which is called `what` in the message; links count as what
+/// they lead to. Throws InputError.
+void require_other_file(const std::string& output, const std::string& input, const std::string& what,
+                        const std::string& option = "-o");
+
 /// SHA-256 of a file's bytes.
 std::string hash_file(const std::string& file);
 

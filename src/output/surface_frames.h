@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "output/result_reader.h"
+
+namespace argil::output {
+
+/// The surface of a body as one looks at it: its skin, or the boundary of its cage.
+class SurfaceFrames {
+ public:
+  /// Takes the skin where there is one, unless `wants_cage`. Throws InputError when there are no frames.
+  SurfaceFrames(const ResultReader& reader, bool wants_cage);
+
+  bool is_skin() const { return m_is_skin; }
+  const Triangles& triangles() const { return m_triangles; }  ///< numbers of the vertices below, outward
+  int num_vertices() const { return m_num_vertices; }
+  const std::vector<FrameInfo>& frames() const { return m_frames; }  ///< all, in the order of ticks
+
+  /// The surface at one frame; fields at its vertices.
+  struct Shot {
+    Points position;       ///< [m]
+    Field saturation;      ///< 0 to 1
+    Field plastic_strain;  ///< ‖ε_p‖_F; on a skin that of the containing tet
+    Field influence;       ///< region of influence, 0 to 1; empty on a cage
+  };
+  Shot read(const FrameInfo& info) const;
+
+ private:
+  Field average_at_vertices(const Field& per_tet) const;
+  void number_surface_vertices(const Triangles& boundary);
+
+  const ResultReader& m_reader;
+  Tets m_tets;
+  std::vector<FrameInfo> m_frames;
+  bool m_is_skin = false;
+  int m_num_vertices = 0;
+  Triangles m_triangles;
+  std::vector<int> m_cage_vertices;  // of the surface; none with a skin
+  std::vector<int> m_skin_tets;      // containing tet of each skin vertex; none without a skin
+};
+
+}  // namespace argil::output

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+namespace argil::study {
+
+/// How `argil export` was called: exactly one of `html` and `vtu` is given.
+struct ExportOptions {
+  std::string result;
+  std::string html;         ///< page to write
+  double megabytes = 12.0;  ///< [MB] that the frames of a page may take before compression
+  bool cage = false;        ///< show the cage's boundary also where there is a skin
+};
+
+/// Writes what other programs look at results with; says on standard output what it wrote and left out.
+/// Returns kDone. Throws InputError, IoError.
+int export_result(const ExportOptions& options);
+
+}  // namespace argil::study

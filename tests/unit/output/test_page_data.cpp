@@ -1,0 +1,125 @@
+// The numbers of a page: which frames it shows, and what a reader of its block gets back.
+#include "output/page_data.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "base/error.h"
+#include "output/html_page.h"
+#include "records.h"
+#include "support/temp_folder.h"
+
+namespace argil::output {
+namespace {
+
+using argil::test::TempFolder;
+
+std::vector<FrameInfo> make_frames(int count) {
+  std::vector<FrameInfo> frames;
+  for (int i = 0; i < count; ++i) frames.push_back({std::to_string(i), 10 * i, 0.01 * i, ""});
+  return frames;
+}
+
+std::vector<Tick> ticks_of(const std::vector<FrameInfo>& frames) {
+  std::vector<Tick> ticks;
+  for (const FrameInfo& frame : frames) ticks.push_back(frame.tick);
+  return ticks;
+}
+
+TEST(ChooseFrames, KeepsAllThatFit) {
+  EXPECT_EQ(choose_frames(make_frames(5), 5, 0).size(), 5U);
+}
+
+TEST(ChooseFrames, KeepsFirstLastAndEqualDistances) {
+  EXPECT_EQ(ticks_of(choose_frames(make_frames(101), 5, 500)), (std::vector<Tick>{0, 250, 500, 750, 1000}));
+}
+
+TEST(ChooseFrames, PutsTheFrameOfTheWantedTickInPlaceOfTheNearest) {
+  EXPECT_EQ(ticks_of(choose_frames(make_frames(101), 5, 604)), (std::vector<Tick>{0, 250, 600, 750, 1000}));
+}
+
+TEST(ChooseFrames, OfTwoKeepsFirstAndLast) {
+  EXPECT_EQ(ticks_of(choose_frames(make_frames(101), 2, 604)), (std::vector<Tick>{0, 1000}));
+}
+
+template <class T>
+std::vector<T> read_section(const PageBlock& block, const std::string& name) {
+  for (const PageSection& section : block.sections())
+    if (section.name == name) {
+      std::vector<T> values(section.length);
+      std::memcpy(values.data(), block.bytes().data() + section.offset, section.length * sizeof(T));
+      return values;
+    }
+  ADD_FAILURE() << "no section " << name;
+  return {};
+}
+
+TEST(AddForce, GivesTheRangeOfAsManyTicksAsDoNotFit) {
+  std::vector<sim::HapticRecord> records(8001);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    records[i].time = 0.001 * static_cast<double>(i);
+    records[i].force = Vec3(0, 0, -static_cast<double>(i));  // its size is the tick's number
+  }
+  PageBlock block;
+  ASSERT_EQ(add_force(block, records), 3U);  // 8001 over 4000, rounded up
+  const std::vector<float> time = read_section<float>(block, "force_time");
+  const std::vector<float> low = read_section<float>(block, "force_low");
+  const std::vector<float> high = read_section<float>(block, "force_high");
+  ASSERT_EQ(time.size(), 2667U);
+  EXPECT_FLOAT_EQ(time[1], 0.003F);
+  EXPECT_EQ(low[1], 3.0F);
+  EXPECT_EQ(high[1], 5.0F);
+  EXPECT_EQ(high.back(), 8000.0F);
+}
+
+TEST(AddSurface, DifferencesAddUpToTheRoundedSkin) {
+  const TempFolder folder;
+  test::write_run(folder / "run.h5", 21, false);
+  const ResultReader reader(folder / "run.h5");
+  const SurfaceFrames surface(reader, false);
+  PageBlock block;
+  const PageSurface page = add_surface(block, surface, surface.frames());
+  std::vector<std::uint16_t> position = read_section<std::uint16_t>(block, "position");
+  const std::size_t row = 3 * static_cast<std::size_t>(surface.num_vertices());
+  ASSERT_EQ(position.size(), 3 * row);
+  for (std::size_t i = row; i < position.size(); ++i)
+    position[i] = static_cast<std::uint16_t>(position[i] + position[i - row]);
+  // records.h: the boundary's vertices are 0, 1, 2, 4 in the order 0 1 2, … of its triangles, all moved by
+  // 0.001 times the tick.
+  const Points rest = test::make_header(false).rest_position;
+  const int vertices[] = {0, 2, 1, 4};
+  for (std::size_t frame = 0; frame < 3; ++frame)
+    for (std::size_t v = 0; v < 4; ++v)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double expected = rest(static_cast<int>(k), vertices[v]) + 0.01 * static_cast<double>(frame);
+        const double seen = page.low(static_cast<int>(k)) + page.step * position[frame * row + 3 * v + k];
+        EXPECT_NEAR(seen, expected, 0.5001 * page.step) << frame << ' ' << v << ' ' << k;
+      }
+}
+
+TEST(WriteHtml, RefusesAViewerWithoutAPlaceForData) {
+  const TempFolder folder;
+  test::write_run(folder / "run.h5", 11);
+  const std::string viewer = folder.write("viewer.html", "<html></html>");
+  ARGIL_EXPECT_THROW_WITH(write_html(folder / "run.h5", folder / "page.html", {viewer}), InputError,
+                          "run scripts/build_viewer again");
+}
+
+TEST(WriteHtml, RefusesAResultWithoutFrames) {
+  const TempFolder folder;
+  test::write_run(folder / "run.h5", 0);
+  const std::string viewer = folder.write("viewer.html", "<!-- argil:data -->");
+  ARGIL_EXPECT_THROW_WITH(write_html(folder / "run.h5", folder / "page.html", {viewer}), InputError,
+                          "/frames: has no frames");
+}
+
+TEST(WriteHtml, SaysWhyItCannotWrite) {
+  const TempFolder folder;
+  test::write_run(folder / "run.h5", 11, false);
+  const std::string viewer = folder.write("viewer.html", "<!-- argil:data -->");
+  ARGIL_EXPECT_THROW_WITH(write_html(folder / "run.h5", "/dev/full", {viewer}), IoError, "No space left");
+}
+
+}  // namespace
+}  // namespace argil::output

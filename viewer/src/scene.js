@@ -1,0 +1,130 @@
+// The body, the tool and the force, drawn by three.js. Lengths are metres, z points up.
+
+import {
+  BufferAttribute, BufferGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide, Group,
+  HemisphereLight, Mesh, MeshStandardMaterial, PerspectiveCamera, Quaternion, Scene, Vector3, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+
+const OPENING_DEGREES = 30;
+const UP = new Vector3(0, 1, 0); // of three.js' own cylinders
+
+function makeBody(indices, numVertices) {
+  const geometry = new BufferGeometry();
+  geometry.setIndex(new BufferAttribute(indices, 1));
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(3 * numVertices), 3));
+  geometry.setAttribute("color", new BufferAttribute(new Float32Array(3 * numVertices), 3));
+  return new Mesh(geometry, new MeshStandardMaterial({ vertexColors: true, roughness: 0.75, side: DoubleSide }));
+}
+
+function makeTool(vertices, indices) {
+  const geometry = new BufferGeometry();
+  geometry.setIndex(new BufferAttribute(indices, 1));
+  geometry.setAttribute("position", new BufferAttribute(vertices, 3));
+  geometry.computeVertexNormals();
+  return new Mesh(geometry, new MeshStandardMaterial({
+    color: 0xd7e0ea, roughness: 0.3, transparent: true, opacity: 0.45, depthWrite: false,
+  }));
+}
+
+/** An arrow of length 1 along +y, from the origin. */
+function makeArrow() {
+  const material = new MeshStandardMaterial({ color: 0x191a1f, roughness: 0.6 });
+  const shaft = new Mesh(new CylinderGeometry(0.03, 0.03, 0.68, 20), material);
+  shaft.position.y = 0.34;
+  const head = new Mesh(new ConeGeometry(0.085, 0.32, 28), material);
+  head.position.y = 0.84;
+  return new Group().add(shaft, head);
+}
+
+/** Extent of all frames: the grid that the positions were rounded to. */
+function extentOf(result) {
+  const low = new Vector3(...result.grid.low);
+  const high = new Vector3(...result.grid.high);
+  return { middle: low.clone().add(high).multiplyScalar(0.5), size: high.sub(low).length() };
+}
+
+export class View {
+  /** Throws where the browser has no WebGL. */
+  constructor(host, result) {
+    this.host = host;
+    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    host.append(this.renderer.domElement);
+    this.extent = extentOf(result);
+    this.peak = result.peak_force_N;
+    const { arrays } = result;
+    this.body = makeBody(arrays.triangles, result.num_vertices);
+    this.tool = makeTool(arrays.tool_vertices, arrays.tool_triangles);
+    this.arrow = makeArrow();
+    this.scene = new Scene();
+    this.scene.background = new Color(0xf6f7f8);
+    this.scene.add(this.body, this.tool, this.arrow);
+    this.addCamera(result);
+    new ResizeObserver(() => this.resize()).observe(host);
+    this.resize();
+  }
+
+  addCamera(result) {
+    const { size } = this.extent;
+    this.camera = new PerspectiveCamera(OPENING_DEGREES, 1, size / 50, size * 20);
+    this.camera.up.set(0, 0, 1);
+    this.scene.add(this.camera, new HemisphereLight(0xffffff, 0xb9a79c, 1.5));
+    for (const [x, y, z, brightness] of [[-0.6, 0.8, 1.0, 2.0], [1.0, 0.1, 0.6, 0.7]]) {
+      const light = new DirectionalLight(0xffffff, brightness); // moves with the eye
+      light.position.set(x * size, y * size, z * size);
+      light.target = this.body;
+      this.camera.add(light);
+    }
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener("change", () => this.draw());
+    // From the side on which the tool is when it feels most.
+    this.side = result.touched[1] <= this.extent.middle.y ? -1 : 1;
+    this.reset();
+  }
+
+  reset() {
+    const away = new Vector3(0.5, 0.92 * this.side, 0.36).normalize();
+    const distance = (0.42 * this.extent.size) / Math.tan((OPENING_DEGREES * Math.PI) / 360);
+    this.camera.position.copy(this.extent.middle).addScaledVector(away, distance);
+    this.controls.target.copy(this.extent.middle);
+    this.controls.update();
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  get positions() { return this.body.geometry.attributes.position.array; }
+  get colours() { return this.body.geometry.attributes.color.array; }
+
+  /** After new numbers were put into `positions` and `colours`. */
+  updateBody() {
+    const { geometry } = this.body;
+    geometry.attributes.position.needsUpdate = true;
+    geometry.attributes.color.needsUpdate = true;
+    geometry.computeVertexNormals();
+    geometry.computeBoundingSphere();
+  }
+
+  /** Tool and arrow of a frame; the arrow is as long as the force is large, the peak a third of the scene. */
+  placeTool(frame, isShown) {
+    const force = new Vector3(...frame.force_N);
+    const size = force.length();
+    this.tool.visible = isShown && frame.has_tool;
+    this.arrow.visible = isShown && frame.has_tool && size > 1e-3 * this.peak;
+    this.tool.position.set(...frame.tool_position_m);
+    this.tool.quaternion.set(...frame.tool_orientation);
+    if (!this.arrow.visible) return;
+    this.arrow.position.copy(this.tool.position);
+    this.arrow.quaternion.copy(new Quaternion().setFromUnitVectors(UP, force.normalize()));
+    this.arrow.scale.setScalar((0.33 * this.extent.size * size) / this.peak);
+  }
+
+  draw() { this.renderer.render(this.scene, this.camera); }
+}
