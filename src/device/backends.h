@@ -9,6 +9,8 @@
 namespace argil::device::internal {
 
 std::unique_ptr<HapticDevice> make_simulated(const DeviceOptions& options);
+std::unique_ptr<HapticDevice> make_haply(const std::string& host, const std::string& port,
+                                         const DeviceOptions& options);
 
 /// `v`, or zero when it is not finite: no device renders what is no force.
 inline Vec3 finite_or_zero(const Vec3& v) {

@@ -8,17 +8,46 @@
 
 namespace argil::device {
 
+namespace {
+
+constexpr const char* kHaplyPort = "10001";
+
+[[noreturn]] void refuse(const std::string& name, const std::string& problem, const std::string& remedy) {
+  throw InputError("--device " + name, "", problem, remedy);
+}
+
+/// "", "HOST" or "HOST:PORT".
+std::unique_ptr<HapticDevice> make_haply_at(const std::string& place, const DeviceOptions& options) {
+  const std::size_t colon = place.rfind(':');
+  const std::string host = place.substr(0, colon);
+  const std::string port = colon == std::string::npos ? kHaplyPort : place.substr(colon + 1);
+  const bool is_number = !port.empty() && port.size() <= 5 &&
+                         port.find_first_not_of("0123456789") == std::string::npos &&
+                         std::stoi(port) <= 65535;
+  if (!is_number || host.find(':') != std::string::npos || (host.empty() && colon != std::string::npos))
+    refuse("haply:" + place, "no host and port", "write haply, haply:HOST or haply:HOST:PORT");
+  return internal::make_haply(host.empty() ? "127.0.0.1" : host, port, options);
+}
+
+}  // namespace
+
 std::vector<DeviceKind> device_kinds() {
-  return {{"simulated", "a hand model that follows a trace and yields to the force"}};
+  return {{"simulated", "a hand model that follows a trace and yields to the force"},
+          {"haply", "Inverse3 by the Haply Inverse Service on this machine, or haply:HOST:PORT"}};
 }
 
 std::unique_ptr<HapticDevice> make_device(const std::string& name, const DeviceOptions& options) {
   if (!(options.period > 0.0 && options.period <= 1.0))
-    throw InputError("--device " + name, "period", std::to_string(options.period) + " s",
-                     "give more than 0 and at most 1 s");
+    refuse(name, "period of " + std::to_string(options.period) + " s", "give more than 0 and at most 1 s");
+  if (!(options.stale_after > 0.0))
+    refuse(name, "stale after " + std::to_string(options.stale_after) + " s", "give more than 0 s");
+  const std::size_t colon = name.find(':');
+  const std::string kind = name.substr(0, colon);
+  const std::string place = colon == std::string::npos ? "" : name.substr(colon + 1);
   if (name == "simulated") return internal::make_simulated(options);
+  if (kind == "haply") return make_haply_at(place, options);
   std::string known;
-  for (const DeviceKind& kind : device_kinds()) known += (known.empty() ? "" : ", ") + kind.name;
+  for (const DeviceKind& each : device_kinds()) known += (known.empty() ? "" : ", ") + each.name;
   throw InputError("--device", "", "unknown device \"" + name + "\"", "choose one of " + known);
 }
 

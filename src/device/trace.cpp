@@ -96,14 +96,14 @@ bool is_identity(const DeviceToWorld& map) {
          map.rotation.coeffs() == Quat::Identity().coeffs();
 }
 
+}  // namespace
+
 // The identity is skipped: multiplying by it would turn −0 into 0, and a replay must give the recorded bits.
 void move_to_world(const DeviceToWorld& map, DeviceSample& sample) {
   if (is_identity(map)) return;
   sample.position = map.rotation * (map.scale * sample.position) + map.translation;
   sample.orientation = make_unit(map.rotation * sample.orientation);
 }
-
-}  // namespace
 
 Trace read_trace(const std::string& file, const TraceOptions& options) {
   const std::string bytes = read_file(file);

@@ -40,6 +40,9 @@ Trace read_trace(const std::string& file, const TraceOptions& options);
 /// rate is exact. O(log n), no allocation.
 DeviceSample interpolate(const Trace& trace, double time);
 
+/// A sample in device coordinates becomes one in world coordinates.
+void move_to_world(const DeviceToWorld& map, DeviceSample& sample);
+
 /// q scaled to unit length; unchanged to the bit when its norm is 1 within rounding, so that a recorded unit
 /// quaternion is read back as it was. Requires a finite q that is not zero.
 Quat make_unit(const Quat& q);
