@@ -1,6 +1,7 @@
 #include "device/devices.h"
 
 #include <chrono>
+#include <cstdio>
 #include <thread>
 
 #include "base/error.h"
@@ -29,11 +30,34 @@ std::unique_ptr<HapticDevice> make_haply_at(const std::string& place, const Devi
   return internal::make_haply(host.empty() ? "127.0.0.1" : host, port, options);
 }
 
+/// "NAME, 3.3 N at most, …", and "not stated" for what the device does not say.
+std::string print(const DeviceInfo& info) {
+  const auto limit = [](double value, const char* unit, const char* of) {
+    char text[64];
+    std::snprintf(text, sizeof text, value > 0.0 ? "%.4g %s" : "not stated", value, unit);
+    return std::string(", ") + of + " " + text;
+  };
+  std::string text = info.name;
+  if (!info.has_force) {
+    text += ", no force";
+  } else {
+    text += limit(info.max_force, "N", "largest force") + limit(info.max_torque, "N m", "torque") +
+            limit(info.max_stiffness, "N/m", "stiffness");
+  }
+  text += limit(info.rate_hz, "Hz", "rate");
+  char edges[96];
+  const Vec3& w = info.workspace;
+  std::snprintf(edges, sizeof edges, ", workspace %.3g x %.3g x %.3g m", w.x(), w.y(), w.z());
+  return text + (w.minCoeff() > 0.0 ? edges : ", workspace not stated");
+}
+
 }  // namespace
 
 std::vector<DeviceKind> device_kinds() {
   return {{"simulated", "a hand model that follows a trace and yields to the force"},
-          {"haply", "Inverse3 by the Haply Inverse Service on this machine, or haply:HOST:PORT"}};
+          {"haply", "Inverse3 by the Haply Inverse Service on this machine, or haply:HOST:PORT"},
+          {"spacenav", "6-DoF controller by spacenavd, without force"},
+          {"plugin", "plugin:FILE[,ARGUMENT], a shared library of a device's own (plugin_api.h)"}};
 }
 
 std::unique_ptr<HapticDevice> make_device(const std::string& name, const DeviceOptions& options) {
@@ -46,9 +70,39 @@ std::unique_ptr<HapticDevice> make_device(const std::string& name, const DeviceO
   const std::string place = colon == std::string::npos ? "" : name.substr(colon + 1);
   if (name == "simulated") return internal::make_simulated(options);
   if (kind == "haply") return make_haply_at(place, options);
+  if (kind == "plugin" && !place.empty()) return internal::make_plugin(place, options);
+  if (name == "spacenav") {
+#ifdef ARGIL_HAS_SPNAV
+    return internal::make_spacenav(options);
+#else
+    refuse(name, "argil was built without libspnav", "install libspnav-dev and build again");
+#endif
+  }
   std::string known;
   for (const DeviceKind& each : device_kinds()) known += (known.empty() ? "" : ", ") + each.name;
   throw InputError("--device", "", "unknown device \"" + name + "\"", "choose one of " + known);
+}
+
+std::string describe_devices(const std::vector<std::string>& names, double patience) {
+  DeviceOptions options;
+  const DeviceSample somewhere;
+  options.intent.time = {0.0, 1.0};
+  options.intent.samples = {somewhere, somewhere};
+  std::string text;
+  for (const std::string& name : names) {
+    std::string line;
+    try {
+      const std::unique_ptr<HapticDevice> device = make_device(name, options);
+      device->start();
+      wait_until_ready(*device, patience);
+      line = name + ": " + std::string(to_string(device->state())) + ", " + print(device->info());
+      if (const std::string problem = device->problem(); !problem.empty()) line += " (" + problem + ")";
+    } catch (const InputError& error) {
+      line = name + ": " + error.what();
+    }
+    text += line + '\n';
+  }
+  return text;
 }
 
 DeviceState wait_until_ready(const HapticDevice& device, double timeout) {

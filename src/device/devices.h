@@ -32,6 +32,10 @@ std::vector<DeviceKind> device_kinds();
 /// Throws InputError for any other name, for a simulated hand without an intent and for options out of range.
 std::unique_ptr<HapticDevice> make_device(const std::string& name, const DeviceOptions& options);
 
+/// A line for each name of what the device there is: state, name and limits, or why it is not there. Each is
+/// given so many seconds to answer.
+std::string describe_devices(const std::vector<std::string>& names, double patience);
+
 /// Waits until the device is ready or lost, or for so many seconds; what it is then.
 DeviceState wait_until_ready(const HapticDevice& device, double timeout);
 

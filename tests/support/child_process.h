@@ -14,7 +14,8 @@ namespace argil::test {
 /// for, at the end.
 class ChildProcess {
  public:
-  explicit ChildProcess(std::vector<std::string> command) {
+  /// Runs in `folder`, by default in this process's own.
+  explicit ChildProcess(std::vector<std::string> command, const std::string& folder = ".") {
     int input[2], output[2];
     if (pipe(input) != 0 || pipe(output) != 0) ADD_FAILURE() << "no pipe";
     std::vector<char*> arguments;
@@ -25,7 +26,7 @@ class ChildProcess {
       dup2(input[0], STDIN_FILENO);
       dup2(output[1], STDOUT_FILENO);
       for (const int end : {input[0], input[1], output[0], output[1]}) close(end);
-      execv(arguments[0], arguments.data());
+      if (chdir(folder.c_str()) == 0) execv(arguments[0], arguments.data());
       _exit(127);
     }
     close(input[0]);

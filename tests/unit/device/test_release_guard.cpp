@@ -1,0 +1,110 @@
+// Zero force when the process crashes, is told to end, or exits. The device is one of this test that writes a
+// byte when it is released.
+#include "device/release_guard.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <functional>
+#include <optional>
+
+namespace argil::device {
+namespace {
+
+class Tattler final : public HapticDevice {
+ public:
+  explicit Tattler(int pipe) : m_pipe(pipe) {}
+  void start() override {}
+  void stop() noexcept override {}
+  DevicePoll poll() noexcept override { return {}; }
+  void send(const Wrench&) noexcept override {}
+  void release() noexcept override { m_written += write(m_pipe, "r", 1); }
+  DeviceState state() const noexcept override { return DeviceState::ready; }
+  DeviceInfo info() const override { return {}; }
+  DeviceCounts counts() const override { return {}; }
+  std::string problem() const override { return {}; }
+
+ private:
+  int m_pipe;
+  ssize_t m_written = 0;
+};
+
+struct End {
+  std::string released;  ///< what the device wrote
+  int status;            ///< as waitpid gives it
+};
+
+Tattler* s_device = nullptr;  ///< of the child
+
+/// A child that does `something` under a guard.
+End run_guarded(const std::function<void(std::optional<ReleaseGuard>&)>& something) {
+  int ends[2];
+  EXPECT_EQ(pipe(ends), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    Tattler device(ends[1]);
+    s_device = &device;
+    std::optional<ReleaseGuard> guard;
+    guard.emplace(device);
+    something(guard);
+    _exit(0);
+  }
+  close(ends[1]);
+  End end{std::string(8, ' '), 0};
+  waitpid(child, &end.status, 0);
+  const ssize_t size = read(ends[0], end.released.data(), end.released.size());
+  end.released.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  close(ends[0]);
+  return end;
+}
+
+TEST(ReleaseGuard, ReleasesTheDeviceOnceAndLetsTheSignalGoOn) {
+  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGHUP}) {
+    const End end = run_guarded([&](auto& guard) {
+      guard.reset();
+      std::signal(number, SIG_DFL);  // sanitizers have handlers of their own
+      Tattler* const device = s_device;
+      guard.emplace(*device);
+      std::raise(number);
+    });
+    EXPECT_EQ(end.released, "r") << number;
+    EXPECT_TRUE(WIFSIGNALED(end.status)) << number;
+    EXPECT_EQ(WTERMSIG(end.status), number);
+  }
+}
+
+TEST(ReleaseGuard, ReleasesTheDeviceAtExit) {
+  const End end = run_guarded([](auto&) { std::exit(7); });  // NOLINT: a thread-safe exit is not asked for
+  EXPECT_EQ(end.released, "r");
+  EXPECT_EQ(WEXITSTATUS(end.status), 7);
+}
+
+TEST(ReleaseGuard, LeavesSignalsThatTheProgramHandlesToIt) {
+  const End end = run_guarded([](auto& guard) {
+    guard.reset();
+    std::signal(SIGTERM, SIG_IGN);
+    guard.emplace(*s_device);
+    std::raise(SIGTERM);
+  });
+  EXPECT_EQ(end.released, "");
+  EXPECT_TRUE(WIFEXITED(end.status));
+}
+
+TEST(ReleaseGuard, DoesNothingOnceItIsGone) {
+  const End end = run_guarded([](auto& guard) {
+    guard.reset();
+    std::raise(SIGTERM);
+  });
+  EXPECT_EQ(end.released, "");
+  EXPECT_EQ(WTERMSIG(end.status), SIGTERM);
+}
+
+}  // namespace
+}  // namespace argil::device
