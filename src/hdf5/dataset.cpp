@@ -81,6 +81,10 @@ void Dataset::append_raw(const void* data, Element element, std::uint64_t rows) 
     fail("cannot write", "");
 }
 
+void Dataset::flush() {
+  if (H5Dflush(id()) < 0) fail("cannot be written", m_path);
+}
+
 void Dataset::truncate(std::uint64_t rows) {
   Shape lengths = shape();
   if (lengths.empty() || rows > lengths[0])

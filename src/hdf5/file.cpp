@@ -111,6 +111,22 @@ File File::create(const std::string& name) {
   return file;
 }
 
+File File::create_shared(const std::string& name) {
+  start_library();
+  remove_unless_busy(find_real_name(name));
+  const Handle access = property(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110);
+  const Handle creation = property(H5Pcreate(H5P_FILE_CREATE));
+  H5Pset_obj_track_times(creation.id(), false);
+  Handle made = file_handle(H5Fcreate(name.c_str(), H5F_ACC_EXCL, creation.id(), access.id()));
+  if (made.id() < 0) refuse(name, "cannot be written");
+  return {std::move(made), name};
+}
+
+void File::let_others_read() {
+  if (H5Fstart_swmr_write(m_handle.id()) < 0) refuse(m_name, "cannot be shared");
+}
+
 File File::open_for_reading(const std::string& name) {
   start_library();
   recover(name);

@@ -107,6 +107,8 @@ class Dataset : public Object {
   void append(const T* data, std::uint64_t rows) {
     append_raw(data, element_of<T>(), rows);
   }
+  /// Shows what was appended to those who read a shared file.
+  void flush();
   /// Keeps the first `rows` rows.
   void truncate(std::uint64_t rows);
   /// The whole array, row by row, converted to T by the library (integers to real and back).
@@ -158,6 +160,11 @@ class File {
   /// as the content allows. It appears under its name at the first flush() and changes by whole flushes: a
   /// writer killed at any moment leaves the file of its last one (opening it may have to finish that).
   static File create(const std::string& name);
+  /// Makes a new file that others may read while it grows (single writer, multiple readers): after
+  /// let_others_read() only its series grow, and flush() of a dataset shows what was appended. Formats of
+  /// HDF5 1.10. A writer that is killed leaves it marked as open (h5clear -s).
+  static File create_shared(const std::string& name);
+  void let_others_read();
   static File open_for_reading(const std::string& name);
   static File open_for_writing(const std::string& name);  ///< existing file, exclusive
   File(File&&) noexcept = default;

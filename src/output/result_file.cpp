@@ -92,8 +92,9 @@ std::string dotted(std::string name) {
   return name;
 }
 
-bool ends_with_hz(const std::string& name) {
-  return name.ends_with("_Hz");
+const char* unit_of_timing(const std::string& name) {
+  if (name.ends_with("_Hz")) return "Hz";
+  return name == "instructions" || name.starts_with("num_") ? "1" : "s";
 }
 
 }  // namespace
@@ -106,6 +107,7 @@ struct ResultFile::Impl {
   Table haptic;
   Table physics;
   std::uint64_t num_frames = 0;
+  std::optional<Table> session, tick_timing, step_timing;
   bool is_broken = false;  // a write failed: what follows would have a hole
 
   // Runs a write; after one that failed nothing more is tried.
@@ -120,9 +122,15 @@ struct ResultFile::Impl {
     if (root.has(schema::kCheckpoint)) root.remove(schema::kCheckpoint);
   }
   void write_all() {
+    for (std::optional<Table>* table : {&session, &tick_timing, &step_timing})
+      if (*table) (*table)->write();
     haptic.write();
     physics.write();
     file.flush();
+  }
+  // Rows that another table's flush takes along.
+  void end_quiet_row(Table& table) {
+    if (table.end_row()) guarded([&] { table.write(); });
   }
 };
 
@@ -244,6 +252,57 @@ void ResultFile::append(const sim::Frame& frame) {
   });
 }
 
+void ResultFile::begin_session(const SessionHead& head, bool is_timed) {
+  ARGIL_ASSERT(m_impl && !m_impl->session, "one session a file");
+  m_impl->guarded([&] {
+    Group group = m_impl->root.create_group(schema::kSession);
+    group.write_attribute("device", head.device);
+    group.write_attribute("max_force_N", head.max_force);
+    const Vec4 orientation = head.start.orientation.coeffs();
+    const auto mode = static_cast<std::uint8_t>(head.start.mode);
+    group.write_array("start_position", head.start.position.data(), Shape{3}, false, schema::kStartPosition);
+    group.write_array("start_orientation", orientation.data(), Shape{4}, false, schema::kStartOrientation);
+    group.write_array("start_mode", &mode, Shape{1}, false, schema::kStartMode);
+    m_impl->session = Table::create(group, schema::kSessionTick, schema::kHapticChunk);
+    if (!is_timed) return;
+    m_impl->tick_timing =
+        Table::create(m_impl->timing.create_group("ticks"), schema::kTickTiming, schema::kHapticChunk);
+    m_impl->step_timing =
+        Table::create(m_impl->timing.create_group("steps"), schema::kStepTiming, schema::kPhysicsChunk);
+  });
+}
+
+void ResultFile::append(const SessionTick& tick) {
+  Table& table = *m_impl->session;
+  table.put(tick.sample);
+  table.put(tick.seen_step);
+  table.put(tick.begun_step);
+  table.put(static_cast<std::uint8_t>(tick.device_state));
+  table.put(static_cast<std::uint8_t>(tick.feed));
+  m_impl->end_quiet_row(table);
+}
+
+void ResultFile::append(const TickTiming& timing) {
+  Table& table = *m_impl->tick_timing;
+  table.put(timing.wake_late);
+  table.put(timing.work);
+  table.put(timing.sample_age);
+  table.put(timing.missed);
+  m_impl->end_quiet_row(table);
+}
+
+void ResultFile::append(const StepTiming& timing) {
+  Table& table = *m_impl->step_timing;
+  table.put(timing.wait);
+  table.put(timing.work);
+  table.put(timing.late);
+  m_impl->end_quiet_row(table);
+}
+
+void ResultFile::end_session(const std::string& hash) {
+  m_impl->guarded([&] { m_impl->root.open_group(schema::kSession).write_attribute("end_hash", hash); });
+}
+
 void ResultFile::append_timing(const std::vector<std::pair<std::string, double>>& stages) {
   ARGIL_ASSERT(m_impl, "append after finish");
   m_impl->guarded([&] {
@@ -251,8 +310,8 @@ void ResultFile::append_timing(const std::vector<std::pair<std::string, double>>
     for (const auto& [name, value] : stages) {
       constexpr std::uint64_t kChunk = 16;
       if (!timing.has(name)) {
-        const char* unit = ends_with_hz(name) ? "Hz" : name == "instructions" ? "1" : "s";
-        const hdf5::Label label{unit, "measured while the program ran; differs from run to run"};
+        const hdf5::Label label{unit_of_timing(name),
+                                "measured while the program ran; differs from run to run"};
         timing.create_series(name, hdf5::Element::real64, {}, kChunk, label);
       }
       timing.open_dataset(name).append(&value, 1);

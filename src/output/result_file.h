@@ -8,6 +8,8 @@
 
 #include "base/archive.h"
 #include "base/status.h"
+#include "device/gate.h"
+#include "device/haptic_device.h"
 #include "mesh/tet_mesh.h"
 #include "sim/record.h"
 
@@ -23,6 +25,46 @@ struct ResultHeader {
   double haptic_period = 0.0;   ///< [s]
   std::vector<std::pair<std::string, std::string>>
       provenance;  ///< name → text: resolved scenario, hashes, numerics tag
+};
+
+/// Where a live session began.
+struct SessionHead {
+  std::string device;          ///< as it calls itself
+  device::DeviceSample start;  ///< before the first tick
+  double max_force = 0.0;      ///< [N] that scenario and device allow
+};
+
+/// What a tick of a live session took from outside, besides the motion that /haptic has.
+struct SessionTick {
+  std::int64_t sample = 0;  ///< number of the device's sample
+  Tick seen_step = 0;       ///< last physics step whose surface the tick met
+  Tick begun_step = 0;      ///< step that took its input at the tick's end; 0: none
+  device::DeviceState device_state = device::DeviceState::ready;
+  device::HandFeed feed = device::HandFeed::fresh;  ///< what the gate took the force to rest on
+};
+
+/// A recorded live session: with scenario and build all that its bits are a function of.
+struct Session {
+  SessionHead head;
+  std::vector<SessionTick> ticks;
+  std::vector<device::DeviceSample> samples;  ///< that each of them consumed, world coordinates
+  std::string end_hash;                       ///< of the state at its end; empty when it was killed
+  bool is_interrupted = false;                ///< it was stopped, or killed
+};
+
+/// Wall clock of a tick of a live session.
+struct TickTiming {
+  double wake_late = 0.0;   ///< [s]
+  double work = 0.0;        ///< [s] from waking to the force that was sent
+  double sample_age = 0.0;  ///< [s]
+  int missed = 0;           ///< periods without a tick before it
+};
+
+/// And of a physics step.
+struct StepTiming {
+  double wait = 0.0;  ///< [s] from the hand's giving to the step's begin
+  double work = 0.0;  ///< [s]
+  int late = 0;       ///< ticks beyond the planned ones that it had to wait for
 };
 
 /// How a run ended; the root attribute `outcome` spells it.
@@ -51,6 +93,14 @@ class ResultFile {
   void append(const sim::HapticRecord& record);
   void append(const sim::PhysicsRecord& record);
   void append(const sim::Frame& frame);
+  /// From here on a session: a SessionTick before each haptic record. `is_timed`: with a TickTiming each, and
+  /// a StepTiming before each physics record.
+  void begin_session(const SessionHead& head, bool is_timed);
+  void append(const SessionTick& tick);
+  void append(const TickTiming& timing);
+  void append(const StepTiming& timing);
+  /// SHA-256 of the state in which it ended.
+  void end_session(const std::string& hash);
   /// Wall-clock seconds per stage, total and rate; goes to /timing, the only part that may differ between
   /// equal runs. A name that ends in _Hz has that unit, any other is in seconds.
   void append_timing(const std::vector<std::pair<std::string, double>>& stages);

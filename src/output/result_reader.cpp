@@ -222,10 +222,40 @@ std::optional<Snapshot> ResultReader::find_checkpoint() const {
   return state;
 }
 
+std::optional<Session> ResultReader::find_session() const {
+  if (!m_root.has(schema::kSession)) return std::nullopt;
+  const Group group = m_root.open_group(schema::kSession);
+  Session session;
+  session.head.device = group.read_text("device");
+  session.head.max_force = group.read_real("max_force_N");
+  const ColumnReader<double> position(group, "start_position", 1, 3);
+  const ColumnReader<double> orientation(group, "start_orientation", 1, 4);
+  const ColumnReader<std::uint8_t> mode(group, "start_mode", 1, 1);
+  session.head.start.position = Eigen::Map<const Vec3>(position.row(0));
+  session.head.start.orientation = Quat(Eigen::Map<const Vec4>(orientation.row(0)));  // x, y, z, w
+  session.head.start.mode = static_cast<device::ToolMode>(mode(0));
+  for (const sim::HapticRecord& record : read_haptic())
+    session.samples.push_back({record.tool_position, record.tool_orientation, record.mode});
+  const std::size_t rows = session.samples.size();
+  const ColumnReader<std::int64_t> sample(group, "sample", rows, 1);
+  const ColumnReader<std::int64_t> seen_step(group, "seen_step", rows, 1);
+  const ColumnReader<std::int64_t> begun_step(group, "begun_step", rows, 1);
+  const ColumnReader<std::uint8_t> device_state(group, "device_state", rows, 1);
+  const ColumnReader<std::uint8_t> feed(group, "feed", rows, 1);
+  for (std::size_t i = 0; i < rows; ++i)
+    session.ticks.push_back({sample(i), seen_step(i), begun_step(i),
+                             static_cast<device::DeviceState>(device_state(i)),
+                             static_cast<device::HandFeed>(feed(i))});
+  session.is_interrupted = outcome() == Outcome::interrupted || outcome() == Outcome::running;
+  if (group.has_attribute("end_hash")) session.end_hash = group.read_text("end_hash");
+  return session;
+}
+
 std::vector<std::pair<std::string, double>> ResultReader::read_timing() const {
   const Group timing = m_root.open_group("timing");
   std::vector<std::pair<std::string, double>> last;
   for (const std::string& name : timing.names()) {
+    if (timing.is_group(name)) continue;  // a live session's ticks and steps
     const std::vector<double> values = timing.open_dataset(name).read<double>();
     if (!values.empty()) last.emplace_back(name, values.back());
   }

@@ -37,6 +37,8 @@ class ResultReader {
   sim::Frame read_frame(const FrameInfo& info) const;
   /// State from which an unfinished run can go on; nothing when there is none.
   std::optional<Snapshot> find_checkpoint() const;
+  /// The live session that this is, as far as its ticks are in the file; nothing for other runs.
+  std::optional<Session> find_session() const;
   /// Last value of every entry of /timing, by name.
   std::vector<std::pair<std::string, double>> read_timing() const;
 

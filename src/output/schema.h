@@ -67,6 +67,38 @@ inline constexpr std::array kPhysics = {
         "max_plastic_strain", real64, 1, {"1", "largest Frobenius norm of the plastic strain over the tets"}},
 };
 
+/// A live session's side of each haptic tick: what it took from outside.
+inline constexpr const char* kSession = "session";
+inline constexpr std::array kSessionTick = {
+    Column{"sample", int64, 1, {"1", "number of the device's sample that the tick consumed, from 1"}},
+    Column{"seen_step", int64, 1, {"1", "last physics step whose surface the tick met; 0: none"}},
+    Column{"begun_step", int64, 1, {"1", "physics step that took its input at the tick's end; 0: none"}},
+    Column{"device_state",
+           uint8,
+           1,
+           {"1", "0 stopped, 1 connecting, 2 ready, 3 stale, 4 lost: as the device said in the tick"}},
+    Column{"feed",
+           uint8,
+           1,
+           {"1", "what the force rested on: 0 fresh, 1 a sample or a surface that was too old, 2 no sample"}},
+};
+inline constexpr hdf5::Label kStartPosition{"m", "hand's point before the first tick"};
+inline constexpr hdf5::Label kStartOrientation{"1", "unit quaternion x, y, z, w before the first tick"};
+inline constexpr hdf5::Label kStartMode{"1", "mode before the first tick, as in /haptic"};
+
+/// Wall clock of each tick and of each step of a live session, in /timing.
+inline constexpr std::array kTickTiming = {
+    Column{"wake_late", real64, 1, {"s", "how late the hand's thread woke for the tick"}},
+    Column{"work", real64, 1, {"s", "from waking to the force that was sent"}},
+    Column{"sample_age", real64, 1, {"s", "of the consumed sample on the device's clock"}},
+    Column{"missed", int32, 1, {"1", "periods that passed without a tick before it"}},
+};
+inline constexpr std::array kStepTiming = {
+    Column{"wait", real64, 1, {"s", "from the hand's giving to the step's begin"}},
+    Column{"work", real64, 1, {"s", "that the step took"}},
+    Column{"late", int32, 1, {"1", "ticks beyond the planned ones that the step had to wait for"}},
+};
+
 /// Haptic ticks and physics steps that are kept in memory before they are written: about a second and about
 /// two kB a column; a killed run loses at most these.
 inline constexpr std::uint64_t kHapticChunk = 1024;

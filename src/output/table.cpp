@@ -89,4 +89,9 @@ void Table::write() {
   m_rows = 0;
 }
 
+void Table::show() {
+  write();
+  for (Series& series : m_series) series.dataset.flush();
+}
+
 }  // namespace argil::output

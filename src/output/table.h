@@ -35,6 +35,8 @@ class Table {
   bool end_row();
   /// Writes the rows in memory.
   void write();
+  /// And shows them to those who read a shared file.
+  void show();
 
  private:
   struct Series {

@@ -246,6 +246,7 @@ Scene build_scene(const Scenario& s) {
     return scene;
   }
   check_skin(s, body.skin);
+  if (s.trace.file.empty()) return scene;
   scene.trace = device::read_trace(s.trace.file, s.trace.options);
   check_trace(s, scene.trace);
   return scene;

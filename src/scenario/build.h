@@ -13,7 +13,7 @@ namespace argil::scenario {
 struct Scene {
   sim::Body body;
   mesh::TriangleMesh tool;
-  device::Trace trace;
+  device::Trace trace;             ///< empty where the scenario has none: a live session's replay
   std::string medium_status;       ///< where eq. 6 stands at every φ and dry modulus that the run can reach
   std::vector<std::string> notes;  ///< for the user: mesh quality, cage report, warnings
 };

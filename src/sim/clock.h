@@ -15,4 +15,9 @@ struct Clock {
   void advance() { ++tick; }
 };
 
+/// Does some multiple of `period` ticks lie in (before, after]?
+constexpr bool passes_multiple(Tick before, Tick after, int period) {
+  return before / period != after / period;
+}
+
 }  // namespace argil::sim

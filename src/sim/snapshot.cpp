@@ -6,33 +6,45 @@
 namespace argil::sim {
 
 Snapshot Simulation::take_snapshot() {
-  ARGIL_ASSERT(m_clock.tick % m_params.rates.physics_period_ticks == 0, m_clock.tick);
-  ARGIL_ASSERT(m_contact_stiffness.empty() && m_yields.empty() && !m_state.is_touched);
+  ARGIL_ASSERT(m_hand.is_between_steps(), clock().tick);
   Snapshot snapshot;
   Archive archive = Archive::make_saving(snapshot);
   exchange_state(archive);
-  m_solid.exchange_frames(archive);
   return snapshot;
 }
 
-/// Moduli and kinematics are functions of what was saved and are found again.
 void Simulation::restore(const Snapshot& snapshot, const std::string& origin) {
   Archive archive = Archive::make_restoring(snapshot, origin);
   exchange_state(archive);
-  for (int t = 0; t < m_body.mesh.num_tets(); ++t) refresh_material(t, m_water.state().collected(t));
-  m_solid.exchange_frames(archive);
-  const StepStatus status = m_solid.update_kinematics(m_state.solid.x, m_clock.tick);
-  ARGIL_ASSERT(status.is_ok());
+  m_hand.see_again(m_body_side.state());
 }
 
 void Simulation::exchange_state(Archive& archive) {
+  m_hand.exchange_state(archive);
+  m_body_side.exchange_state(archive);
+}
+
+void HandSide::exchange_state(Archive& archive) {
   archive.number("tick", m_clock.tick);
+  archive.number("steps_begun", m_steps_begun);
   archive.array("tool/position", m_state.tool.position);
   archive.quaternion("tool/orientation", m_state.tool.orientation);
   archive.number("tool/mode", m_state.mode);
   archive.array("tool/path", m_state.motion.path);
   archive.array("tool/turn", m_state.motion.turn);
-  exchange_contact_state(archive);
+  exchange_contacts(archive);
+  archive.number("ledger/port_energy", m_state.port_energy);
+  archive.number("ledger/passivity_energy", m_state.passivity_energy);
+}
+
+void HandSide::see_again(const BodyState& body) {
+  if (m_state.has_moved) move_surface(body.solid.x);
+}
+
+/// Moduli and kinematics are functions of what was saved and are found again.
+void BodySide::exchange_state(Archive& archive) {
+  archive.number("steps", m_state.steps);
+  archive.number("tick_of_step", m_hand.ticks);
   archive.array("solid/x", m_state.solid.x);
   archive.array("solid/v", m_state.solid.v);
   archive.array("solid/plastic_strain", m_state.solid.plastic_strain);
@@ -43,21 +55,23 @@ void Simulation::exchange_state(Archive& archive) {
   archive.number("solid/rest_energy", m_rest_energy);
   archive.number("solid/rest_plastic_strain", m_rest_plastic_strain);
   m_solid.exchange_state(archive);
-  exchange_water_state(archive);
+  exchange_water(archive);
   archive.number("ledger/plastic_dissipation", m_state.plastic_dissipation);
   archive.number("ledger/contact_work", m_state.contact_work);
   archive.number("ledger/energy_given", m_state.energy_given);
-  archive.number("ledger/port_energy", m_state.port_energy);
-  archive.number("ledger/passivity_energy", m_state.passivity_energy);
+  if (archive.is_restoring())
+    for (int t = 0; t < m_body.mesh.num_tets(); ++t) refresh_material(t, m_water.state().collected(t));
+  m_solid.exchange_frames(archive);
+  if (!archive.is_restoring()) return;
+  const StepStatus status = m_solid.update_kinematics(m_state.solid.x, m_hand.ticks);
+  ARGIL_ASSERT(status.is_ok());
 }
 
-void Simulation::exchange_contact_state(Archive& archive) {
+void HandSide::exchange_contacts(Archive& archive) {
   archive.array("contact/tool_position", m_state.contact_tool.position);
   archive.quaternion("contact/tool_orientation", m_state.contact_tool.orientation);
   archive.array("contact/x", m_state.contact_x);
   archive.number("contact/has_moved", m_state.has_moved);
-  archive.array("contact/centre", m_state.contact_centre);
-  archive.number("contact/is_pressed", m_state.is_pressed);
   archive.number("contact/num_contacts", m_state.num_contacts);
   archive.number("contact/force_age", m_state.force_age);
   archive.array("hand/force", m_state.hand_force);
@@ -99,7 +113,7 @@ void Simulation::exchange_contact_state(Archive& archive) {
 }
 
 /// A spring is a column: vertices, weights, normal, stiffness, force, point.
-void Simulation::exchange_springs(Archive& archive) {
+void HandSide::exchange_springs(Archive& archive) {
   Eigen::Matrix<double, 14, Eigen::Dynamic> table(14, m_springs.size());
   for (std::size_t i = 0; i < m_springs.size(); ++i) {
     const ContactSpring& s = m_springs[i];
@@ -130,7 +144,7 @@ void Simulation::exchange_springs(Archive& archive) {
   }
 }
 
-void Simulation::exchange_water_state(Archive& archive) {
+void BodySide::exchange_water(Archive& archive) {
   water::WaterState water = m_water.state();
   archive.array("water/saturation", water.saturation);
   archive.array("water/carry", water.carry);

@@ -25,27 +25,30 @@ struct Body {
   embed::Embedding skin_embedding;
 };
 
-/// All that a tick changes, grouped by the stage that writes it. A checkpoint holds every field
-/// (snapshot.cpp).
-struct State {
+/// All that the hand's side changes. A checkpoint holds every field of both sides (snapshot.cpp).
+struct HandState {
   // device
   contact::Pose tool;  ///< at the end of the last tick
   device::ToolMode mode = device::ToolMode::push;
   device::TickMotion motion;  ///< of the hand in the last tick
   device::Wrench withheld;    ///< what the passivity controller took off the last force
   // contact
-  contact::Pose contact_tool;          ///< tool at the end of the last detection
-  Points contact_x;                    ///< touched surface at the end of the last detection [m]
-  bool has_moved = false;              ///< the body has since: else its surface is still at contact_x
-  Vec3 hand_force = Vec3::Zero();      ///< [N] that the hand feels
-  Vec3 hand_torque = Vec3::Zero();     ///< [N m] about the hand's point
-  int force_age = 0;                   ///< [ticks] since it was computed
-  int num_contacts = 0;                ///< of the last detection
-  Points contact_force;                ///< 3×n on the body, mean over the physics step [N]
-  Vec3 contact_centre = Vec3::Zero();  ///< where the body is touched [m], valid while is_pressed
-  bool is_touched = false;             ///< contact_force waits for the next physics step
-  bool is_pressed = false;             ///< a push or pull tool exerts a force on the body
-  // solid
+  contact::Pose contact_tool;       ///< tool at the end of the last detection
+  Points contact_x;                 ///< touched surface at the end of the last detection [m]
+  Points surface_x;                 ///< and where it has moved to since; as long as has_moved
+  bool has_moved = false;           ///< else it is still at contact_x
+  Vec3 hand_force = Vec3::Zero();   ///< [N] that the hand feels
+  Vec3 hand_torque = Vec3::Zero();  ///< [N m] about the hand's point
+  int force_age = 0;                ///< [ticks] since it was computed
+  int num_contacts = 0;             ///< of the last detection
+  // ledgers
+  double port_energy = 0.0;       ///< [J] work of the device's force on the hand since the start
+  double passivity_energy = 0.0;  ///< [J] that the passivity controller has kept from the hand
+};
+
+/// All that the body's side changes, but for the water.
+struct BodyState {
+  Tick steps = 0;  ///< since the start
   solid::SolidState solid;
   bool is_at_rest = false;  ///< nothing acts on the body and it does not move: no need to solve
   int slow_steps = 0;       ///< physics steps in a row that were slower than rest_speed
@@ -53,9 +56,6 @@ struct State {
   double plastic_dissipation = 0.0;  ///< [J] since the start
   double contact_work = 0.0;         ///< [J] done on the body since the start
   double energy_given = 0.0;         ///< [J] to the body by hand, loads and supports, recoils not taken off
-  double port_energy = 0.0;          ///< [J] work of the device's force on the hand since the start
-  double passivity_energy =
-      0.0;  ///< [J] that the passivity controller has kept from the hand since the start
 };
 
 }  // namespace argil::sim

@@ -1,79 +1,105 @@
 // One haptic tick: the paper's loop. Equation numbers are the paper's, listed in src/README.md.
 
+#include "base/check.h"
 #include "sim/simulation.h"
 
 namespace argil::sim {
 
 StepStatus Simulation::tick(const device::DeviceSample& sample) {
-  const RateParams& rates = m_params.rates;
-  const bool physics_due = m_clock.due(rates.physics_period_ticks);
+  const bool physics_due = clock().due(m_params.rates.physics_period_ticks);
 
   // Device: the tool goes to where the hand is at the end of the tick.
-  move_hand(sample);
+  m_hand.move(sample);
 
   // Contact: eqs. 7 and 8 over the path since the last detection, reaction to the hand.
-  ++m_state.force_age;
-  if (is_yielding()) {
-    ARGIL_TRY(yielding_contact_step());
-  } else if (rates.between_frames != BetweenFrames::hold) {
-    contact_step(1);
-  } else if (physics_due) {
-    contact_step(rates.physics_period_ticks);
-  }
+  const BodyAtFrame body = m_body_side.at_frame(clock().tick);
+  ARGIL_TRY(m_hand.touch(physics_due, &body));
 
   // Physics: what the water and the contact force do to the body.
-  if (m_clock.due(rates.water_period_ticks)) ARGIL_TRY(water_step());
-  if (physics_due) ARGIL_TRY(physics_step());
+  if (physics_due) {
+    m_hand.give(m_load);
+    const StepStatus status = m_body_side.step(m_load, m_answer);
+    m_hand.see(m_answer);
+    ARGIL_TRY(status);
+    if (m_answer.has_moved) ARGIL_TRY(m_hand.begin_frame(body, m_body_side.x_before()));
+  }
 
   // Hand: the last force, old or new, as the device renders it.
-  render_force();
-  m_clock.advance();
+  m_hand.render(device::HandFeed::fresh);
+  return StepStatus::ok();
+}
+
+StepStatus Simulation::tick(const device::DeviceSample& sample, const TickPlan& plan) {
+  ARGIL_ASSERT(m_params.rates.between_frames != BetweenFrames::compliant);
+  if (plan.sees_step) {
+    if (!m_step_status.is_ok()) return m_step_status;
+    m_hand.see(m_answer);
+  }
+  m_hand.move(sample);
+  ARGIL_TRY(m_hand.touch(plan.begins_step, nullptr));
+  if (plan.begins_step) {
+    m_hand.give(m_load);
+    m_step_status = m_body_side.step(m_load, m_answer);
+  }
+  m_hand.render(plan.feed);
+  return StepStatus::ok();
+}
+
+StepStatus HandSide::touch(bool begins_step, const BodyAtFrame* body) {
+  const RateParams& rates = m_params.rates;
+  const bool water_due = begins_step && (m_steps_begun + 1) % steps_per_water() == 0;
+  m_contacts.with_touched = water_due && is_wetting();
+  ++m_state.force_age;
+  if (is_yielding()) return yielding_contact_step(*body);
+  if (rates.between_frames != BetweenFrames::hold)
+    contact_step(1, body);
+  else if (begins_step)
+    contact_step(m_ticks_since_step, body);
   return StepStatus::ok();
 }
 
 /// Detection over the last `ticks` ticks against the surface of the last physics step.
-void Simulation::contact_step(int ticks) {
+void HandSide::contact_step(int ticks, const BodyAtFrame* body) {
   const StageScope scope(m_observer, Stage::contact);
   if (m_compliance.num_known() > 0) {
     m_springs.clear();
     m_compliance.release();
-    m_state.has_moved = true;
+    move_surface(body->state.x);
   }
-  find_contacts(m_state.solid.x, ticks);
+  find_contacts(ticks);
   const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;  // pull: force reversed
   m_state.hand_force = sign * m_contacts.force_on_tool + m_contacts.resistance_on_tool;
   m_state.hand_torque = sign * m_contacts.torque_on_tool + m_contacts.resistance_torque_on_tool;
-  spread_contact_force(ticks);
+  spread_contact_force();
 }
 
 /// Detection over the last tick against a surface that yields: it first follows the tool as far as the
 /// springs of the last contacts let it, then comes to balance with those that are found. The hand feels the
 /// force of the place where it is; pairs that came and went within the tick add their mean.
-StepStatus Simulation::yielding_contact_step() {
+StepStatus HandSide::yielding_contact_step(const BodyAtFrame& body) {
   const StageScope scope(m_observer, Stage::contact);
-  const BodyAtFrame body = body_at_frame();
   follow_with_springs();
-  if (m_compliance.num_known() > 0) m_state.has_moved = true;
+  const bool has_yielded = m_compliance.num_known() > 0;
   ARGIL_TRY(m_compliance.press(body, m_springs));
-  m_compliance.displace(m_state.solid.x, m_yielded_x);
-  find_contacts(m_yielded_x, 1);
+  m_compliance.displace(body.state.x, m_yielded_x);
+  if (m_state.has_moved || has_yielded) move_surface(m_yielded_x);
+  find_contacts(1);
   make_springs();
   ARGIL_TRY(m_compliance.press(body, m_springs));
 
   m_state.hand_force.setZero();
   m_state.hand_torque.setZero();
-  const double share = 1.0 / m_params.rates.physics_period_ticks;
   // `spring`: the contact as it acts where the step begins, before the surface yields.
   const auto act = [&](contact::Contact c, const Vec3& on_hand, const ContactSpring& spring) {
     m_state.hand_force -= on_hand + c.resistance;
     m_state.hand_torque -= (c.point - m_state.tool.position).cross(on_hand + c.resistance);
     const Vec3 force = spring.force * spring.normal + c.resistance;
-    act_on_body(c, force, share);
+    act_on_body(c, force);
     c.stiffness = spring.stiffness;
-    const std::size_t entry = m_contact_stiffness.size();
-    add_contact_stiffness(c, share * force, true, share);
-    const bool is_spring = m_contact_stiffness.size() > entry;
-    m_compliance.hold(spring, share, is_spring ? m_contact_stiffness[entry].group : -1);
+    const std::size_t entry = m_load.stiffness.size();
+    add_contact_stiffness(c, m_share * force, true);
+    const bool is_spring = m_load.stiffness.size() > entry;
+    m_compliance.hold(spring, m_share, is_spring ? m_load.stiffness[entry].group : -1);
   };
   for (std::size_t i = 0; i < m_springs.size(); ++i) {
     ContactSpring spring = m_springs[i];
@@ -84,53 +110,63 @@ StepStatus Simulation::yielding_contact_step() {
   }
   for (const contact::Contact& c : m_contacts.contacts)
     if (c.passes) act(c, c.force, {c.vertex, c.weight, c.normal, 0.0, c.force.norm(), c.point});
-  m_last_detection = m_contact_stiffness.size();  // the hand has felt the yield already
+  m_load.last_detection = m_load.stiffness.size();  // the hand has felt the yield already
   return StepStatus::ok();
 }
 
+StepStatus BodySide::step(ContactLoad& load, BodyAnswer& answer) {
+  const RateParams& rates = m_params.rates;
+  begin_step(load, answer);
+  StepStatus status = StepStatus::ok();
+  if (m_state.steps * rates.physics_period_ticks % rates.water_period_ticks == 0) status = water_step(load);
+  if (status.is_ok() && !rests(load.is_touched)) status = physics_step(load, answer);
+  load.clear();
+  return status;
+}
+
 /// Uptake from or to the tool, diffusion, then moduli and yield of the tets whose saturation moved (eq. 6).
-StepStatus Simulation::water_step() {
+StepStatus BodySide::water_step(const ContactLoad& load) {
   const StageScope scope(m_observer, Stage::water);
-  const double h = m_clock.seconds(m_params.rates.water_period_ticks);
-  const bool wet = m_state.mode == device::ToolMode::wet;
-  if (wet || m_state.mode == device::ToolMode::dry) exchange_water(wet ? 1 : -1, h);
+  const double h = m_params.rates.haptic_period * m_params.rates.water_period_ticks;
+  const bool wet = load.mode == device::ToolMode::wet;
+  if (wet || load.mode == device::ToolMode::dry)
+    m_water.exchange_tets(load.touched_tet, load.touched_area, wet ? 1 : -1, h);
   m_water.diffuse(h);
   return refresh_materials(m_params.moisture.refresh_tolerance);
 }
 
 /// Eq. 2 by one implicit step: solve, scale the velocity (eq. 9), move, then plastic flow. A body at rest
 /// that nothing acts on is left as it is.
-StepStatus Simulation::physics_step() {
-  if (rests()) return StepStatus::ok();
-  const double h = m_clock.seconds(m_params.rates.physics_period_ticks);
+StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
+  const double h = step_seconds();
   solid::SolidState& solid = m_state.solid;
-  m_external_force = m_state.contact_force + m_load_force;
-  solid::StepLoads loads{m_external_force, m_contact_stiffness};
-  if (m_state.is_pressed) loads.mobility = [this, h](Eigen::Index node) { return clay_factor(node, h); };
+  m_external_force = load.force + m_load_force;
+  solid::StepLoads loads{m_external_force, load.stiffness};
+  if (load.is_pressed)
+    loads.mobility = [this, &load](Eigen::Index node) { return clay_factor(node, load, step_seconds()); };
   m_v_before = solid.v;
-  ARGIL_TRY(m_solid.begin_step(solid, loads, h, m_clock.time_at_end(), m_clock.tick));
+  ARGIL_TRY(m_solid.begin_step(solid, loads, h, time_at_end(), tick()));
   for (bool solved = false; !solved;) {
     {
       const StageScope scope(m_observer, Stage::assemble);
       solved = m_solid.assemble(loads);  // A, b from F, R, ε
     }
     const StageScope scope(m_observer, Stage::solve);
-    if (!solved) ARGIL_TRY(m_solid.solve(loads, m_clock.tick, solved));  // A δv = b
+    if (!solved) ARGIL_TRY(m_solid.solve(loads, tick(), solved));  // A δv = b
   }
   {
     const StageScope scope(m_observer, Stage::solve);
-    apply_contact_yield();
+    apply_contact_yield(load, answer.felt);
     m_solid.finish_step(solid);
-    apply_clay_kernel(h);  // v ← G_d^{h/h_ref} v
+    apply_clay_kernel(load, h);  // v ← G_d^{h/h_ref} v
     m_x_before = solid.x;
     m_solid.move(solid);
-    m_state.has_moved = true;
-    m_state.contact_work += m_state.contact_force.cwiseProduct(solid.x - m_x_before).sum();
+    m_state.contact_work += load.force.cwiseProduct(solid.x - m_x_before).sum();
   }
   {
     const StageScope scope(m_observer, Stage::kinematics);
-    StepStatus status = check_energy();
-    if (status.is_ok()) status = m_solid.update_kinematics(solid.x, m_clock.tick);  // F → R → ε
+    StepStatus status = check_energy(load);
+    if (status.is_ok()) status = m_solid.update_kinematics(solid.x, tick());  // F → R → ε
     if (!status.is_ok()) {
       solid.x = m_x_before;  // the last good state stays
       solid.v = m_v_before;
@@ -140,10 +176,8 @@ StepStatus Simulation::physics_step() {
   const StageScope scope(m_observer, Stage::plasticity);
   apply_plastic_flow(h);  // trial ε_p of every tet, committed at once
   m_solid.settle_region(solid, m_is_flowing);
-  if (m_params.rates.between_frames == BetweenFrames::compliant)
-    ARGIL_TRY(m_compliance.begin_frame(body_at_frame(), m_x_before));
-  m_state.contact_force.setZero();
-  m_state.is_touched = false;
+  m_surface.find_positions(solid.x, answer.surface_x);
+  answer.has_moved = true;
   return StepStatus::ok();
 }
 

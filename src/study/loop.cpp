@@ -84,25 +84,26 @@ std::optional<Failure> run_ticks(const scenario::Scenario& s, const device::Trac
 
 }  // namespace
 
-device::DeviceSample sample_at(const scenario::Scenario& s, const device::Trace& trace, Tick ticks) {
-  device::DeviceSample sample =
-      device::interpolate(trace, s.trace.start + static_cast<double>(ticks) * s.params.rates.haptic_period);
+std::optional<device::ToolMode> find_fixed_mode(const scenario::Scenario& s) {
   switch (s.tool.mode) {
     case scenario::ModeChoice::push:
-      sample.mode = device::ToolMode::push;
-      break;
+      return device::ToolMode::push;
     case scenario::ModeChoice::pull:
-      sample.mode = device::ToolMode::pull;
-      break;
+      return device::ToolMode::pull;
     case scenario::ModeChoice::wet:
-      sample.mode = device::ToolMode::wet;
-      break;
+      return device::ToolMode::wet;
     case scenario::ModeChoice::dry:
-      sample.mode = device::ToolMode::dry;
-      break;
+      return device::ToolMode::dry;
     case scenario::ModeChoice::trace:
       break;
   }
+  return std::nullopt;
+}
+
+device::DeviceSample sample_at(const scenario::Scenario& s, const device::Trace& trace, Tick ticks) {
+  device::DeviceSample sample =
+      device::interpolate(trace, s.trace.start + static_cast<double>(ticks) * s.params.rates.haptic_period);
+  sample.mode = find_fixed_mode(s).value_or(sample.mode);
   return sample;
 }
 

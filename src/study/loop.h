@@ -12,6 +12,9 @@ namespace argil::study {
 /// The hand at the end of tick k, with the scenario's mode unless the trace decides.
 device::DeviceSample sample_at(const scenario::Scenario& s, const device::Trace& trace, Tick ticks);
 
+/// The scenario's mode; nothing where the trace or the device decides.
+std::optional<device::ToolMode> find_fixed_mode(const scenario::Scenario& s);
+
 /// Whole ticks of the scenario's motion.
 Tick count_ticks(const scenario::Scenario& s, const device::Trace& trace);
 

@@ -1,79 +1,24 @@
 #include "study/run.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <iomanip>
-#include <limits>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 #include "base/error.h"
-#include "base/print.h"
-#include "embed/triangle_tree.h"
 #include "output/result_file.h"
 #include "scenario/build.h"
 #include "sim/simulation.h"
 #include "study/files.h"
 #include "study/identity.h"
 #include "study/loop.h"
+#include "study/replay.h"
 #include "study/resume.h"
+#include "study/start.h"
 
 namespace argil::study {
 namespace {
-
-output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulation& simulation,
-                                 const scenario::Scene& scene, const mesh::TriangleMesh& tool,
-                                 const Identity& identity) {
-  output::ResultHeader header;
-  header.rest_position = simulation.body().mesh.vertices;
-  header.tets = simulation.body().mesh.tets;
-  header.surface_triangles = simulation.body().topology.boundary;
-  header.skin_triangles = simulation.body().skin.triangles;
-  header.tool = tool;
-  header.haptic_period = s.params.rates.haptic_period;
-  std::string notes;
-  for (const std::string& note : scene.notes) notes += note + "\n";
-  header.provenance = {{"about", s.about},
-                       {"scenario", scenario::print_portable(s)},
-                       {"trace_sha256", scene.trace.sha256},
-                       {"effective_medium", scene.medium_status},
-                       {"notes", notes}};
-  for (const auto& [name, text] : identity.provenance()) header.provenance.emplace_back(name, text);
-  return header;
-}
-
-/// Deepest place of a surface's vertices in a closed surface [m]; 0 when all are outside.
-double find_depth(const Points& vertices, const mesh::TriangleMesh& surface) {
-  const embed::TriangleTree tree(surface);
-  double depth = 0.0;
-  for (Eigen::Index v = 0; v < vertices.cols(); ++v)
-    if (tree.compute_winding_number(vertices.col(v)) > 0.5)
-      depth = std::max(depth, tree.compute_distance(vertices.col(v), std::numeric_limits<double>::max()));
-  return depth;
-}
-
-/// The motion begins in the body: says where and how deep, in the file that the motion came from.
-[[noreturn]] void refuse_start(const scenario::Scenario& s, const RunOptions& options,
-                               const sim::Simulation& simulation, mesh::TriangleMesh tool) {
-  const contact::Pose& pose = simulation.state().tool;
-  tool.vertices = (pose.orientation.toRotationMatrix() * tool.vertices).colwise() + pose.position;
-  const mesh::TriangleMesh body{simulation.body().mesh.vertices, simulation.body().topology.boundary};
-  const double depth = std::max(find_depth(tool.vertices, body), find_depth(body.vertices, tool));
-  std::ostringstream text;
-  text << "the tool starts in or across the body, " << std::setprecision(3) << 1e3 * depth
-       << " mm deep, with the hand at " << print_place(pose.position) << " m";
-  const bool is_given = !options.trace.empty();
-  throw InputError(is_given ? options.trace : s.file, is_given ? "" : "/trace", text.str(),
-                   "start the motion outside it");
-}
-
-void print_notes(const scenario::Scene& scene, const RunOptions& options) {
-  if (options.quiet) return;
-  for (const std::string& note : scene.notes) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
-}
 
 int print_ready(const scenario::Scenario& s, const sim::Simulation& simulation, Tick num_ticks) {
   std::printf("%s: %d vertices, %d tets, %d skin triangles, %lld ticks: ready to run\n", s.file.c_str(),
@@ -109,10 +54,6 @@ int print_end(const std::string& result, const LoopEnd& end, Tick first, Tick la
   return kDone;
 }
 
-std::string name_result(const scenario::Scenario& s, const RunOptions& options) {
-  return options.output.empty() ? std::filesystem::path(s.file).stem().string() + ".h5" : options.output;
-}
-
 /// One equilibrium: a physics record and a frame, at the time 0 of an empty motion.
 int run_static(const scenario::Scenario& s, scenario::Scene& scene, const RunOptions& options) {
   const mesh::TriangleMesh tool = scene.tool;
@@ -133,11 +74,43 @@ int run_static(const scenario::Scenario& s, scenario::Scene& scene, const RunOpt
   output::write_xdmf(result, name_xdmf(result));
   if (failure) return print_failure(*failure);
   if (!options.quiet) {
-    const Points moved = simulation.state().solid.x - simulation.solid().elements().rest;
+    const Points moved = simulation.body_state().solid.x - simulation.solid().elements().rest;
     std::printf("%s: equilibrium in %.2f s, largest displacement %.6g m\n", result.c_str(), seconds,
                 moved.colwise().norm().maxCoeff());
   }
   return kDone;
+}
+
+/// A live session once more, in one thread. It ends as the session did.
+int run_replay(const scenario::Scenario& s, const output::Session& session, const std::string& note,
+               const RunOptions& options) {
+  if (options.resume)
+    throw InputError(options.trace, "", "is a live session, whose replay has no checkpoints",
+                     "leave --resume out");
+  scenario::Scene scene = scenario::build_scene(s);
+  if (!note.empty()) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
+  const mesh::TriangleMesh tool = scene.tool;
+  sim::Simulation simulation(std::move(scene.body), tool, session_params(session.head, s.params),
+                             session.head.start);
+  print_notes(scene, options);
+  const auto num_ticks = static_cast<Tick>(session.ticks.size());
+  if (options.dry_run) return print_ready(s, simulation, num_ticks);
+  const std::string result = name_result(s, options);
+  output::ResultFile file(result, make_header(s, simulation, scene, tool, find_identity(s)));
+  const auto start = std::chrono::steady_clock::now();
+  LoopEnd end;
+  end.failure = replay(session, simulation, file);
+  end.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  file.append_timing({{"total", end.seconds}});
+  file.finish(end.failure, session.is_interrupted);
+  if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
+  if (session.end_hash.empty())
+    std::fprintf(stderr, "argil: note: %s was killed: replayed up to its last tick\n", options.trace.c_str());
+  else if (session.end_hash != simulation.state_hash()) {
+    std::fprintf(stderr, "argil: the replay ended in another state than %s\n", options.trace.c_str());
+    return kDifferent;
+  }
+  return print_end(result, end, 0, num_ticks, options);
 }
 
 }  // namespace
@@ -156,17 +129,32 @@ scenario::Scenario load(const RunOptions& options) {
   return s;
 }
 
+std::string name_result(const scenario::Scenario& s, const RunOptions& options) {
+  return options.output.empty() ? std::filesystem::path(s.file).stem().string() + ".h5" : options.output;
+}
+
+void print_notes(const scenario::Scene& scene, const RunOptions& options) {
+  if (options.quiet) return;
+  for (const std::string& note : scene.notes) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
+}
+
 int run(const RunOptions& options) {
   const scenario::Scenario s = load(options);
   const std::string result = name_result(s, options);
   check_result_name(s, result);
   if (s.mode == scenario::Mode::equilibrium && options.resume)
     throw InputError(s.file, "/dynamics/mode", "\"static\" has no ticks to resume", "leave --resume out");
+  std::string note;
+  if (const auto session = find_session(options.trace, s, note))
+    return run_replay(without_trace(s), *session, note, options);
   scenario::Scene scene = scenario::build_scene(s);
+  if (!note.empty()) scene.notes.push_back(note);
   if (s.mode == scenario::Mode::equilibrium) return run_static(s, scene, options);
   const mesh::TriangleMesh tool = scene.tool;
   sim::Simulation simulation(std::move(scene.body), tool, s.params, sample_at(s, scene.trace, 0));
-  if (simulation.tool_overlaps_body()) refuse_start(s, options, simulation, tool);
+  const bool is_given = !options.trace.empty();
+  require_free_start(simulation, tool, is_given ? options.trace : s.file, is_given ? "" : "/trace",
+                     "start the motion outside it");
   print_notes(scene, options);
   if (options.dry_run) return print_ready(s, simulation, count_ticks(s, scene.trace));
   const Identity identity = find_identity(s);

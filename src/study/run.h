@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenario/scenario.h"
+#include "scenario/build.h"
 
 namespace argil::study {
 
@@ -14,7 +14,7 @@ struct RunOptions {
   std::string output;  ///< result file; empty: the scenario's name with .h5 in the working folder
   std::vector<std::string> settings;  ///< --set texts
   int threads = 1;
-  bool resume = false;   ///< go on from the result file's checkpoint where there is one
+  bool resume = false;  ///< go on from the result file's checkpoint where there is one
   bool writes_xdmf = true;
   bool dry_run = false;  ///< check and build everything, run and write nothing
   bool quiet = false;
@@ -32,6 +32,12 @@ enum ExitCode : int {
 
 /// Loads and checks a scenario with the options' settings and trace.
 scenario::Scenario load(const RunOptions& options);
+
+/// The result file's name, given or made of the scenario's.
+std::string name_result(const scenario::Scenario& s, const RunOptions& options);
+
+/// What the user should know of a scene, on standard error.
+void print_notes(const scenario::Scene& scene, const RunOptions& options);
 
 /// Runs a scenario from start, or with `resume` from its last checkpoint, to end and writes its result file
 /// and XDMF. A resumed run leaves the same bits as one that was never killed. Returns kDone, kRunFailed or

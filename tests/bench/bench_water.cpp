@@ -122,7 +122,7 @@ void tick(benchmark::State& state) {
     sample.mode = (step++ / 500) % 2 == 0 ? device::ToolMode::wet : device::ToolMode::dry;
     if (!simulation.tick(sample).is_ok()) state.SkipWithError("the step failed");
   }
-  if (!simulation.state().is_at_rest || simulation.pore_water().mass() == 0.0)
+  if (!simulation.body_state().is_at_rest || simulation.pore_water().mass() == 0.0)
     state.SkipWithError("no wet body at rest");
   state.counters["active"] = simulation.pore_water().num_active();
   state.counters["contacts"] = static_cast<double>(simulation.contacts().contacts.size());

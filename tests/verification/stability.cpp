@@ -57,7 +57,7 @@ Closed run_closed_loop(const Wall& wall, const Operator& hand, double stiffness,
       ARGIL_ASSERT(simulation.tick(test::press_apex(depth, mode)).is_ok());
     speed = closed.begin_speed = 1e-3 * balance * frequency;  // a thousandth of the depth
   }
-  double given = simulation.state().port_energy;
+  double given = simulation.hand_state().port_energy;
   const int ticks = static_cast<int>(std::lround(seconds / kTick));
   for (int k = 0; k < ticks; ++k) {
     const double force = hand.press - simulation.haptic_record().device_force.z();
@@ -71,7 +71,7 @@ Closed run_closed_loop(const Wall& wall, const Operator& hand, double stiffness,
     closed.largest_speed = std::max(closed.largest_speed, std::abs(speed));
     double& largest = 3 * k < ticks ? closed.first_speed : closed.last_speed;
     if (3 * k < ticks || 3 * k >= 2 * ticks) largest = std::max(largest, std::abs(speed));
-    const double now = simulation.state().port_energy;
+    const double now = simulation.hand_state().port_energy;
     closed.largest_step = std::max(closed.largest_step, std::abs(now - given));
     closed.lowest_energy = std::min(closed.lowest_energy, -now);
     given = now;

@@ -32,18 +32,18 @@ TEST(CompliantFriction, OfASlidingPlateIsCoulombsForHandAndBody) {
   const double aside = K * (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu));  // G over λ + 2μ
   const double normal = test::compute_series(test::kPenalty, K) * kDepth;
   Simulation simulation = test::make_one_node_simulation(params);
-  const double x = simulation.state().solid.x(0, 3);
+  const double x = simulation.body_state().solid.x(0, 3);
   device::DeviceSample sample = test::press_apex(kDepth);
   for (int k = 0; k < 40 * kPeriod; ++k) {
     if (k >= 4 * kPeriod) sample.position.x() += kWay;
     ASSERT_TRUE(simulation.tick(sample).is_ok());
     if (k < 30 * kPeriod) continue;
-    const Vec3 felt = simulation.state().hand_force;
+    const Vec3 felt = simulation.hand_state().hand_force;
     EXPECT_NEAR(felt.z(), normal, 1e-4 * normal) << k;
     EXPECT_NEAR(felt.x(), -kFriction * normal, 1e-3 * normal) << k;
     EXPECT_NEAR(felt.y(), 0.0, 1e-3 * normal) << k;
   }
-  EXPECT_NEAR(aside * (simulation.state().solid.x(0, 3) - x), kFriction * normal, 1e-3 * normal);
+  EXPECT_NEAR(aside * (simulation.body_state().solid.x(0, 3) - x), kFriction * normal, 1e-3 * normal);
 }
 
 Simulation make_block_simulation(Params params, SurfaceKind kind, double scale) {
@@ -70,8 +70,8 @@ TEST(CompliantSkin, ThatIsTheBoundaryItselfGivesTheSameRunAlsoWithFriction) {
     for (int k = 1; k <= 200; ++k) {
       const device::DeviceSample sample = slide(0.023 - 3e-5 * std::min(k, 150), 1e-5 * k);
       ASSERT_TRUE(cage.tick(sample).is_ok() && skin.tick(sample).is_ok());
-      largest = std::max(largest, cage.state().hand_force.norm());
-      ASSERT_LE((cage.state().hand_force - skin.state().hand_force).norm(), 1e-9 * largest) << k;
+      largest = std::max(largest, cage.hand_state().hand_force.norm());
+      ASSERT_LE((cage.hand_state().hand_force - skin.hand_state().hand_force).norm(), 1e-9 * largest) << k;
     }
     EXPECT_GT(largest, 0.1);
   }
@@ -89,7 +89,7 @@ TEST(CompliantSkin, UnderTheBoundaryGivesTheBodyWhatTheHandFeels) {
     const Points& internal = simulation.solid().internal_force();
     for (Eigen::Index v = 0; v < internal.cols(); ++v)
       if (simulation.solid().elements().rest(2, v) < 1e-9) borne += internal.col(v);
-    const Vec3 felt = simulation.state().hand_force;
+    const Vec3 felt = simulation.hand_state().hand_force;
     EXPECT_GT(felt.z(), 0.05);
     EXPECT_LT((borne - felt).norm(), 2e-2 * felt.norm()) << borne.transpose() << " | " << felt.transpose();
   }
@@ -103,7 +103,7 @@ TEST(CompliantGuess, OfVerticesTouchedAnewLiesBetweenNoYieldAndTheBodysOwn) {
     params.rates.between_frames = between;
     Simulation simulation = make_block_simulation(params, SurfaceKind::cage, 1.0);
     for (int k = 1; k <= ticks; ++k) EXPECT_TRUE(simulation.tick(slide(0.0195, 0.0)).is_ok());
-    return simulation.state().hand_force.z();
+    return simulation.hand_state().hand_force.z();
   };
   const double bare = press(BetweenFrames::re_evaluate, kPeriod - 1);
   const double guessed = press(BetweenFrames::compliant, kPeriod - 1);
@@ -135,7 +135,7 @@ TEST(CompliantCost, NoHeapInATickBetweenPhysicsSteps) {
     in_ticks = 0;
     lap(8);
     EXPECT_EQ(in_ticks, 0U) << friction;
-    EXPECT_GT(simulation.state().hand_force.z(), 0.05);
+    EXPECT_GT(simulation.hand_state().hand_force.z(), 0.05);
   }
 }
 #endif

@@ -112,11 +112,11 @@ TEST(Skin, ThatIsTheBoundaryItselfGivesTheSameRun) {
   for (int k = 1; k <= 150; ++k) {
     const device::DeviceSample sample = at_height(0.025 - 5e-5 * k);
     ASSERT_TRUE(cage.tick(sample).is_ok() && skin.tick(sample).is_ok());
-    largest = std::max(largest, cage.state().hand_force.norm());
-    ASSERT_LE((cage.state().hand_force - skin.state().hand_force).norm(), 1e-10 * largest) << k;
+    largest = std::max(largest, cage.hand_state().hand_force.norm());
+    ASSERT_LE((cage.hand_state().hand_force - skin.hand_state().hand_force).norm(), 1e-10 * largest) << k;
   }
   EXPECT_GT(largest, 0.1);
-  EXPECT_LT((cage.state().solid.x - skin.state().solid.x).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((cage.body_state().solid.x - skin.body_state().solid.x).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST(Skin, IsMetWhereItIsSeen) {
@@ -126,7 +126,7 @@ TEST(Skin, IsMetWhereItIsSeen) {
     double met = 0.0;
     for (double tip = 0.0249; tip > 0.016 && met == 0.0; tip -= 1e-5) {
       ASSERT_TRUE(simulation.tick(at_height(tip)).is_ok());
-      if (simulation.state().hand_force.norm() > 0.0) met = tip;
+      if (simulation.hand_state().hand_force.norm() > 0.0) met = tip;
     }
     EXPECT_NEAR(met, top,
                 2e-5);  // one tick's way, and the tool's lowest facet lies that much above its sphere
@@ -149,9 +149,9 @@ TEST(Skin, AFreeBodyTakesUpTheMomentumThatTheHandGives) {
       device::DeviceSample sample = at_height(0.019 - 5e-5 * k);
       sample.position.x() += 3e-5 * k;
       ASSERT_TRUE(simulation.tick(sample).is_ok());
-      impulse -= params.rates.haptic_period * simulation.state().hand_force;
+      impulse -= params.rates.haptic_period * simulation.hand_state().hand_force;
     }
-    const Vec3 momentum = simulation.state().solid.v * simulation.solid().mass();
+    const Vec3 momentum = simulation.body_state().solid.v * simulation.solid().mass();
     EXPECT_LT(momentum.z(), -1e-5);
     EXPECT_EQ(momentum.x() > 1e-6, friction > 0.0) << momentum.transpose();
     EXPECT_LT((momentum - impulse).norm(), 1e-12 * impulse.norm() + 1e-17) << damping << ' ' << friction;
@@ -179,9 +179,9 @@ TEST(Skin, AFreeBodyTakesUpTheAngularMomentumThatTheHandGives) {
       Vec3 momentum = Vec3::Zero();
       for (Eigen::Index v = 0; v < X.cols(); ++v)
         momentum += simulation.solid().mass()(v) *
-                    (X.col(v) - sample.position).cross(Vec3(simulation.state().solid.v.col(v)));
+                    (X.col(v) - sample.position).cross(Vec3(simulation.body_state().solid.v.col(v)));
       const double h = params.rates.haptic_period;
-      const State& state = simulation.state();
+      const HandState& state = simulation.hand_state();
       EXPECT_GT(state.hand_torque.norm(), 1e-5);
       EXPECT_LT((momentum + h * state.hand_torque).norm(), 1e-11 * h * state.hand_force.norm() * kSize.norm())
           << static_cast<int>(kind) << ' ' << damping << ' ' << friction;

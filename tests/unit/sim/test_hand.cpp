@@ -48,10 +48,10 @@ TEST(HandForce, IsTheOppositeOfWhatActedOnTheBody) {
     double work = 0.0;
     for (int k = 1; k <= 50; ++k) {
       const double force = go_to(simulation, 1e-5 * k).force.z();
-      const double z_next = simulation.state().solid.x(2, 3);
+      const double z_next = simulation.body_state().solid.x(2, 3);
       work += force * (z - z_next);
       z = z_next;
-      EXPECT_NEAR(simulation.state().contact_work, work, 1e-15);
+      EXPECT_NEAR(simulation.body_state().contact_work, work, 1e-15);
     }
     EXPECT_GT(work, 1e-7);
   }
@@ -87,9 +87,9 @@ TEST(HandForce, NeverDrawsOnABodyThatLeaves) {
       num_pressing += force > 0.0 ? 1 : 0;
       v = v_next;
       d += h * v;
-      ASSERT_NEAR(simulation.state().hand_force.z(), force, 1e-6) << frame;
-      ASSERT_NEAR(test::kHeight - simulation.state().solid.x(2, 3), d, 1e-9) << frame;
-      ASSERT_GE(simulation.state().hand_force.z(), -1e-15);
+      ASSERT_NEAR(simulation.hand_state().hand_force.z(), force, 1e-6) << frame;
+      ASSERT_NEAR(test::kHeight - simulation.body_state().solid.x(2, 3), d, 1e-9) << frame;
+      ASSERT_GE(simulation.hand_state().hand_force.z(), -1e-15);
     }
     EXPECT_GT(num_let_go, 10);
     EXPECT_GT(num_pressing, 1000);
@@ -156,7 +156,7 @@ TEST(Compliant, IsTwoSpringsInSeriesBetweenPhysicsSteps) {
     params.rates.between_frames = between;
     Simulation simulation = test::make_one_node_simulation(params);
     for (int k = 0; k < 56; ++k) go_to(simulation, 1e-3);
-    EXPECT_NEAR(simulation.state().hand_force.z(), series * 1e-3, 1e-5 * series * 1e-3);
+    EXPECT_NEAR(simulation.hand_state().hand_force.z(), series * 1e-3, 1e-5 * series * 1e-3);
     for (const double change : {1e-5, 1e-4, 5e-4, -2e-4, -9e-4, 3e-4, -2e-3, 2e-4}) {
       const double wanted = between == BetweenFrames::compliant
                                 ? series * std::max(0.0, 1e-3 + change)
@@ -177,7 +177,7 @@ TEST(Compliant, GivesTheBodyTheMeanOfWhatTheHandFeels) {
     double mean = 0.0;
     for (int k = 1; k <= 14; ++k)
       mean += go_to(simulation, 2e-4 * frame + 1e-5 * k * (frame < 4 ? 1 : -3)).force.z() / 14.0;
-    const double depth = test::kHeight - simulation.state().solid.x(2, 3);
+    const double depth = test::kHeight - simulation.body_state().solid.x(2, 3);
     EXPECT_NEAR(K * depth, mean, 1e-4 * mean) << frame;
   }
 }
@@ -189,8 +189,8 @@ TEST(Compliant, DoesNotYieldToToolsThatDoNotDeformTheBody) {
   Simulation simulation = test::make_one_node_simulation(params);
   for (int k = 0; k < 40; ++k) go_to(simulation, 3e-4);
   for (int k = 0; k < 40; ++k) go_to(simulation, 3e-4, ToolMode::wet);
-  EXPECT_NEAR(simulation.state().hand_force.z(), kPenalty * 3e-4, 1e-9);
-  EXPECT_LT(std::abs(simulation.state().solid.x(2, 3) - test::kHeight), 1e-9);
+  EXPECT_NEAR(simulation.hand_state().hand_force.z(), kPenalty * 3e-4, 1e-9);
+  EXPECT_LT(std::abs(simulation.body_state().solid.x(2, 3) - test::kHeight), 1e-9);
 }
 
 /// Energy that the hand is given in the last of three cycles of depth + amplitude·cos.

@@ -70,7 +70,7 @@ std::size_t count_in_ticks(const Params& params, device::ToolMode mode) {
     if (k > 15 * kPeriod) in_ticks += test::count_allocations() - before;
     EXPECT_TRUE(is_ok);
     if (!is_ok) break;
-    work += simulation.state().hand_force.norm();
+    work += simulation.hand_state().hand_force.norm();
   }
   EXPECT_GT(work, 1.0);
   return in_ticks;

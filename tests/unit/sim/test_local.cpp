@@ -59,10 +59,10 @@ PressRun run(const Params& params) {
   for (Tick k = 1; k <= kTicks; ++k) {
     const StepStatus status = simulation.tick(hand_at(k));
     EXPECT_TRUE(status.is_ok()) << k;
-    result.force.push_back(simulation.state().hand_force);
+    result.force.push_back(simulation.hand_state().hand_force);
     result.most_active = std::max(result.most_active, simulation.physics_record().active_nodes);
   }
-  result.x = simulation.state().solid.x;
+  result.x = simulation.body_state().solid.x;
   return result;
 }
 
@@ -107,15 +107,16 @@ TEST(LocalExtent, ComesNearerToTheWholeTheLessItLeavesOut) {
 TEST(LocalExtent, LeavesTheRestWhereItIsAndSleepsWhenNothingActs) {
   Simulation simulation(make_bar(), contact::make_sphere_tool(kToolRadius, 2),
                         make_params(solid::Extent::local, 0.05), hand_at(0));
-  const Points start = simulation.state().solid.x;
+  const Points start = simulation.body_state().solid.x;
   for (Tick k = 1; k <= 40; ++k) ASSERT_TRUE(simulation.tick(hand_at(k)).is_ok());
   int moved = 0;
-  for (Eigen::Index n = 0; n < start.cols(); ++n) moved += simulation.state().solid.x.col(n) != start.col(n);
+  for (Eigen::Index n = 0; n < start.cols(); ++n)
+    moved += simulation.body_state().solid.x.col(n) != start.col(n);
   EXPECT_GT(moved, 0);
   EXPECT_LE(moved, simulation.solid().num_free());
   for (Eigen::Index n = 0; n < start.cols(); ++n)
     if (start(0, n) > 0.3) {
-      EXPECT_TRUE(simulation.state().solid.x.col(n) == start.col(n)) << n;
+      EXPECT_TRUE(simulation.body_state().solid.x.col(n) == start.col(n)) << n;
     }
   for (Tick k = 41; k <= 600; ++k) ASSERT_TRUE(simulation.tick(hand_at(std::min<Tick>(k, 100))).is_ok());
   EXPECT_EQ(simulation.physics_record().active_nodes, 0);

@@ -51,7 +51,7 @@ double find_kernel_ratio(material::ClayKernel kernel, int period_ticks) {
     if (has_kernel) params.kernel = kernel;
     Simulation simulation = make_simulation(params);
     stay(simulation, press_apex(5e-4), period_ticks);
-    speed[has_kernel] = simulation.state().solid.v.col(kFar).norm();
+    speed[has_kernel] = simulation.body_state().solid.v.col(kFar).norm();
   }
   EXPECT_GT(speed[0], 1e-6);
   return speed[1] / speed[0];
@@ -85,8 +85,8 @@ TEST(Loop, KernelLeavesABodyFreeThatNothingPresses) {
   Simulation with_kernel = make_simulation(params);
   stay(free, press_apex(-1e-3), 3);
   stay(with_kernel, press_apex(-1e-3), 3);
-  EXPECT_GT(free.state().solid.v.norm(), 0.0);
-  EXPECT_EQ(with_kernel.state().solid.v, free.state().solid.v);
+  EXPECT_GT(free.body_state().solid.v.norm(), 0.0);
+  EXPECT_EQ(with_kernel.body_state().solid.v, free.body_state().solid.v);
 }
 
 TEST(Loop, HeldStrainFlowsAtItsRateWhateverThePeriod) {
@@ -112,7 +112,7 @@ TEST(Loop, HeldStrainFlowsAtItsRateWhateverThePeriod) {
       stay(simulation, press_apex(-1e-3), period);
       Vec6 expected = Vec6::Zero();
       expected(2) = -std::expm1(-kCreep * k * period * kTick) * kPull / kHeight;
-      const Vec6 plastic = simulation.state().solid.plastic_strain.col(0);
+      const Vec6 plastic = simulation.body_state().solid.plastic_strain.col(0);
       EXPECT_LT((plastic - expected).norm(), 1e-12 * expected.norm()) << k;
     }
   }
@@ -147,9 +147,9 @@ TEST(Loop, PullReversesForceAndTorque) {
     const device::DeviceSample sample = press_apex(kDepth, mode);
     stay(simulation, sample, 1);
     const Vec3 force = (mode == ToolMode::pull ? -1.0 : 1.0) * kPenalty * kDepth * Vec3::UnitZ();
-    EXPECT_LT((simulation.state().hand_force - force).norm(), 1e-12);
+    EXPECT_LT((simulation.hand_state().hand_force - force).norm(), 1e-12);
     const Vec3 torque = (apex - sample.position).cross(force);
-    EXPECT_LT((simulation.state().hand_torque - torque).norm(), 1e-12 * torque.norm());
+    EXPECT_LT((simulation.hand_state().hand_torque - torque).norm(), 1e-12 * torque.norm());
   }
 }
 
@@ -188,8 +188,9 @@ TEST(Loop, PhysicsStepsOnceInItsPeriodByAllOfIt) {
   for (int k = 1; k <= 14; ++k) {
     stay(simulation, press_apex(-1e-2), 1);
     const int m = k / kPeriod;
-    EXPECT_NEAR(simulation.state().solid.v(2, kApex), -m * kGravity * h, 1e-12) << k;
-    EXPECT_NEAR(simulation.state().solid.x(2, kApex), kHeight - 0.5 * m * (m + 1) * kGravity * h * h, 1e-14);
+    EXPECT_NEAR(simulation.body_state().solid.v(2, kApex), -m * kGravity * h, 1e-12) << k;
+    EXPECT_NEAR(simulation.body_state().solid.x(2, kApex), kHeight - 0.5 * m * (m + 1) * kGravity * h * h,
+                1e-14);
   }
 }
 

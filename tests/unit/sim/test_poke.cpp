@@ -38,7 +38,7 @@ TEST_P(Poke, AtAMetreASecondIsNotMissedAndDoesNotPopThrough) {
   const auto [period, surface] = GetParam();
   Simulation simulation = make_plate(period, surface);
   device::DeviceSample sample;
-  sample.position = simulation.state().tool.position;
+  sample.position = simulation.hand_state().tool.position;
   double largest = 0.0;
   for (int k = 1; k <= 40; ++k) {
     if (k <= 8)
@@ -47,13 +47,13 @@ TEST_P(Poke, AtAMetreASecondIsNotMissedAndDoesNotPopThrough) {
     ASSERT_TRUE(status.is_ok()) << k << ' ' << status.failure().quantity;
     // The plate springs ahead of the tool and comes back later; while it is being pushed, it pushes.
     if (k % period == 0 && k >= 4 && k <= 8) {
-      EXPECT_GT(simulation.state().hand_force.z(), 0.0) << k;
+      EXPECT_GT(simulation.hand_state().hand_force.z(), 0.0) << k;
     }
-    largest = std::max(largest, simulation.state().hand_force.z());
+    largest = std::max(largest, simulation.hand_state().hand_force.z());
   }
   // What lay under the tool still lies in front of it, the plate swinging a little.
-  const Vec3& tool = simulation.state().tool.position;
-  const Points& x = simulation.state().solid.x;
+  const Vec3& tool = simulation.hand_state().tool.position;
+  const Points& x = simulation.body_state().solid.x;
   int under = 0;
   for (Eigen::Index v = 0; v < x.cols(); ++v) {
     const Vec3 from = x.col(v) - tool;

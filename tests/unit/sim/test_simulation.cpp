@@ -65,9 +65,9 @@ TEST(Simulation, BodyTakesUpTheMomentumThatTheHandGives) {
     Vec3 impulse = Vec3::Zero();
     for (int k = 1; k <= 60; ++k) {
       ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k, device::ToolMode::push)).is_ok());
-      impulse -= params.rates.haptic_period * simulation.state().hand_force;
+      impulse -= params.rates.haptic_period * simulation.hand_state().hand_force;
     }
-    const Vec3 momentum = simulation.state().solid.v * simulation.solid().mass();
+    const Vec3 momentum = simulation.body_state().solid.v * simulation.solid().mass();
     EXPECT_LT(momentum.z(), -1e-5);
     EXPECT_LT((momentum - impulse).norm(), 1e-12 * impulse.norm() + 1e-17);
   }
@@ -77,8 +77,8 @@ TEST(Simulation, PushSendsTheHandUpAndTheSurfaceDown) {
   Simulation simulation = make_simulation(make_params());
   for (int k = 1; k <= 60; ++k)
     ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k, device::ToolMode::push)).is_ok());
-  EXPECT_GT(simulation.state().hand_force.z(), 0.01);
-  EXPECT_LT((simulation.state().solid.x - simulation.body().mesh.vertices).row(2).minCoeff(), -1e-5);
+  EXPECT_GT(simulation.hand_state().hand_force.z(), 0.01);
+  EXPECT_LT((simulation.body_state().solid.x - simulation.body().mesh.vertices).row(2).minCoeff(), -1e-5);
 }
 
 TEST(Simulation, PullSendsTheHandDownAndTheSurfaceUp) {
@@ -87,17 +87,17 @@ TEST(Simulation, PullSendsTheHandDownAndTheSurfaceUp) {
   Simulation simulation = make_simulation(params);
   for (int k = 1; k <= 60; ++k)
     ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k, device::ToolMode::pull)).is_ok());
-  EXPECT_LT(simulation.state().hand_force.z(), -1e-4);
-  EXPECT_GT((simulation.state().solid.x - simulation.body().mesh.vertices).row(2).maxCoeff(), 1e-8);
+  EXPECT_LT(simulation.hand_state().hand_force.z(), -1e-4);
+  EXPECT_GT((simulation.body_state().solid.x - simulation.body().mesh.vertices).row(2).maxCoeff(), 1e-8);
 }
 
 TEST(Simulation, WetToolIsFeltGivesWaterAndLeavesTheBodyAtRest) {
   Simulation simulation = make_simulation(make_params());
   for (int k = 1; k <= 100; ++k)
     ASSERT_TRUE(simulation.tick(over(0.001 - 3e-5 * k, device::ToolMode::wet)).is_ok());
-  EXPECT_GT(simulation.state().hand_force.z(), 0.01);
+  EXPECT_GT(simulation.hand_state().hand_force.z(), 0.01);
   // ∇N of the rest shape is rounded, so the rest strain is some 1e-16 and the body stirs by that much.
-  EXPECT_LT((simulation.state().solid.x - simulation.body().mesh.vertices).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT((simulation.body_state().solid.x - simulation.body().mesh.vertices).cwiseAbs().maxCoeff(), 1e-15);
   EXPECT_GT(simulation.pore_water().ledger().added, 1e-6);
 }
 
@@ -124,7 +124,7 @@ TEST(Simulation, WetClayPushesBackLess) {
                           over(0.001, device::ToolMode::push));
     for (int k = 1; k <= 200; ++k)
       ASSERT_TRUE(simulation.tick(over(0.001 - 3e-5 * std::min(k, 100), device::ToolMode::push)).is_ok());
-    force[wet] = simulation.state().hand_force.z();
+    force[wet] = simulation.hand_state().hand_force.z();
   }
   EXPECT_LT(force[1], 0.9 * force[0]);
 }
@@ -137,11 +137,11 @@ TEST(Simulation, HoldKeepsTheForceBetweenPhysicsStepsAndCountsItsAge) {
   Vec3 last = Vec3::Zero();
   for (int k = 1; k <= 60; ++k) {
     ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k, device::ToolMode::push)).is_ok());
-    EXPECT_EQ(simulation.state().force_age, k % 5);
+    EXPECT_EQ(simulation.hand_state().force_age, k % 5);
     if (k % 5 != 0) {
-      EXPECT_EQ(simulation.state().hand_force, last) << k;
+      EXPECT_EQ(simulation.hand_state().hand_force, last) << k;
     }
-    last = simulation.state().hand_force;
+    last = simulation.hand_state().hand_force;
   }
   EXPECT_GT(last.z(), 0.01);
 }
@@ -154,11 +154,11 @@ TEST(Simulation, ReEvaluateFindsAForceEveryTick) {
   Vec3 last = Vec3::Zero();
   for (int k = 1; k <= 60; ++k) {
     ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k, device::ToolMode::push)).is_ok());
-    EXPECT_EQ(simulation.state().force_age, 0);
+    EXPECT_EQ(simulation.hand_state().force_age, 0);
     if (k > 30) {
-      EXPECT_NE(simulation.state().hand_force, last) << k;
+      EXPECT_NE(simulation.hand_state().hand_force, last) << k;
     }
-    last = simulation.state().hand_force;
+    last = simulation.hand_state().hand_force;
   }
 }
 
@@ -181,9 +181,9 @@ double find_deviation(BetweenFrames between) {
     const device::DeviceSample sample =
         over(0.0002 - 1.2e-5 * std::min(k, 2 * kTicks - k), device::ToolMode::push);
     EXPECT_TRUE(fine.tick(sample).is_ok() && coarse.tick(sample).is_ok());
-    const double wanted = fine.state().hand_force.z();
+    const double wanted = fine.hand_state().hand_force.z();
     largest = std::max(largest, wanted);
-    sum += std::pow(coarse.state().hand_force.z() - wanted, 2);
+    sum += std::pow(coarse.hand_state().hand_force.z() - wanted, 2);
   }
   return std::sqrt(sum / (2 * kTicks)) / largest;
 }
@@ -213,13 +213,13 @@ TEST(Simulation, ForceOfACompliantSurfaceIsContinuousInTheHandsPlace) {
     Simulation simulation = make_simulation(params);
     device::DeviceSample sample = over(-3e-4, device::ToolMode::push);
     for (int k = 0; k < 10; ++k) ASSERT_TRUE(simulation.tick(sample).is_ok());  // after the first leap
-    Vec3 last = simulation.state().hand_force;
+    Vec3 last = simulation.hand_state().hand_force;
     for (int k = 0; k < ticks; ++k) {
       const double share = static_cast<double>(k) / ticks;
       sample.position += step * Vec3(0.8, 0.3, share < 0.3 ? -0.5 : share > 0.7 ? 0.5 : 0.0);
       ASSERT_TRUE(simulation.tick(sample).is_ok());
-      largest[i] = std::max(largest[i], (simulation.state().hand_force - last).norm());
-      last = simulation.state().hand_force;
+      largest[i] = std::max(largest[i], (simulation.hand_state().hand_force - last).norm());
+      last = simulation.hand_state().hand_force;
     }
     EXPECT_GT(last.norm(), 0.02);
   }
@@ -240,7 +240,7 @@ TEST(Simulation, CompliantSurfaceGivesEqualBitsAtAnyNumberOfThreads) {
     for (int k = 1; k <= 120; ++k)
       ASSERT_TRUE(
           simulation.tick(over(0.0005 - 3e-5 * std::min(k, 140 - k), device::ToolMode::push)).is_ok());
-    EXPECT_GT(simulation.state().hand_force.z(), 1e-3);
+    EXPECT_GT(simulation.hand_state().hand_force.z(), 1e-3);
     if (threads == 1) hash = simulation.state_hash();
     EXPECT_EQ(simulation.state_hash(), hash) << threads;
   }
@@ -250,8 +250,8 @@ TEST(Simulation, NothingMovesWhileTheToolIsAway) {
   Simulation simulation = make_simulation(make_params());
   for (int k = 1; k <= 20; ++k) ASSERT_TRUE(simulation.tick(over(0.05, device::ToolMode::push)).is_ok());
   // ∇N of the rest shape is rounded, so the rest strain is some 1e-16 and the body stirs by that much.
-  EXPECT_LT((simulation.state().solid.x - simulation.body().mesh.vertices).cwiseAbs().maxCoeff(), 1e-15);
-  EXPECT_EQ(simulation.state().hand_force, Vec3(0, 0, 0));
+  EXPECT_LT((simulation.body_state().solid.x - simulation.body().mesh.vertices).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_EQ(simulation.hand_state().hand_force, Vec3(0, 0, 0));
 }
 
 TEST(Simulation, StateHashTellsTheLastBit) {

@@ -111,7 +111,7 @@ TEST(Snapshot, ResumedAtAnyStepItEndsInTheSameBits) {
     Simulation whole = make_simulation(params);
     run(whole, kTicks);
     const Snapshot end = whole.take_snapshot();
-    EXPECT_GT(whole.state().hand_force.norm(), 0.0);  // it was pressed
+    EXPECT_GT(whole.hand_state().hand_force.norm(), 0.0);  // it was pressed
     for (Tick at = 0; at < kTicks; at += 14) {
       Simulation first = make_simulation(params);
       run(first, at);

@@ -57,7 +57,7 @@ Simulation make_simulation(Body body, const Params& params) {
 Vec3 find_corner(const Simulation& simulation) {
   Eigen::Index corner = 0;
   simulation.body().mesh.vertices.colwise().sum().maxCoeff(&corner);
-  return simulation.state().solid.x.col(corner);
+  return simulation.body_state().solid.x.col(corner);
 }
 
 TEST(AlignedPores, GiveABarTheModuliOfTheirDirection) {
@@ -107,7 +107,7 @@ double find_middle(Body body, const Params& params) {
   Eigen::Index node = 0;
   (rest.colwise() - Vec3(0.5 * kLength, 0.5 * kWidth, 0.5 * kWidth)).colwise().norm().minCoeff(&node);
   EXPECT_LT(std::abs(rest(0, node) - 0.5 * kLength), 1e-15);
-  return (simulation.state().solid.x(0, node) - rest(0, node)) / (0.01 * kLength);
+  return (simulation.body_state().solid.x(0, node) - rest(0, node)) / (0.01 * kLength);
 }
 
 /// Is the tet in the half at the wall x = 0?
@@ -176,7 +176,7 @@ TEST(YoungsModulus, OfAMeshReplacesTheMaterialsWhateverThatWas) {
     body.youngs_modulus = Field::Constant(body.mesh.num_tets(), 1e5);
     Simulation simulation = make_simulation(std::move(body), params);
     EXPECT_TRUE(simulation.settle().is_ok());
-    return Points(simulation.state().solid.x - simulation.body().mesh.vertices);
+    return Points(simulation.body_state().solid.x - simulation.body().mesh.vertices);
   };
   std::vector<Params> laws(4, make_params());
   laws[0].moisture.medium.fluid_bulk_modulus = 1e6;
@@ -311,10 +311,10 @@ TEST(Rest, AWetToolLeavesAnUntouchedBodyInPlaceBitForBit) {
   Simulation simulation(make_floor_bar(), contact::make_sphere_tool(0.005, 1), make_touch_params(),
                         at_height(0.03, device::ToolMode::wet));
   for (int k = 0; k < 50; ++k) ASSERT_TRUE(simulation.tick(at_height(0.0245, device::ToolMode::wet)).is_ok());
-  EXPECT_GT(simulation.state().hand_force.z(), 0.01);
+  EXPECT_GT(simulation.hand_state().hand_force.z(), 0.01);
   EXPECT_GT(simulation.pore_water().mass(), 1e-6);
-  EXPECT_TRUE(simulation.state().is_at_rest);
-  EXPECT_EQ(simulation.state().solid.x, simulation.solid().elements().rest);
+  EXPECT_TRUE(simulation.body_state().is_at_rest);
+  EXPECT_EQ(simulation.body_state().solid.x, simulation.solid().elements().rest);
 }
 
 TEST(Rest, ContactTakesTheBodyFromWhereTheLastDetectionLeftIt) {
@@ -326,12 +326,12 @@ TEST(Rest, ContactTakesTheBodyFromWhereTheLastDetectionLeftIt) {
                         at_height(0.03, device::ToolMode::push));
   int moved = 0, slept = 0;
   for (int k = 0; k < 800; ++k) {
-    const Points x = simulation.state().solid.x;
+    const Points x = simulation.body_state().solid.x;
     const bool presses = k < 60 || k > 700;
     ASSERT_TRUE(simulation.tick(at_height(presses ? 0.0242 : 0.03, device::ToolMode::push)).is_ok());
-    ASSERT_EQ(simulation.state().contact_x, x) << k;
-    moved += simulation.state().solid.x != x;
-    slept += simulation.state().is_at_rest;
+    ASSERT_EQ(simulation.hand_state().contact_x, x) << k;
+    moved += simulation.body_state().solid.x != x;
+    slept += simulation.body_state().is_at_rest;
   }
   EXPECT_GT(moved, 100);
   EXPECT_GT(slept, 200);
@@ -351,8 +351,8 @@ TEST(Rest, ABodyAtRestWakesToTheForceThatItWouldHaveGiven) {
       const auto mode = k > 500 && !presses ? device::ToolMode::wet : device::ToolMode::push;
       const double z = presses ? 0.0242 : (mode == device::ToolMode::wet ? 0.0245 : 0.03);
       ASSERT_TRUE(simulation.tick(at_height(z, mode)).is_ok());
-      force[may_rest].push_back(simulation.state().hand_force.z());
-      slept += may_rest && simulation.state().is_at_rest;
+      force[may_rest].push_back(simulation.hand_state().hand_force.z());
+      slept += may_rest && simulation.body_state().is_at_rest;
     }
   }
   EXPECT_GT(slept, 200);

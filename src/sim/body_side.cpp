@@ -1,0 +1,322 @@
+#include "sim/body_side.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "base/check.h"
+#include "base/hash.h"
+#include "base/lanes.h"
+#include "base/ordered_sum.h"
+#include "base/parallel.h"
+#include "material/plasticity.h"
+
+namespace argil::sim {
+
+BodySide::BodySide(Body body, const Params& params)
+    : m_params(params),
+      m_body(std::move(body)),
+      m_moisture(params.elastic, params.plasticity.yield, params.moisture, params.water.porosity),
+      m_solid(m_body.mesh, m_body.topology, m_body.supports, params.solid, params.threads),
+      m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation),
+      m_surface(params.contact_surface, m_body, m_solid.elements()),
+      m_runs(params.threads) {
+  const Eigen::Index n = m_solid.elements().num_nodes();
+  m_state.solid = m_solid.make_rest_state();
+  m_load_force = solid::compute_load_force(m_solid.elements(), m_body.topology.boundary, m_body.loads);
+  m_external_force.setZero(3, n);
+  m_x_before = m_state.solid.x;
+  m_v_before = m_state.solid.v;
+  m_yield.setZero(m_solid.elements().num_points());
+  m_is_flowing.resize(static_cast<std::size_t>(m_solid.elements().num_points() / kLanes + 1), 0);
+  const bool keeps_volume = params.plasticity.enabled && params.plasticity.deviatoric;
+  if (!m_moisture.is_isotropic() && keeps_volume)
+    m_shape_stiffness.resize(static_cast<std::size_t>(m_body.mesh.num_tets()));
+  m_is_flow_driven =
+      keeps_volume && (!m_moisture.is_isotropic() || params.solid.model == solid::StrainModel::neo_hookean);
+  m_is_moved = std::any_of(m_body.supports.begin(), m_body.supports.end(),
+                           [](const solid::Support& s) { return s.displacement.norm() > 0.0; });
+  StepStatus rest = m_solid.update_kinematics(m_state.solid.x, 0);
+  ARGIL_ASSERT(rest.is_ok());
+  const bool is_loaded = params.solid.gravity.norm() > 0.0 || m_load_force.norm() > 0.0;
+  if (!m_is_moved && !is_loaded) fall_asleep();
+  rest = refresh_materials(-1.0);
+  ARGIL_ASSERT(rest.is_ok());
+  if (m_state.is_at_rest) m_solid.sleep_all();
+}
+
+StepStatus BodySide::settle() {
+  return m_solid.find_equilibrium(m_state.solid, {m_load_force});
+}
+
+BodyAtFrame BodySide::at_frame(Tick tick) {
+  return {m_solid, m_surface, m_state.solid, step_seconds(), tick};
+}
+
+/// Sets right what was gathered in more or fewer ticks than planned, and answers that nothing has moved yet.
+void BodySide::begin_step(ContactLoad& load, BodyAnswer& answer) {
+  ++m_state.steps;
+  m_hand = load.hand;
+  answer.step = m_state.steps;
+  answer.has_moved = false;
+  answer.felt = load.hand.felt;
+  if (load.scale == 1.0) return;
+  load.force *= load.scale;
+  for (solid::PointStiffness& entry : load.stiffness) {
+    entry.stiffness *= load.scale;
+    entry.force *= load.scale;
+  }
+  for (ContactYield& entry : load.yields) entry.force_at_rest *= load.scale;
+}
+
+/// What a step has found the body to yield under the tool lets the forces of its contacts fall: those on the
+/// body, and of the last detection those that the hand feels. With one detection a step, both are equal and
+/// opposite.
+void BodySide::apply_contact_yield(ContactLoad& load, device::Wrench& felt) {
+  m_solid.apply_contact_stiffness(load.stiffness, load.force);
+  for (std::size_t i = load.last_detection; i < load.stiffness.size(); ++i) {
+    const Vec3 at_rest = load.yields[i].force_at_rest * load.stiffness[i].normal;
+    const Vec3 change = load.detections * (at_rest + m_solid.compute_contact_change(load.stiffness, i));
+    felt.force -= change;
+    felt.torque -= (load.yields[i].point - load.hand.tool.position).cross(change);
+  }
+}
+
+/// v ← G_d^{h/h_ref}(r) v with r from the point of contact (eq. 9). A body that nothing presses is left free,
+/// else clay held in mid-air would freeze in whatever shape it has.
+void BodySide::apply_clay_kernel(const ContactLoad& load, double step_s) {
+  if (!load.is_pressed || m_params.kernel.form == material::KernelForm::off) return;
+  parallel_for(m_state.solid.v.cols(), m_params.threads, [&](std::ptrdiff_t v) {
+    if (!m_state.solid.v.col(v).isZero(0.0)) m_state.solid.v.col(v) *= clay_factor(v, load, step_s);
+  });
+}
+
+double BodySide::clay_factor(Eigen::Index node, const ContactLoad& load, double step_s) const {
+  const double r = (m_state.solid.x.col(node) - load.centre).norm();
+  return material::compute_clay_factor(r, m_params.kernel, step_s);
+}
+
+/// Books what hand, loads and supports gave the body in the step just taken, and stops a run in which it
+/// moves with many times the energy that they ever gave it: no body does, a scheme past its limit does. Clay
+/// that swells is left alone: its water gives it energy, too, that no one books.
+StepStatus BodySide::check_energy(const ContactLoad& contacts) {
+  if (m_params.energy_limit == 0.0 || m_params.water.swelling > 0.0) return StepStatus::ok();
+  constexpr double kSpeed = 1e-4;  // [m/s] of a body that counts as still: there is rounding below
+  const solid::SolidState& solid = m_state.solid;
+  const Field& mass = m_solid.mass();
+  m_state.energy_given += ordered_sum(solid.x.cols(), [&](std::ptrdiff_t n) {
+    const Vec3 way = solid.x.col(n) - m_x_before.col(n);
+    const Vec3 load = m_load_force.col(n) + mass(n) * m_params.solid.gravity;
+    const Vec3 reaction = (m_solid.constraints().support.col(n).array() >= 0)
+                              .select(m_solid.internal_force().col(n), Vec3::Zero());
+    return std::max(0.0, way.dot(contacts.force.col(n))) + std::abs(way.dot(load)) +
+           std::abs(way.dot(reaction));
+  });
+  const double bound = m_params.energy_limit * m_state.energy_given + 0.5 * kSpeed * kSpeed * mass.sum();
+  const double kinetic = m_solid.compute_kinetic_energy(solid);
+  if (kinetic <= bound) return StepStatus::ok();
+  return StepStatus::failed(
+      {tick(), "solid", -1, "kinetic energy [J] of a body that was given less", kinetic, bound});
+}
+
+/// ε_p of a point after a step's flow.
+Vec6 BodySide::compute_flow(int point, double step_s) const {
+  const int tet = m_solid.elements().tet_of_point(point);
+  const Vec6 before = m_state.solid.plastic_strain.col(point);
+  material::FlowPoint at{m_solid.material(tet).yield};
+  Vec6 drive;
+  if (m_is_flow_driven) {
+    const double shape_stiffness = m_shape_stiffness.empty()
+                                       ? 2.0 * m_solid.material(tet).mu
+                                       : m_shape_stiffness[static_cast<std::size_t>(tet)];
+    drive = m_solid.compute_flow_drive(point, before, shape_stiffness);
+    at.drive = &drive;
+  }
+  return material::compute_plastic_strain(m_solid.strain().col(point), before, at, m_params.plasticity,
+                                          step_s);
+}
+
+/// Flow of every point whose elastic strain lies beyond its yield; others are not looked at one by one.
+void BodySide::apply_plastic_flow(double step_s) {
+  if (!m_params.plasticity.enabled) return;
+  const std::ptrdiff_t count = m_state.solid.plastic_strain.cols();
+  m_state.plastic_dissipation += m_runs.sum(count, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    double released = 0.0;
+    for (std::ptrdiff_t p = begin; p < end; p += kLanes)
+      if (m_solid.moves(p / kLanes)) released += flow_at_points(p, std::min(p + kLanes, end), step_s);
+    return released;
+  });
+}
+
+/// Of at most kLanes points; returns what their flow dissipates [J].
+double BodySide::flow_at_points(std::ptrdiff_t begin, std::ptrdiff_t end, double step_s) {
+  unsigned flowing =
+      m_is_flow_driven ? (1U << (end - begin)) - 1U
+                       : material::find_flowing(m_solid.strain().data(), m_state.solid.plastic_strain.data(),
+                                                m_yield.data(), m_params.plasticity, begin, end);
+  m_is_flowing[static_cast<std::size_t>(begin / kLanes)] = flowing != 0;
+  double released = 0.0;
+  for (; flowing != 0; flowing &= flowing - 1)
+    released += flow_at_point(static_cast<int>(begin) + std::countr_zero(flowing), step_s);
+  return released;
+}
+
+/// Returns what flow dissipates [J]: at fixed strain, the elastic energy that it releases. The neo-Hookean
+/// law bends within a long step of flow: there the step ends by halves where it releases energy.
+double BodySide::flow_at_point(int point, double step_s) {
+  constexpr int kHalvings = 10;
+  const bool is_bent = m_params.solid.model == solid::StrainModel::neo_hookean;
+  const Vec6 before = m_state.solid.plastic_strain.col(point);
+  Vec6 after = compute_flow(point, step_s);
+  if ((after.array() == before.array()).all()) return 0.0;
+  const double energy = m_solid.compute_elastic_energy(point, before);
+  double released = energy - m_solid.compute_elastic_energy(point, after);
+  for (int k = 0; is_bent && released < 0.0 && k < kHalvings; ++k) {
+    after = k + 1 < kHalvings ? Vec6(0.5 * (before + after)) : before;
+    released = energy - m_solid.compute_elastic_energy(point, after);
+  }
+  m_state.solid.plastic_strain.col(point) = after;
+  return released;
+}
+
+/// Moduli, yield, size and weight of a tet at the saturation S.
+void BodySide::refresh_material(int tet, double S) {
+  const bool has_own_modulus = m_body.youngs_modulus.size() > 0;
+  const double E = has_own_modulus ? m_body.youngs_modulus(tet) : m_params.elastic.youngs_modulus;
+  const material::WetState wet = has_own_modulus ? m_moisture.at(S, E) : m_moisture.at(S);
+  m_solid.set_material(tet, {wet.lambda, wet.mu, wet.yield});
+  const int Q = m_solid.elements().points_per_tet;
+  m_yield.segment(static_cast<Eigen::Index>(Q) * tet, Q).setConstant(wet.yield);
+  if (m_params.water.swelling > 0.0) m_solid.set_swelling(tet, 1.0 + m_params.water.swelling * S);
+  if (m_params.water.adds_mass) m_solid.set_water_mass(tet, m_water.capacity(tet) * S);
+  if (m_moisture.is_isotropic()) return;
+  const Vec3 axis =
+      m_body.pore_axis.cols() > 0 ? Vec3(m_body.pore_axis.col(tet)) : m_params.moisture.medium.axis;
+  const Mat6 C = has_own_modulus ? m_moisture.stiffness_at(S, axis, E) : m_moisture.stiffness_at(S, axis);
+  m_solid.set_anisotropic_stiffness(tet, C);
+  if (!m_shape_stiffness.empty())
+    m_shape_stiffness[static_cast<std::size_t>(tet)] = material::compute_shape_stiffness(C);
+}
+
+/// Brings the solid up to date with every tet whose saturation moved by more than `tolerance` since last
+/// time.
+StepStatus BodySide::refresh_materials(double tolerance) {
+  m_water.collect_changed(tolerance, m_changed_tets);
+  for (const int tet : m_changed_tets) {
+    refresh_material(tet, m_water.saturation()(tet));
+    if (m_state.is_at_rest && m_solid.is_strained(tet, m_state.solid.plastic_strain))
+      m_state.is_at_rest = false;  // other moduli under strain: another balance
+  }
+  const bool gains_weight = m_params.water.adds_mass && m_params.solid.gravity.norm() > 0.0;
+  if (gains_weight && !m_changed_tets.empty()) m_state.is_at_rest = false;
+  const bool may_grow = m_params.water.swelling > 0.0 && !m_changed_tets.empty();
+  if (!may_grow || !(m_water.saturation().array() > 0.0).any()) return StepStatus::ok();
+  m_state.is_at_rest = false;
+  return m_solid.update_kinematics(m_state.solid.x, tick());
+}
+
+void BodySide::fall_asleep() {
+  m_state.is_at_rest = true;
+  m_state.slow_steps = 0;
+  m_state.solid.v.setZero();
+  m_state.solid.v_before.setZero();
+  if (m_state.solid.x_before.size() > 0) m_state.solid.x_before = m_state.solid.x;
+  m_solid.sleep_all();
+  m_rest_energy = m_solid.compute_elastic_energy(m_state.solid.plastic_strain);
+  m_rest_plastic_strain = m_state.solid.plastic_strain.colwise().norm().maxCoeff();
+}
+
+/// Is the body left as it is in this physics step? It falls asleep when nothing has touched it and it has
+/// been slower than rest_speed for two steps, and wakes when anything acts. A body that never moved rests
+/// from the start; only rounding would stir it.
+bool BodySide::rests(bool is_touched) {
+  if (is_touched || m_is_moved) {
+    m_state.is_at_rest = false;
+    m_state.slow_steps = 0;
+    return false;
+  }
+  if (m_state.is_at_rest || m_params.rest_speed == 0.0) return m_state.is_at_rest;
+  const double speed = std::sqrt(m_state.solid.v.colwise().squaredNorm().maxCoeff());
+  m_state.slow_steps = speed <= m_params.rest_speed ? m_state.slow_steps + 1 : 0;
+  if (m_state.slow_steps >= 2) fall_asleep();
+  return m_state.is_at_rest;
+}
+
+PhysicsRecord BodySide::make_record() const {
+  PhysicsRecord record;
+  record.tick = m_hand.ticks;
+  record.time = static_cast<double>(m_hand.ticks) * m_params.rates.haptic_period;
+  record.kinetic_energy = m_solid.compute_kinetic_energy(m_state.solid);
+  const bool is_at_rest = m_state.is_at_rest;
+  record.elastic_energy =
+      is_at_rest ? m_rest_energy : m_solid.compute_elastic_energy(m_state.solid.plastic_strain);
+  record.plastic_dissipation = m_state.plastic_dissipation;
+  record.contact_work = m_state.contact_work;
+  record.water_mass = m_water.mass();
+  record.water_added = m_water.ledger().added;
+  record.water_removed = m_water.ledger().removed;
+  record.iterations = m_solid.counters().linear_iterations;
+  record.newton_iterations = m_solid.counters().newton_iterations;
+  record.factorisations = m_solid.solver_cost().factorisations;
+  record.residual = m_solid.counters().residual;
+  record.active_nodes = m_solid.num_active();
+  record.min_volume_ratio = m_solid.min_volume_ratio();
+  record.max_plastic_strain =
+      is_at_rest ? m_rest_plastic_strain : m_state.solid.plastic_strain.colwise().norm().maxCoeff();
+  return record;
+}
+
+/// ε_p of each tet: the mean of its points, whose weights are equal.
+TensorField BodySide::mean_plastic_strain() const {
+  const TensorField& at_points = m_state.solid.plastic_strain;
+  const int Q = m_solid.elements().points_per_tet;
+  if (Q == 1) return at_points;
+  TensorField mean(6, m_body.mesh.num_tets());
+  for (Eigen::Index t = 0; t < mean.cols(); ++t)
+    mean.col(t) = at_points.middleCols(Q * t, Q).rowwise().mean();
+  return mean;
+}
+
+Frame BodySide::make_frame(const HandPose& hand) const {
+  Frame frame;
+  frame.tick = hand.ticks;
+  frame.time = static_cast<double>(hand.ticks) * m_params.rates.haptic_period;
+  frame.position = m_state.solid.x.leftCols(m_body.mesh.num_vertices());
+  frame.saturation = m_water.saturation();
+  frame.plastic_strain = mean_plastic_strain();
+  if (m_body.skin_embedding.num_points() > 0) {
+    embed::interpolate_positions(m_body.skin_embedding, m_solid.elements().nodes, m_state.solid.x,
+                                 frame.skin_position);
+    embed::interpolate_tet_field(m_body.skin_embedding, m_water.saturation(), frame.skin_saturation);
+    if (m_params.kernel.form == material::KernelForm::off)
+      frame.skin_influence.setZero(frame.skin_position.cols());
+    else
+      embed::compute_region_of_influence(frame.skin_position, hand.tool.position, m_params.kernel.radius,
+                                         frame.skin_influence);
+  }
+  frame.state_hash = make_hash(hand);
+  return frame;
+}
+
+std::string BodySide::make_hash(const HandPose& hand) const {
+  Sha256 hash;
+  const auto add = [&hash](const auto& array) {
+    hash.add(array.data(), static_cast<std::size_t>(array.size()));
+  };
+  const double tick = static_cast<double>(hand.ticks);
+  hash.add(&tick, 1);
+  add(hand.tool.position);
+  add(hand.tool.orientation.coeffs());
+  add(hand.felt.force);
+  add(hand.felt.torque);
+  add(m_state.solid.x);
+  add(m_state.solid.v);
+  add(m_state.solid.plastic_strain);
+  add(m_state.solid.x_before);
+  add(m_state.solid.v_before);
+  add(m_water.saturation());
+  return hash.hex_digest();
+}
+
+}  // namespace argil::sim
