@@ -14,7 +14,7 @@ from pathlib import Path
 
 # Start of an included header's name → the folders (or files) that may include it.
 LIBRARIES = {"hdf5": ["hdf5"], "cholmod": ["linear"], "umfpack": ["linear"], "nlohmann/": ["device", "scenario"],
-             "boost/": ["device"], "spnav": ["device"], "dlfcn": ["device"], "CLI/": ["main.cpp"]}
+             "boost/": ["device"], "spnav": ["device"], "dlfcn": ["device"], "CLI/": ["cli", "main.cpp"]}
 # What no folder of the loop may include: a tick neither locks nor calls the system.
 LOOP = {"material", "linear", "water", "solid", "embed", "sim"}
 SYSTEM = re.compile(r"(mutex|shared_mutex|thread|condition_variable|future|semaphore|chrono|ctime|fstream|iostream"

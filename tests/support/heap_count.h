@@ -12,10 +12,16 @@
 namespace argil::test {
 
 inline std::atomic<std::size_t> s_allocations = 0;
+inline thread_local std::size_t t_allocations = 0;
 
 /// Calls of malloc since the program's start, by any thread.
 inline std::size_t count_allocations() {
   return s_allocations;
+}
+
+/// By the calling thread alone.
+inline std::size_t count_allocations_of_thread() {
+  return t_allocations;
 }
 
 }  // namespace argil::test
@@ -23,6 +29,7 @@ inline std::size_t count_allocations() {
 extern "C" void* __libc_malloc(std::size_t size);     // NOLINT: glibc's name
 extern "C" void* malloc(std::size_t size) noexcept {  // NOLINT
   argil::test::s_allocations.fetch_add(1, std::memory_order_relaxed);
+  ++argil::test::t_allocations;
   return __libc_malloc(size);
 }
 #define ARGIL_COUNTS_HEAP

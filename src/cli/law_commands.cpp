@@ -1,0 +1,90 @@
+// Single laws and tools: what a run is made of.
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <iostream>
+#include <iterator>
+#include <memory>
+
+#include "cli/commands.h"
+#include "contact/queries.h"
+#include "embed/cage.h"
+#include "mesh/quality.h"
+#include "mesh/readers.h"
+#include "scenario/probe.h"
+#include "study/files.h"
+#include "study/run.h"
+
+namespace argil::cli {
+namespace {
+
+using study::ExitCode;
+
+/// What the commands of this file are given; they share it, for only one of them runs.
+struct Options {
+  std::string first, second;
+  double separation = 0.0;
+  int target_tets = embed::CageOptions().target_tets;
+  double scale = 1.0;
+};
+
+int make_cage_file(const std::string& surface, const std::string& output, int target_tets, double scale) {
+  study::require_input_file(surface);
+  study::check_cage_name(surface, output);
+  const embed::Cage cage = embed::make_cage(mesh::read_triangle_mesh(surface, scale), {target_tets}, surface);
+  mesh::write_gmsh(cage.mesh, output);
+  const embed::CageReport& r = cage.report;
+  std::printf("%s: %d tets, %d vertices, cell %.4g m, boundary %.4g m off the surface, ", output.c_str(),
+              r.num_tets, cage.mesh.num_vertices(), r.cell_size, r.offset);
+  std::printf("dihedral angles %.2f to %.2f degrees, %d surface vertices enclosed\n", r.min_dihedral_degrees,
+              r.max_dihedral_degrees, r.enclosed_vertices);
+  return ExitCode::kDone;
+}
+
+int print_times_of_impact(const std::string& kind, const std::string& queries, double separation) {
+  const auto pair = kind == "vertex-face" ? contact::PairKind::vertex_face : contact::PairKind::edge_edge;
+  study::require_input_file(queries);
+  const contact::QueryFile file = contact::read_queries(queries);
+  std::puts("query,hit,time_of_impact");
+  for (std::size_t q = 0; q < file.paths.size(); ++q) {
+    if (const auto time = contact::find_time_of_impact(pair, file.paths[q], separation))
+      std::printf("%zu,1,%.17g\n", q, *time);
+    else
+      std::printf("%zu,0,\n", q);
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+void add_law_commands(CLI::App& app, int& code) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* probe = app.add_subcommand("probe", "one law at a point: JSON on standard input and output");
+  probe->add_option("KERNEL", o->first, "the law; src/scenario/README.md lists them")->required();
+  probe->callback([o, &code] {
+    const std::string text((std::istreambuf_iterator<char>(std::cin)), std::istreambuf_iterator<char>());
+    std::cout << scenario::run_probe(o->first, text);
+  });
+
+  CLI::App* ccd =
+      app.add_subcommand("ccd", "time of impact of each query of a file, by the simulation's own detection");
+  ccd->add_option("--kind", o->second, "vertex-face or edge-edge")
+      ->required()
+      ->check(CLI::IsMember({"vertex-face", "edge-edge"}));
+  ccd->add_option("QUERIES", o->first, "CSV, eight rows of rational coordinates a query")->required();
+  ccd->add_option("--minimum-separation", o->separation,
+                  "report pairs that come this near, in the file's unit")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  ccd->callback([o, &code] { code = print_times_of_impact(o->second, o->first, o->separation); });
+
+  CLI::App* cage = app.add_subcommand("cage", "make a tetrahedral cage that encloses a surface");
+  cage->add_option("SURFACE", o->first, "OBJ, STL or PLY, clean or not")->required();
+  cage->add_option("-o,--output", o->second, "cage (Gmsh, .msh)")->required();
+  cage->add_option("--tets", o->target_tets, "wanted number of tets")->check(CLI::Range(100, 5000000));
+  cage->add_option("--scale", o->scale, "metres per unit of the file")->check(CLI::PositiveNumber);
+  cage->callback([o, &code] { code = make_cage_file(o->first, o->second, o->target_tets, o->scale); });
+}
+
+}  // namespace argil::cli

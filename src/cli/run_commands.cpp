@@ -1,0 +1,152 @@
+// A run, what it reads and what it wrote.
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "cli/commands.h"
+#include "device/devices.h"
+#include "live/live.h"
+#include "output/compare.h"
+#include "output/info.h"
+#include "scenario/tolerance_file.h"
+#include "study/export.h"
+#include "study/files.h"
+#include "study/run.h"
+
+namespace argil::cli {
+namespace {
+
+using study::ExitCode;
+
+/// What the commands of this file are given; they share it, for only one of them runs.
+struct Options {
+  study::RunOptions run;
+  live::LiveOptions live;
+  study::ExportOptions exported;
+  bool reference = false;
+  std::vector<std::string> devices;
+  std::string first, second, tolerances;
+};
+
+int compare_files(const std::string& a, const std::string& b, const std::string& tolerances) {
+  for (const std::string& file : {a, b}) study::require_input_file(file);
+  output::CompareOptions options;
+  if (!tolerances.empty()) {
+    study::require_input_file(tolerances);
+    options = scenario::load_tolerances(tolerances);
+  }
+  const output::CompareReport report = output::compare_results(a, b, options);
+  std::fputs(to_string(report).c_str(), stdout);
+  return report.is_equal() ? ExitCode::kDone : ExitCode::kDifferent;
+}
+
+int print_info(const std::string& file) {
+  study::require_input_file(file);
+  std::cout << output::describe_result(file);
+  return ExitCode::kDone;
+}
+
+/// Without names: the kinds that there are, and those of them that can be looked for.
+void print_devices(std::vector<std::string> names) {
+  constexpr double kPatience = 2.0;  // [s] for each
+  if (names.empty()) {
+    for (const device::DeviceKind& kind : device::device_kinds()) {
+      std::printf("%-12s %s\n", kind.name.c_str(), kind.about.c_str());
+      if (kind.name.find(':') == std::string::npos) names.push_back(kind.name);
+    }
+    std::puts("");
+  }
+  std::fputs(device::describe_devices(names, kPatience).c_str(), stdout);
+}
+
+int validate(const study::RunOptions& options) {
+  const scenario::Scenario s = study::load(options);
+  for (const std::string& warning : s.warnings) std::fprintf(stderr, "argil: warning: %s\n", warning.c_str());
+  std::printf("%s: valid\n", s.file.c_str());
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+void add_run_commands(CLI::App& app, int& code) {
+  const auto o = std::make_shared<Options>();
+  const auto add_scenario = [o](CLI::App* command) {
+    command->add_option("SCENARIO", o->run.scenario, "scenario (JSON)")->required();
+    command
+        ->add_option("--set", o->run.settings,
+                     "/json/pointer=value, put in the scenario's place; may be repeated")
+        ->allow_extra_args(false);
+    command->add_option("--trace", o->run.trace, "recorded motion in place of the scenario's");
+  };
+  CLI::App* run = app.add_subcommand("run", "run a scenario and write its result");
+  add_scenario(run);
+  run->add_option("-o,--output", o->run.output, "result file (default: the scenario's name with .h5)");
+  run->add_option("--threads", o->run.threads, "threads; results do not depend on them")
+      ->check(CLI::Range(1, 256));
+  run->add_flag("--resume", o->run.resume, "go on from the result's last checkpoint, if there is one");
+  run->add_flag("--dry-run", o->run.dry_run, "check and build everything, write nothing");
+  run->add_flag("-q,--quiet", o->run.quiet, "print errors only");
+  run->callback([o, &code] { code = study::run(o->run); });
+
+  CLI::App* live = app.add_subcommand("live", "run a scenario with a device in the place of its trace");
+  live->add_option("SCENARIO", o->run.scenario, "scenario (JSON)")->required();
+  live->add_option("--device", o->live.device, "argil devices lists them")->required();
+  live->add_option("--set", o->run.settings, "as with run")->allow_extra_args(false);
+  live->add_option("-o,--output", o->run.output, "result file, which argil run --trace replays");
+  live->add_option("--duration", o->live.duration, "seconds (default: a simulated hand's trace; else Ctrl-C)")
+      ->check(CLI::PositiveNumber);
+  live->add_option("--threads", o->run.threads, "of the physics; results do not depend on them")
+      ->check(CLI::Range(1, 256));
+  live->add_option("--watch", o->live.watch, "HDF5 file that others may read while it grows (SWMR)");
+  live->add_flag("-q,--quiet", o->run.quiet, "print errors only");
+  live->callback([o, &code] {
+    o->live.run = o->run;
+    code = live::run_live(o->live);
+  });
+
+  CLI::App* devices = app.add_subcommand("devices", "list the kinds of devices, or look for some");
+  devices->add_option("NAME", o->devices,
+                      "devices, as with live: is it there, and what does it say of itself");
+  devices->callback([o] { print_devices(o->devices); });
+
+  CLI::App* check = app.add_subcommand("validate", "check a scenario without running it");
+  add_scenario(check);
+  check->callback([o, &code] { code = validate(o->run); });
+
+  CLI::App* show = app.add_subcommand("show", "print a scenario with every default written out");
+  add_scenario(show);
+  show->callback([o, &code] { std::cout << scenario::print_resolved(study::load(o->run)); });
+
+  CLI::App* schema = app.add_subcommand("schema", "print the JSON Schema of a scenario");
+  schema->add_flag("--reference", o->reference, "print the reference page (Markdown) instead");
+  schema->callback(
+      [o, &code] { std::cout << (o->reference ? scenario::print_reference() : scenario::print_schema()); });
+
+  CLI::App* info = app.add_subcommand("info", "describe a result file");
+  info->add_option("FILE", o->first, "result file")->required();
+  info->callback([o, &code] { code = print_info(o->first); });
+
+  CLI::App* exporting = app.add_subcommand("export", "write a result for a browser");
+  exporting->add_option("FILE", o->exported.result, "result file")->required();
+  exporting->add_option("--html", o->exported.html, "one page that shows the result without a network")
+      ->required();
+  exporting
+      ->add_option("--megabytes", o->exported.megabytes,
+                   "for the page's frames before compression; fewer are shown")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  exporting->add_flag("--cage", o->exported.cage, "show the cage also where there is a skin");
+  exporting->callback([o, &code] { code = study::export_result(o->exported); });
+
+  CLI::App* compare =
+      app.add_subcommand("compare", "compare two result files bit by bit, or within tolerances");
+  compare->add_option("A", o->first, "result file")->required();
+  compare->add_option("B", o->second, "result file")->required();
+  compare->add_option("--tolerances", o->tolerances, "tolerances of datasets (JSON)");
+  compare->callback([o, &code] { code = compare_files(o->first, o->second, o->tolerances); });
+}
+
+}  // namespace argil::cli

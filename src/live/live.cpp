@@ -1,0 +1,194 @@
+#include "live/live.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+#include "base/error.h"
+#include "device/devices.h"
+#include "device/release_guard.h"
+#include "live/figures.h"
+#include "live/realtime.h"
+#include "live/recorder.h"
+#include "scenario/build.h"
+#include "study/files.h"
+#include "study/loop.h"
+#include "study/replay.h"
+#include "study/start.h"
+
+namespace argil::live {
+namespace {
+
+using study::ExitCode;
+
+std::atomic<Session*> g_session =
+    nullptr;  // what a signal ends; the pointer and what it does are free of locks
+static_assert(std::atomic<Session*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+void on_signal(int) {
+  if (Session* session = g_session.load()) session->request_stop();
+}
+
+/// As long as this object is there, signals end the session.
+class SignalScope {
+ public:
+  explicit SignalScope(Session& session) {
+    g_session = &session;
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, on_signal);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error of the write, like a full disk
+  }
+  ~SignalScope() { g_session = nullptr; }
+  SignalScope(const SignalScope&) = delete;
+  SignalScope& operator=(const SignalScope&) = delete;
+};
+
+/// What batch can do and a hand that does not wait cannot.
+void require_live(const scenario::Scenario& s) {
+  if (s.mode == scenario::Mode::equilibrium)
+    throw InputError(s.file, "/dynamics/mode", "\"static\" has no ticks", "run it with argil run");
+  if (s.params.rates.between_frames == sim::BetweenFrames::compliant)
+    throw InputError(
+        s.file, "/haptics/between_frames",
+        "\"compliant\" looks into the body between its steps, which a hand that does not wait cannot",
+        "set re_evaluate or hold");
+}
+
+device::DeviceOptions make_device_options(const scenario::Scenario& s, const device::Trace& trace) {
+  device::DeviceOptions options;
+  options.device_to_world = s.trace.options.device_to_world;
+  options.mode = study::find_fixed_mode(s).value_or(s.trace.options.default_mode);
+  options.period = s.params.rates.haptic_period;
+  options.intent = trace;
+  return options;
+}
+
+/// Started, and with a first sample.
+std::unique_ptr<device::HapticDevice> attach(const std::string& name, const device::DeviceOptions& options) {
+  constexpr double kPatience = 5.0;  // [s]
+  std::unique_ptr<device::HapticDevice> device = device::make_device(name, options);
+  device->start();
+  const device::DeviceState state = device::wait_until_ready(*device, kPatience);
+  if (state == device::DeviceState::lost) throw IoError("--device " + name, device->problem());
+  if (state != device::DeviceState::ready)
+    throw IoError("--device " + name, "gave no valid sample within 5 s: is it switched on and calibrated?");
+  return device;
+}
+
+/// Where the session begins; `sample` was taken from the device, which is ready.
+output::SessionHead make_head(const scenario::Scenario& s, const device::DeviceInfo& info,
+                              const device::DeviceSample& sample) {
+  output::SessionHead head{info.name, sample, s.params.device.max_force};
+  head.start.mode = study::find_fixed_mode(s).value_or(sample.mode);
+  if (info.max_force > 0.0) head.max_force = std::min(head.max_force, info.max_force);
+  return head;
+}
+
+double find_water_capacity(const sim::Simulation& simulation) {
+  double capacity = 0.0;  // [kg]
+  for (int t = 0; t < simulation.body().mesh.num_tets(); ++t) capacity += simulation.pore_water().capacity(t);
+  return capacity;
+}
+
+Tick find_num_ticks(const scenario::Scenario& s, const LiveOptions& options, const device::Trace& trace) {
+  if (options.duration > 0.0) return static_cast<Tick>(options.duration / s.params.rates.haptic_period);
+  return options.device == "simulated" ? study::count_ticks(s, trace) : 0;
+}
+
+/// Drains until both threads have ended, and shows how it goes.
+void attend(Session& session, Recorder& recorder, const Figures& figures, double water_capacity,
+            bool is_quiet) {
+  constexpr double kLook = 0.005, kRedraw = 0.1;  // [s]
+  const bool draws = !is_quiet && isatty(STDERR_FILENO) == 1;
+  const double start = monotonic_now();
+  double drawn = start;
+  while (session.is_running()) {
+    recorder.drain(session);
+    const double now = monotonic_now();
+    if (draws && now - drawn >= kRedraw) {
+      std::fprintf(stderr, "\r%s ", figures.print_now(now - start, water_capacity).c_str());
+      drawn = now;
+    }
+    sleep_until(now + kLook);
+  }
+  session.join();
+  recorder.drain(session);
+  if (draws) std::fputc('\n', stderr);
+}
+
+int print_end(const Session& session, const device::HapticDevice& device, const std::string& result,
+              const Figures& figures, bool is_quiet) {
+  if (!is_quiet) std::printf("%s:\n%s", result.c_str(), figures.print().c_str());
+  if (const auto failure = session.failure()) {
+    std::fprintf(stderr, "argil: run failed: %s\n", to_string(*failure).c_str());
+    return ExitCode::kRunFailed;
+  }
+  switch (session.end()) {
+    case SessionEnd::lost:
+      std::fprintf(stderr, "argil: the device was lost: %s\n", device.problem().c_str());
+      return ExitCode::kIoFailed;
+    case SessionEnd::overflow:
+      std::fprintf(stderr, "argil: %s could not be written as fast as the hand moves\n", result.c_str());
+      return ExitCode::kIoFailed;
+    case SessionEnd::asked:
+      std::fprintf(stderr, "argil: interrupted; %s is complete up to there\n", result.c_str());
+      return ExitCode::kInterrupted;
+    default:
+      return ExitCode::kDone;
+  }
+}
+
+/// The session from its first tick to the end of its file.
+int conduct(sim::Simulation& simulation, device::HapticDevice& device, const SessionOptions& session_options,
+            output::ResultFile& file, const std::string& result, const LiveOptions& options) {
+  std::unique_ptr<Watch> watch;
+  if (!options.watch.empty()) watch = std::make_unique<Watch>(options.watch, simulation);
+  Figures figures;
+  Recorder recorder(file, figures, watch.get());
+  Session session(simulation, device, session_options);
+  const SignalScope signals(session);
+  const double water_capacity = find_water_capacity(simulation);
+  session.start();
+  if (!session.warning().empty()) std::fprintf(stderr, "argil: warning: %s\n", session.warning().c_str());
+  attend(session, recorder, figures, water_capacity, options.run.quiet);
+  device.stop();
+  study::end_session(simulation, file);
+  file.append_timing(figures.list());
+  const SessionEnd end = session.end();
+  file.finish(session.failure(), end != SessionEnd::done && end != SessionEnd::failed);
+  output::write_xdmf(result, study::name_xdmf(result));
+  return print_end(session, device, result, figures, options.run.quiet);
+}
+
+}  // namespace
+
+int run_live(const LiveOptions& options) {
+  const scenario::Scenario s = study::load(options.run);
+  require_live(s);
+  const std::string result = study::name_result(s, options.run);
+  study::check_result_name(s, result);
+  if (!options.watch.empty()) study::check_result_name(s, options.watch);
+  scenario::Scene scene = scenario::build_scene(s);
+  const auto device = attach(options.device, make_device_options(s, scene.trace));
+  const device::ReleaseGuard guard(*device);
+  const device::DevicePoll first = device->poll();
+  const output::SessionHead head = make_head(s, device->info(), first.sample);
+  const SessionOptions session_options{.num_ticks = find_num_ticks(s, options, scene.trace),
+                                       .mode = study::find_fixed_mode(s),
+                                       .first_sample = first.number};
+  scene.trace = {};
+  const mesh::TriangleMesh tool = scene.tool;
+  sim::Simulation simulation(std::move(scene.body), tool, study::session_params(head, s.params), head.start);
+  study::require_free_start(simulation, tool, "--device " + options.device, "",
+                            "move the device away from it");
+  study::print_notes(scene, options.run);
+  const scenario::Scenario bare = study::without_trace(s);
+  output::ResultFile file(result,
+                          study::make_header(bare, simulation, scene, tool, study::find_identity(bare)));
+  file.begin_session(head, true);
+  file.append(simulation.make_frame());
+  return conduct(simulation, *device, session_options, file, result, options);
+}
+
+}  // namespace argil::live

@@ -1,0 +1,48 @@
+#include "live/realtime.h"
+
+#include <malloc.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <ctime>
+
+namespace argil::live {
+
+bool lock_memory() {
+  // What has been allocated once stays with the process, so that a later growth finds its pages there.
+  mallopt(M_TRIM_THRESHOLD, -1);
+  mallopt(M_MMAP_MAX, 0);
+  // Under a limit, what is allocated later could be refused and end the program: only what is there now then.
+  rlimit limit = {};
+  const bool is_limited =
+      geteuid() != 0 && (getrlimit(RLIMIT_MEMLOCK, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY);
+  return mlockall(is_limited ? MCL_CURRENT : MCL_CURRENT | MCL_FUTURE) == 0;
+}
+
+void wake_without_slack() {
+  prctl(PR_SET_TIMERSLACK, 1UL);  // [ns]
+}
+
+bool make_realtime(std::thread& thread) {
+  sched_param parameters = {};
+  constexpr int kPriority = 80;  // above what ordinary programs ask for, below the kernel's own threads
+  parameters.sched_priority = kPriority;
+  return pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &parameters) == 0;
+}
+
+void sleep_until(double time) {
+  timespec wanted = {};
+  const double seconds = std::floor(time);
+  wanted.tv_sec = static_cast<time_t>(seconds);
+  wanted.tv_nsec = static_cast<long>(1e9 * (time - seconds));
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wanted, nullptr) == EINTR) {
+  }
+}
+
+}  // namespace argil::live

@@ -1,0 +1,171 @@
+#include "live/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "base/check.h"
+#include "live/realtime.h"
+
+namespace argil::live {
+namespace {
+
+constexpr double kRecordBuffer = 8.0;  // [s] of ticks that wait for the writing thread at most
+constexpr std::size_t kWaitingSteps = 64;
+constexpr double kLook = 2e-4;  // [s] between two looks of a thread that has nothing to do, at most
+
+}  // namespace
+
+double monotonic_now() {
+  timespec now = {};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Session::Session(sim::Simulation& simulation, device::HapticDevice& device, SessionOptions options)
+    : m_simulation(simulation),
+      m_device(device),
+      m_options(std::move(options)),
+      m_period(simulation.params().rates.haptic_period),
+      m_mailbox(simulation.solid().elements().num_nodes()),
+      m_ticks(static_cast<std::size_t>(kRecordBuffer / m_period) + 1),
+      m_steps(kWaitingSteps),
+      m_sample_number(m_options.first_sample) {
+  const sim::HandState& hand = simulation.hand_state();
+  m_sample = {hand.tool.position, hand.tool.orientation, hand.mode};
+}
+
+Session::~Session() {
+  request_stop();
+  m_is_abandoned.store(true, std::memory_order_relaxed);
+  join();
+}
+
+void Session::start() {
+  ARGIL_ASSERT(!m_hand_thread.joinable(), "started twice");
+  m_simulation.hand().prepare();
+  if (m_options.is_realtime && !lock_memory())
+    m_warning += "memory could not be locked: raise the limit \"memlock\"; ";
+  m_running = 2;
+  m_physics_thread = std::thread([this] { run_physics(); });
+  m_hand_thread = std::thread([this] { run_hand(); });
+  if (m_options.is_realtime && !make_realtime(m_hand_thread))
+    m_warning += "the hand's thread runs at ordinary priority: raise the limit \"rtprio\"; ";
+}
+
+void Session::join() {
+  if (m_hand_thread.joinable()) m_hand_thread.join();
+  if (m_physics_thread.joinable()) m_physics_thread.join();
+}
+
+std::optional<Failure> Session::failure() const {
+  if (m_mailbox.status().is_ok()) return std::nullopt;
+  return m_mailbox.status().failure();
+}
+
+void Session::run_hand() {
+  wake_without_slack();
+  m_end = make_ticks();
+  m_device.send({});
+  m_hand_has_ended.store(true, std::memory_order_release);
+  m_running.fetch_sub(1, std::memory_order_release);
+}
+
+/// By absolute times, so that lateness does not add up. A tick that comes more than a period late is one tick
+/// nevertheless; the periods that passed are counted and not made up for.
+SessionEnd Session::make_ticks() {
+  m_surface_time = monotonic_now();
+  double deadline = m_surface_time + m_period;
+  for (;;) {
+    sleep_until(deadline);
+    const double now = monotonic_now();
+    output::TickTiming timing;
+    timing.wake_late = now - deadline;
+    timing.missed = static_cast<int>(std::max(0.0, std::floor(timing.wake_late / m_period)));
+    deadline += (1 + timing.missed) * m_period;
+    const SessionEnd end = make_tick(timing, now);
+    if (end != SessionEnd::none) return end;
+    if (m_simulation.clock().tick == m_options.num_ticks) return SessionEnd::done;
+  }
+}
+
+SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
+  if (m_is_asked.load(std::memory_order_relaxed)) return SessionEnd::asked;
+  sim::HandSide& hand = m_simulation.hand();
+  const device::DevicePoll poll = m_device.poll();
+  if (poll.state == device::DeviceState::lost) return SessionEnd::lost;
+  if (poll.is_valid()) {
+    m_sample = poll.sample;
+    m_sample_number = poll.number;
+  }
+  if (m_options.mode) m_sample.mode = *m_options.mode;
+  timing.sample_age = poll.age;
+
+  if (m_mailbox.has_answer()) {
+    if (!m_mailbox.see(hand)) return SessionEnd::failed;
+    m_surface_time = m_mailbox.given_at();
+  }
+  ++m_ticks_since_step;
+  const int late = m_ticks_since_step - m_simulation.params().rates.physics_period_ticks;
+  const bool begins_step = late >= 0 && m_mailbox.is_free();
+  hand.move(m_sample);
+  if (!hand.touch(begins_step, nullptr).is_ok()) return SessionEnd::failed;
+  HandTick tick;
+  if (begins_step) {
+    m_mailbox.give(hand, late, monotonic_now());
+    m_ticks_since_step = 0;
+    tick.session.begun_step = ++m_steps_given;
+  }
+  tick.session.feed = device::judge_feed(m_simulation.params().device.watchdog, poll.number, poll.age,
+                                         woken_at - m_surface_time);
+  hand.render(tick.session.feed);
+  m_device.send({hand.gated().force, hand.gated().torque});
+
+  timing.work = monotonic_now() - woken_at;
+  tick.record = hand.make_record();
+  tick.timing = timing;
+  tick.session.sample = m_sample_number;
+  tick.session.seen_step = m_mailbox.seen();
+  tick.session.device_state = poll.state;
+  return m_ticks.push(std::move(tick)) ? SessionEnd::none : SessionEnd::overflow;
+}
+
+/// The hand wakes no one, which would be a call of the system: the physics thread looks often instead.
+void Session::run_physics() {
+  wake_without_slack();
+  const double look = std::min(kLook, 0.05 * m_period * m_simulation.params().rates.physics_period_ticks);
+  while (!m_mailbox.is_failed()) {
+    if (m_mailbox.has_load())
+      make_step();
+    else if (m_hand_has_ended.load(std::memory_order_acquire) && !m_mailbox.has_load())
+      break;
+    else
+      sleep_until(monotonic_now() + look);
+  }
+  m_running.fetch_sub(1, std::memory_order_release);
+}
+
+void Session::make_step() {
+  sim::BodySide& body = m_simulation.body_side();
+  const Tick ticks_before = body.hand().ticks;
+  BodyStep step;
+  const double begin = monotonic_now();
+  if (m_options.before_step) m_options.before_step(body.state().steps + 1);
+  step.given_at = m_mailbox.given_at();
+  step.timing.wait = begin - step.given_at;
+  step.timing.late = m_mailbox.late();
+  m_mailbox.answer(body);
+  step.timing.work = monotonic_now() - begin;
+  const bool is_failed = m_mailbox.is_failed();
+  m_mailbox.publish();
+  if (is_failed) return;
+  step.record = body.make_record();
+  const int period = m_simulation.params().rates.frame_period_ticks;
+  if (sim::passes_multiple(ticks_before, body.hand().ticks, period))
+    step.frame = std::make_unique<sim::Frame>(body.make_frame(body.hand()));
+  // Where the writing thread is behind, the physics is late, not the hand.
+  while (!m_steps.push(std::move(step)) && !m_is_abandoned.load(std::memory_order_relaxed))
+    sleep_until(monotonic_now() + kLook);
+}
+
+}  // namespace argil::live

@@ -1,0 +1,200 @@
+#!/usr/bin/python3
+"""argil live with the simulated hand: a session replays to the same bits, however it ended.
+
+Usage: test_live.py ARGIL        the program
+"""
+import json
+import math
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy
+
+STAND_IN = Path(__file__).resolve().parents[2] / "support" / "haply_stand_in.py"
+ARGIL = str(Path(sys.argv.pop(1)).resolve())
+
+
+def write_press(file, seconds):
+    """From 2 mm over the ball 2.5 mm into it and out again, once a second."""
+    lines = ["t,x,y,z"]
+    for k in range(int(seconds * 100) + 1):
+        share = 0.5 - 0.5 * math.cos(2 * math.pi * k / 100)
+        lines.append(f"{k / 100},0.001,0.0007,{0.048 - 0.0045 * share}")
+    file.write_text("\n".join(lines) + "\n")
+
+
+def make_scene(haptics):
+    return {
+        "about": "a ball pressed from above",
+        "body": {"shape": {"kind": "sphere", "size_m": 0.04, "target_tets": 600, "skin_triangles": 500},
+                 "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 0.006}]},
+        "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3,
+                     "clay_kernel": {"k1_per_m": 2, "k2_per_m": 60, "radius_m": 0.03}},
+        "tool": {"shape": {"kind": "sphere", "radius_m": 0.006, "subdivisions": 2}, "mode": "push"},
+        "contact": {"vertex_face_stiffness_N_per_m": 400, "edge_edge_stiffness_N_per_m": 400},
+        "haptics": {"physics_period_ticks": 2, "water_period_ticks": 10, "frame_period_ticks": 50, **haptics},
+        "trace": {"file": "press.csv"},
+    }
+
+
+class Live(unittest.TestCase):
+    def setUp(self):
+        self.temp = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temp.cleanup)
+        self.folder = Path(self.temp.name)
+        write_press(self.folder / "press.csv", 20)
+        self.write_scene("scene.json", {"between_frames": "re_evaluate"})
+
+    def write_scene(self, name, haptics):
+        (self.folder / name).write_text(json.dumps(make_scene(haptics)))
+
+    def call(self, *arguments):
+        return subprocess.run([ARGIL, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=300)
+
+    def start(self, *arguments):
+        process = subprocess.Popen([ARGIL, "live", "scene.json", "--device", "simulated", "-o", "live.h5", *arguments],
+                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        return process
+
+    def wait_for_ticks(self, process, wanted):
+        """Until so many ticks are in the file."""
+        while process.poll() is None:
+            time.sleep(0.05)
+            try:
+                with h5py.File(self.folder / "live.h5", "r", locking=False) as file:
+                    if file["haptic/tick"].shape[0] >= wanted:
+                        return
+            except (OSError, KeyError):
+                pass  # between two flushes
+        self.fail(process.stderr.read())
+
+    def replay(self):
+        done = self.call("run", "scene.json", "--trace", "live.h5", "-o", "again.h5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def assert_equal(self):
+        done = self.call("compare", "live.h5", "again.h5")
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_a_replay_finds_no_difference(self):
+        for way in "hold", "re_evaluate":
+            self.write_scene("scene.json", {"between_frames": way})
+            done = self.call("live", "scene.json", "--device", "simulated", "-o", "live.h5", "--duration", "1.2")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.replay()
+            self.assert_equal()
+            with h5py.File(self.folder / "live.h5") as file:
+                self.assertEqual(file.attrs["complete"], 1)
+                self.assertEqual(file["haptic/tick"].shape[0], 1200)
+                self.assertEqual(file["timing/ticks/wake_late"].shape[0], 1200)
+                self.assertEqual(file["timing/steps/work"].shape[0], file["physics/tick"].shape[0])
+                self.assertGreater(numpy.abs(file["haptic/force"]).max(), 0.01)
+                self.assertEqual(file["timing/num_ticks"][0], 1200)
+
+    def test_a_replay_is_a_session_that_replays_again(self):
+        self.call("live", "scene.json", "--device", "simulated", "-o", "first.h5", "--duration", "0.5")
+        (self.folder / "first.h5").rename(self.folder / "live.h5")
+        self.replay()
+        (self.folder / "again.h5").rename(self.folder / "live.h5")
+        self.replay()
+        self.assert_equal()
+
+    def test_a_record_survives_a_kill_and_replays(self):
+        process = self.start()
+        self.wait_for_ticks(process, 1024)
+        process.kill()
+        process.communicate()
+        done = self.replay()
+        self.assertIn("was killed", done.stderr)
+        with h5py.File(self.folder / "live.h5") as live, h5py.File(self.folder / "again.h5") as again:
+            for name in "force", "torque", "device_force", "force_age", "tool_position":
+                numpy.testing.assert_array_equal(live["haptic"][name], again["haptic"][name])
+            steps = live["physics/tick"].shape[0]
+            if steps:
+                numpy.testing.assert_array_equal(live["physics/elastic_energy"],
+                                                 again["physics/elastic_energy"][:steps])
+
+    def test_an_interrupt_ends_it_with_a_complete_file_and_130(self):
+        process = self.start()
+        self.wait_for_ticks(process, 1024)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate()[1]
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("interrupted", said)
+        self.replay()
+        self.assert_equal()
+
+    def test_another_program_reads_the_watched_file_while_it_grows(self):
+        process = self.start("--watch", "watch.h5", "--duration", "4")
+        seen = []
+        while process.poll() is None:
+            time.sleep(0.05)
+            try:
+                with h5py.File(self.folder / "watch.h5", "r", swmr=True) as file:
+                    frames = file["frames/tick"].shape[0]
+                    seen.append(frames)
+                    self.assertGreaterEqual(file["frames/position"].shape[0], frames)
+                    if frames:
+                        self.assertGreaterEqual(file["ticks/tick"][-1] + 1, file["frames/tick"][frames - 1])
+            except (OSError, KeyError):
+                pass  # not shared yet
+        self.assertEqual(process.returncode, 0, process.communicate()[1])
+        self.assertGreater(len(set(seen)), 3, seen)
+        with h5py.File(self.folder / "live.h5") as file:
+            self.assertGreater(file["timing/picture_delay_max"][0], 0)
+
+    def start_stand_in(self, mode):
+        """A service on loopback whose hand circles over the ball's flank and touches it after a second."""
+        process = subprocess.Popen([STAND_IN, "--mode", mode, "--good", "1500"], stdin=subprocess.PIPE,
+                                   stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.communicate)
+        return ["--device", "haply:127.0.0.1:" + process.stdout.readline().split()[1],
+                "--set", "/trace/device_to_world/translation_m=[0.012, 0.12, -0.1075]"]
+
+    def test_a_haply_service_is_felt_and_replays(self):
+        done = self.call("live", "scene.json", "-o", "live.h5", "--duration", "2.5", *self.start_stand_in("normal"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.replay()
+        self.assert_equal()
+        with h5py.File(self.folder / "live.h5") as file:
+            self.assertGreater(numpy.abs(file["haptic/device_force"]).max(), 0.01)
+
+    def test_a_service_that_vanishes_ends_it_with_a_complete_file(self):
+        done = self.call("live", "scene.json", "-o", "live.h5", "--duration", "60", *self.start_stand_in("vanish"))
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("the device was lost", done.stderr)
+        self.replay()
+        self.assert_equal()
+
+    def test_a_session_of_another_material_is_a_motion_alone_and_says_so(self):
+        self.call("live", "scene.json", "--device", "simulated", "-o", "live.h5", "--duration", "0.3")
+        done = self.call("run", "scene.json", "--trace", "live.h5", "-o", "other.h5",
+                         "--set", "/material/youngs_modulus_Pa=5e4")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("only its motion is taken", done.stderr)
+
+    def test_what_cannot_run_live_is_refused_and_nothing_is_written(self):
+        self.write_scene("scene.json", {"between_frames": "compliant"})
+        for arguments, words in ((["--device", "simulated"], ["/haptics/between_frames", "re_evaluate"]),
+                                 (["--device", "teapot"], ["between_frames"])):
+            done = self.call("live", "scene.json", "-o", "live.h5", *arguments)
+            self.assertEqual(done.returncode, 2)
+            for word in words:
+                self.assertIn(word, done.stderr)
+        self.write_scene("scene.json", {})
+        done = self.call("live", "scene.json", "-o", "live.h5", "--device", "teapot")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("teapot", done.stderr)
+        self.assertFalse((self.folder / "live.h5").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
