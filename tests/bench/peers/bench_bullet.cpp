@@ -213,7 +213,7 @@ void argil_box(benchmark::State& state) {
   const double start = mesh.vertices(0, top);
   measure(
       state, mesh, [&] { return simulation.tick(away).is_ok(); },
-      [&] { return simulation.state().solid.x(0, top) - start; });
+      [&] { return simulation.body_state().solid.x(0, top) - start; });
 }
 
 BENCHMARK(bullet)
