@@ -1,5 +1,6 @@
 #include "device/hand_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -59,15 +60,16 @@ void Oscillator::advance(double u, double& x, double& v) const {
   v = vx * stretch + vv * v;
 }
 
-HandModel::HandModel(const HandParams& params, const Trace& intent, double period)
+HandModel::HandModel(const HandParams& params, const Trace& intent, double period, double start)
     : m_params(params),
       m_intent(intent),
       m_period(period),
+      m_start(start),
       m_hand(hand_omega(params), params.damping / (2.0 * params.mass * hand_omega(params)), period),
       m_tremor(2.0 * std::numbers::pi * params.tremor_frequency, kTremorDamping, period),
       m_tremor_drive(params.tremor * std::sqrt(3.0 / stationary_variance(m_tremor))),
       m_rng(params.seed, "tremor"),
-      m_x(interpolate(intent, 0.0).position) {
+      m_x(interpolate(intent, start).position) {
   ARGIL_ASSERT(params.mass > 0.0 && params.stiffness > 0.0 && params.damping >= 0.0, params.mass,
                params.stiffness, params.damping);
   ARGIL_ASSERT(params.reaction_delay >= 0.0 && params.tremor >= 0.0 && params.tremor_frequency > 0.0,
@@ -79,9 +81,14 @@ double HandModel::time() const {
   return static_cast<double>(m_tick) * m_period;
 }
 
+/// Where the muscles draw the hand now: before its delay is over, the start.
+DeviceSample HandModel::intend() const {
+  return interpolate(m_intent, m_start + std::max(0.0, time() - m_params.reaction_delay));
+}
+
 DeviceSample HandModel::advance(const Vec3& force) {
   ++m_tick;
-  DeviceSample now = interpolate(m_intent, time() - m_params.reaction_delay);
+  DeviceSample now = intend();
   for (int axis = 0; axis < 3; ++axis) {
     if (m_tremor_drive > 0.0)
       m_tremor.advance(m_rng.uniform(-m_tremor_drive, m_tremor_drive), m_shake[axis], m_shake_v[axis]);
@@ -93,8 +100,19 @@ DeviceSample HandModel::advance(const Vec3& force) {
   return now;
 }
 
+void HandModel::exchange_state(Archive& archive) {
+  archive.number("hand_model/tick", m_tick);
+  archive.array("hand_model/x", m_x);
+  archive.array("hand_model/v", m_v);
+  archive.array("hand_model/shake", m_shake);
+  archive.array("hand_model/shake_v", m_shake_v);
+  if (!archive.is_restoring() || !(m_tremor_drive > 0.0)) return;
+  m_rng = Rng(m_params.seed, "tremor");  // gives again what it gave
+  for (Tick k = 0; k < 3 * m_tick; ++k) m_rng.next_bits();
+}
+
 DeviceSample HandModel::sample() const {
-  DeviceSample now = interpolate(m_intent, time() - m_params.reaction_delay);
+  DeviceSample now = intend();
   now.position = m_x;
   return now;
 }

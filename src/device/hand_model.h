@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "base/archive.h"
 #include "base/rng.h"
 #include "device/trace.h"
 
@@ -31,17 +32,22 @@ struct Oscillator {
 /// The same sequence of forces gives the same bits.
 class HandModel {
  public:
-  /// `intent` is copied; the hand starts at rest at its beginning.
-  HandModel(const HandParams& params, const Trace& intent, double period);
+  /// `intent` is copied; the hand starts at rest where it is `start` seconds after its beginning.
+  HandModel(const HandParams& params, const Trace& intent, double period, double start = 0.0);
   /// Over one period, which ends at the time of the sample that comes back, under a force that was held [N].
   DeviceSample advance(const Vec3& force);
   DeviceSample sample() const;  ///< now
   double time() const;          ///< since the start [s]
+  /// All that advance takes from earlier calls.
+  void exchange_state(Archive& archive);
 
  private:
+  DeviceSample intend() const;
+
   HandParams m_params;
   Trace m_intent;
   double m_period;
+  double m_start;  ///< of the intent's time [s]
   Oscillator m_hand;
   Oscillator m_tremor;
   double m_tremor_drive;  ///< half width of the tremor's uniform input [m]

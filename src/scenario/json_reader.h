@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "scenario/json_document.h"
+#include "scenario/parameter_table.h"
 #include "scenario/scenario.h"
 
 namespace argil::scenario {
@@ -96,6 +97,10 @@ class JsonReader {
   void check_pointer(const std::string& key, const std::string& pointer) const {
     if (pointer.empty() || pointer[0] != '/')
       refuse(key, "\"" + pointer + "\" is no JSON pointer", "begin it with /, as in /dynamics/model");
+    if (is_possible_pointer(pointer)) return;
+    const std::string near = find_nearest(pointer, list_pointers());
+    refuse(key, "\"" + pointer + "\" is no key of a scenario",
+           near.empty() ? "argil schema --reference lists them" : "did you mean " + near + "?");
   }
   /// After all keys were asked for.
   void finish() const {

@@ -374,6 +374,31 @@ void bind_dynamics(Binder& b, Scenario& s) {
             "Run nearly incompressible 4-node tets although they lock.");
 }
 
+void bind_hand(Binder& b, HandSpec& hand) {
+  b.choice<HandKind>(
+      "/hand/kind", hand.kind, {{HandKind::prescribed, "prescribed"}, {HandKind::simulated, "simulated"}},
+      "The tool is where the trace is; or the trace is what a hand means to do, a mass on a spring that "
+      "yields to the force.");
+  const auto simulated = [&hand] { return hand.kind == HandKind::simulated; };
+  device::HandParams& h = hand.params;
+  b.number("/hand/mass_kg", h.mass, positive(), "kg", "Finger and stylus.").applies = simulated;
+  b.number("/hand/damping_N_s_per_m", h.damping, not_negative(), "N s/m", "Of the hand's spring.").applies =
+      simulated;
+  b.number("/hand/stiffness_N_per_m", h.stiffness, positive(), "N/m",
+           "Of the spring between the trace and the hand.")
+      .applies = simulated;
+  b.number("/hand/reaction_delay_s", h.reaction_delay, not_negative(), "s",
+           "The trace reaches the muscles so much later.")
+      .applies = simulated;
+  b.number("/hand/tremor_m", h.tremor, not_negative(), "m",
+           "Root mean square of the intended point's tremor, each axis.")
+      .applies = simulated;
+  b.number("/hand/tremor_frequency_Hz", h.tremor_frequency, positive(), "Hz",
+           "Where the tremor is strongest.")
+      .applies = simulated;
+  b.integer("/hand/seed", hand.seed, between(0, 2147483647), "Of the tremor.").applies = simulated;
+}
+
 void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
   sim::RateParams& r = s.params.rates;
   b.number("/haptics/period_s", r.haptic_period, inside(0, 1), "s", "δ: one haptic tick.");
@@ -420,6 +445,7 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
   b.quaternion("/trace/device_to_world/rotation_xyzw", w.rotation, "Unit quaternion, device to world.");
   b.vector("/trace/device_to_world/translation_m", w.translation, "m",
            "World position of the device's origin.");
+  bind_hand(b, s.hand);
   b.integer(
       "/output/checkpoint_period_ticks", s.checkpoint_period_ticks, between(0, 1e9),
       "A checkpoint for --resume at the first physics step after so many ticks; 0: none but at a signal.");

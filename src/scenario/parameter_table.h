@@ -64,6 +64,12 @@ bool is_of_motion(const std::string& pointer);
 /// Every key, bound to `scenario`, in the order of the reference page. `file` is named in errors.
 std::vector<Parameter> make_parameter_table(Scenario& scenario, const std::string& file);
 
+/// Pointers of all keys.
+const std::vector<std::string>& list_pointers();
+
+/// Could a scenario have a value there: a key, one of its elements, or an object of keys?
+bool is_possible_pointer(const std::string& pointer);
+
 /// Checks the keys of `object` against the rows, then reads each row's value; `prefix` is put before pointers
 /// in errors.
 void read_parameters(const std::vector<Parameter>& rows, const Json& object, const std::string& file,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "device/trace.h"
+#include "device/hand_model.h"
 #include "mesh/shapes.h"
 #include "sim/params.h"
 #include "solid/loads.h"
@@ -64,6 +65,18 @@ struct TraceSpec {
   double duration = 0.0;  ///< [s]; 0: to its end
 };
 
+/// Who moves the tool.
+enum class HandKind {
+  prescribed,  ///< it is where the trace is
+  simulated,   ///< a mass on a spring whose other end is where the trace is; it yields to the device's force
+};
+
+struct HandSpec {
+  HandKind kind = HandKind::prescribed;
+  device::HandParams params;  ///< without the seed
+  int seed = 1;               ///< of the tremor
+};
+
 /// A validated scene in SI units; paths resolved against the scenario's folder.
 struct Scenario {
   std::string file;
@@ -73,6 +86,7 @@ struct Scenario {
   BodySpec body;
   ToolSpec tool;
   TraceSpec trace;
+  HandSpec hand;
   sim::Params params;
   int checkpoint_period_ticks = 1000;  ///< of runs with a trace; 0: none but where a signal ends it
   bool allow_locking = false;         ///< run nearly incompressible tets although they lock

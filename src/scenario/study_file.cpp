@@ -46,6 +46,9 @@ MapAxis read_axis(const Json& json, const std::string& file, const std::string& 
   axis.values = reader.numbers("values", reader.get("values", "increasing numbers"));
   if (std::adjacent_find(axis.values.begin(), axis.values.end(), std::greater_equal<>()) != axis.values.end())
     reader.refuse("values", "do not increase", "sort them and leave out what stands twice");
+  if (axis.is_integer && std::any_of(axis.values.begin(), axis.values.end(),
+                                     [](double value) { return value != std::round(value); }))
+    reader.refuse("values", "hold a number that is not whole", "give whole ones, or integers false");
   if (axis.is_logarithmic && !(axis.values.front() > 0.0))
     reader.refuse("values", "hold a number that has no logarithm",
                   "give positive ones, or logarithmic false");

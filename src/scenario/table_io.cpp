@@ -212,4 +212,21 @@ std::string print_reference() {
   return page.str();
 }
 
+const std::vector<std::string>& list_pointers() {
+  static const std::vector<std::string> list = [] {
+    Scenario scenario;
+    std::vector<std::string> pointers;
+    for (const Parameter& row : make_parameter_table(scenario, "")) pointers.push_back(row.pointer);
+    return pointers;
+  }();
+  return list;
+}
+
+bool is_possible_pointer(const std::string& pointer) {
+  const auto is_below = [](const std::string& a, const std::string& b) { return a.rfind(b + "/", 0) == 0; };
+  return std::any_of(list_pointers().begin(), list_pointers().end(), [&](const std::string& known) {
+    return pointer == known || is_below(pointer, known) || is_below(known, pointer);
+  });
+}
+
 }  // namespace argil::scenario

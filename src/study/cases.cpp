@@ -1,13 +1,14 @@
 #include "study/cases.h"
 
 #include <fcntl.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -21,8 +22,6 @@
 #include "study/files.h"
 #include "study/identity.h"
 #include "study/run.h"
-
-extern char** environ;
 
 namespace argil::study {
 namespace {
@@ -91,6 +90,26 @@ std::string leave_out_folder(std::string text, const std::string& scenario) {
   return text;
 }
 
+/// Does a file hold a run that reached its end, well or not?
+bool is_whole(const std::string& file) {
+  try {
+    const output::ResultReader reader(file);
+    return reader.outcome() == output::Outcome::done || reader.outcome() == output::Outcome::failed;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
+/// Replaces this process by the program, which dies with its parent; only what is allowed after a fork.
+[[noreturn]] void become(char* const* arguments, int log, pid_t parent) {
+  const int nothing = open("/dev/null", O_WRONLY);
+  dup2(nothing, STDOUT_FILENO);
+  dup2(log, STDERR_FILENO);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() == parent) execv(arguments[0], arguments);
+  _exit(127);
+}
+
 /// One case under way.
 struct Job {
   std::size_t place = 0;  // in the list of cases
@@ -107,9 +126,12 @@ class Runner {
     std::error_code error;
     fs::create_directories(m_options.folder, error);
     if (error) throw IoError(m_options.folder, "cannot be made (" + error.message() + ")");
-    std::vector<std::size_t> waiting;
+    for (const Case& c : m_cases) m_repeats.push_back(c.repeats);
+    std::vector<std::size_t> accepted, waiting;
     for (std::size_t i = 0; i < m_cases.size(); ++i)
-      if (prepare(i)) waiting.push_back(i);
+      if (prepare(i)) accepted.push_back(i);
+    std::copy_if(accepted.begin(), accepted.end(), std::back_inserter(waiting),
+                 [this](std::size_t i) { return must_run(i); });
     for (const std::size_t i : waiting) {
       while (m_running.size() >= static_cast<std::size_t>(m_options.jobs)) await();
       start({i, 0});
@@ -126,7 +148,13 @@ class Runner {
     return (fs::path(m_options.folder) / (m_results[i].id + suffix)).string();
   }
 
-  /// True when the case must run.
+  /// Of this process alone: another study may run the same case into the same folder.
+  std::string part(const Job& job) const {
+    return path(job.place, job.repeat == 0 ? ".part." : ".again.") + std::to_string(getpid());
+  }
+  std::string log_of(std::size_t i) const { return path(i, ".") + std::to_string(getpid()) + ".log"; }
+
+  /// Names the case; true for the first of its id.
   bool prepare(std::size_t i) {
     CaseResult& result = m_results[i];
     try {
@@ -136,12 +164,21 @@ class Runner {
       result.reason = leave_out_folder(refused.what(), m_cases[i].scenario);
       return false;
     }
-    if (!m_first.emplace(result.id, i).second) return false;
+    if (const auto [first, is_new] = m_first.emplace(result.id, i); !is_new) {
+      m_repeats[first->second] = std::max(m_repeats[first->second], m_cases[i].repeats);
+      return false;
+    }
+    return true;
+  }
+
+  /// True when what is kept will not do.
+  bool must_run(std::size_t i) {
+    CaseResult& result = m_results[i];
     CaseResult kept;
     kept.id = result.id;
-    const bool is_kept = read_result(path(i, ".case"), kept) &&
-                         static_cast<int>(kept.cpu_seconds.size()) >= m_cases[i].repeats;
-    const bool has_file = fs::exists(path(i, ".h5"));
+    const bool is_kept =
+        read_result(path(i, ".case"), kept) && static_cast<int>(kept.cpu_seconds.size()) >= m_repeats[i];
+    const bool has_file = is_whole(path(i, ".h5"));
     if (!(is_kept && has_file) && !(read_result(path(i, ".case"), kept) && kept.exit_code == kInputRefused))
       return true;
     result = kept;
@@ -151,9 +188,8 @@ class Runner {
 
   void start(const Job& job) {
     const std::size_t i = job.place;
-    std::vector<std::string> words = {
-        m_options.program, "run", m_cases[i].scenario, "--quiet",
-        "--threads",       "1",   "--output",          path(i, job.repeat == 0 ? ".part.h5" : ".again.h5")};
+    std::vector<std::string> words = {m_options.program, "run", m_cases[i].scenario, "--quiet",
+                                      "--threads",       "1",   "--output",          part(job) + ".h5"};
     for (const std::string& text : make_run_options(m_cases[i]).settings) {
       words.emplace_back("--set");
       words.push_back(text);
@@ -161,16 +197,15 @@ class Runner {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    const std::string log = path(i, ".log");
-    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    pid_t child = 0;
-    const int error =
-        posix_spawn(&child, m_options.program.c_str(), &files, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&files);
-    if (error != 0)
+    const std::string log = log_of(i);
+    const int out = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (out < 0) throw IoError(log, std::string("could not be written (") + std::strerror(errno) + ")");
+    const pid_t parent = getpid();
+    const pid_t child = fork();
+    if (child == 0) become(arguments.data(), out, parent);
+    const int error = errno;
+    close(out);
+    if (child < 0)
       throw IoError(m_options.program, std::string("could not be started (") + std::strerror(error) + ")");
     m_running.emplace(child, job);
   }
@@ -188,22 +223,23 @@ class Runner {
     result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     result.peak_memory_MiB = static_cast<double>(usage.ru_maxrss) / 1024.0;
     take(job, result);
-    const bool is_over = result.exit_code == kInputRefused || job.repeat + 1 >= m_cases[job.place].repeats;
+    const bool is_over = result.exit_code == kInputRefused || is_accident(result.exit_code) ||
+                         job.repeat + 1 >= m_repeats[job.place];
     if (!is_over) return start({job.place, job.repeat + 1});
-    write_result(result, path(job.place, ".case"));
+    if (!is_accident(result.exit_code)) write_result(result, path(job.place, ".case"));
     std::error_code ignored;
-    fs::remove(path(job.place, ".log"), ignored);
+    fs::remove(log_of(job.place), ignored);
     print(job.place);
   }
 
   /// Reads what a run left and puts its first file in its place.
   void take(const Job& job, CaseResult& result) {
     std::error_code error;
-    const std::string stem = path(job.place, job.repeat == 0 ? ".part" : ".again");
+    const std::string stem = part(job);
     fs::remove(stem + ".xdmf", error);  // it names a file that moves
     const std::string file = stem + ".h5";
     if (!fs::exists(file)) {
-      result.reason = leave_out_folder(read_last_words(path(job.place, ".log")), m_cases[job.place].scenario);
+      result.reason = leave_out_folder(read_last_words(log_of(job.place)), m_cases[job.place].scenario);
       return;
     }
     try {
@@ -216,7 +252,10 @@ class Runner {
     } catch (const std::runtime_error& broken) {  // a killed run's file
       result.reason = broken.what();
     }
-    if (result.exit_code > 128) result.reason = "killed by signal " + std::to_string(result.exit_code - 128);
+    if (result.exit_code == kInterrupted)
+      result.reason = "interrupted";
+    else if (result.exit_code > 128)
+      result.reason = "killed by signal " + std::to_string(result.exit_code - 128);
     if (job.repeat > 0) {
       fs::remove(file, error);
       return;
@@ -237,12 +276,17 @@ class Runner {
   const std::vector<Case>& m_cases;
   const CaseOptions& m_options;
   std::vector<CaseResult> m_results;
+  std::vector<int> m_repeats;                  // of each; of those with one id, the most
   std::map<std::string, std::size_t> m_first;  // place of each id's first case
   std::map<pid_t, Job> m_running;
   int m_ended = 0;
 };
 
 }  // namespace
+
+bool is_accident(int exit_code) {
+  return exit_code != kDone && exit_code != kInputRefused && exit_code != kRunFailed;
+}
 
 std::vector<CaseResult> run_cases(const std::vector<Case>& cases, const CaseOptions& options) {
   return Runner(cases, options).run();

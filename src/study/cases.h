@@ -32,9 +32,13 @@ struct CaseOptions {
   bool quiet = false;
 };
 
+/// Can a run that ended with this code end otherwise another time? Killed, or without room to write.
+bool is_accident(int exit_code);
+
 /// Runs cases, each in a process of its own and in one thread, and keeps what comes out under the case's id:
-/// one that was finished before is not run again. Results stand in the order of the cases, whatever order
-/// they ended in. Throws IoError when the folder cannot be written; a case that fails is a result.
+/// one that was finished before is not run again, but for accidents. Processes end with this one. Results
+/// stand in the order of the cases, whatever order they ended in. Throws IoError when the folder cannot be
+/// written; a case that fails is a result.
 std::vector<CaseResult> run_cases(const std::vector<Case>& cases, const CaseOptions& options);
 
 /// Median of the CPU seconds of a case; 0 when it has none.

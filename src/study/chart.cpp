@@ -1,8 +1,11 @@
 #include "study/chart.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
+#include "base/error.h"
 #include "output/study_table.h"
 #include "scenario/study_file.h"
 #include "study/measure.h"
@@ -40,6 +43,15 @@ std::vector<Row> list_rows(const scenario::ChartStudy& study) {
   return rows;
 }
 
+/// What cannot be compared is a row of the table, too.
+void compare(Row& row, const output::ResultReader& run, const output::ResultReader& truth) {
+  try {
+    row.errors = compute_errors(run, truth);
+  } catch (const InputError& error) {
+    row.result.reason = error.what();
+  }
+}
+
 std::vector<Row> run_rows(const scenario::ChartStudy& study, const CaseOptions& options) {
   std::vector<Row> rows = list_rows(study);
   std::vector<Case> cases;
@@ -47,6 +59,9 @@ std::vector<Row> run_rows(const scenario::ChartStudy& study, const CaseOptions& 
     cases.push_back(
         {study.scenario, join(study.settings, rows[i].settings), i > kRefined ? study.repeats : 1});
   std::vector<CaseResult> results = run_cases({cases.begin(), cases.begin() + 2}, options);
+  if (results[kReference].id == results[kRefined].id && !results[kReference].id.empty())
+    throw InputError(study.file, "/refined", "makes the same run as /reference",
+                     "refine mesh, step or tolerance, so that the reference's own error is known");
   if (results[kReference].exit_code != kDone) cases.resize(2);  // nothing to compare with
   rows.resize(cases.size());
   results = run_cases(cases, options);
@@ -60,10 +75,13 @@ std::vector<Row> run_rows(const scenario::ChartStudy& study, const CaseOptions& 
       const output::ResultReader reader(row.result.file);
       row.figures = compute_figures(reader);
       const auto& other = i == kReference ? refined : truth;  // the reference's own error: to the finer one
-      if (row.result.exit_code == kDone && i != kRefined && other)
-        row.errors = compute_errors(reader, *other);
+      if (row.result.exit_code == kDone && i != kRefined && other) compare(row, reader, *other);
     }
-    row.outcome = classify(row.result, row.figures, row.errors, {});
+    OutcomeBounds bounds;
+    bounds.compares = i != kRefined;
+    row.outcome = classify(row.result, row.figures, row.errors, bounds);
+    if (row.outcome == Outcome::unknown && row.result.reason.empty())
+      row.result.reason = "reference: no force";
   }
   return rows;
 }
@@ -160,15 +178,29 @@ int chart(StudyOptions options) {
   return kDone;
 }
 
+namespace {
+
+/// The most accurate run within the budget. Errors below the reference's own cannot be told apart: of those,
+/// the cheapest.
+const Row* find_best(const std::vector<Row>& rows, double budget, double own_error) {
+  const Row* best = nullptr;
+  const auto error = [&](const Row& row) { return std::max(row.errors.force, own_error); };
+  for (std::size_t i = kRefined + 1; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    if (!is_stable(row.outcome) || !(row.cost() <= budget)) continue;
+    if (!best || std::pair(error(row), row.cost()) < std::pair(error(*best), best->cost())) best = &row;
+  }
+  return best;
+}
+
+}  // namespace
+
 int chart_budget(StudyOptions options, double budget) {
   const scenario::ChartStudy study = scenario::read_chart_study(options.study);
   const std::vector<Row> rows = make_chart(study, options);
   if (rows[kReference].result.exit_code != kDone) return print_reference_failure(rows[kReference]);
-  const Row* best = nullptr;
-  for (std::size_t i = kRefined + 1; i < rows.size(); ++i)
-    if (is_stable(rows[i].outcome) && rows[i].cost() <= budget &&
-        (!best || rows[i].errors.force < best->errors.force))
-      best = &rows[i];
+  const double own_error = rows[kReference].errors.force;
+  const Row* best = find_best(rows, budget, own_error);
   if (!best) {
     std::fprintf(stderr, "argil: no run of %s costs at most %g CPU seconds a second\n", study.file.c_str(),
                  budget);
@@ -176,6 +208,9 @@ int chart_budget(StudyOptions options, double budget) {
   }
   std::fprintf(stderr, "argil: %s %s: force error %.2g at %.2g CPU seconds a second\n", best->curve.c_str(),
                print_settings(best->point).c_str(), best->errors.force, best->cost());
+  if (best->errors.force <= own_error)
+    std::fprintf(stderr, "argil: that is within the reference's own error of %.2g: the cheapest such run\n",
+                 own_error);
   std::fputs(scenario::print_patch(join(study.settings, best->settings)).c_str(), stdout);
   return kDone;
 }

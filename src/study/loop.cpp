@@ -58,13 +58,12 @@ void append_records(const sim::Simulation& simulation, output::ResultFile& file)
 }
 
 /// The ticks themselves. Returns the failure, if any.
-std::optional<Failure> run_ticks(const scenario::Scenario& s, const device::Trace& trace,
+std::optional<Failure> run_ticks(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand,
                                  sim::Simulation& simulation, output::ResultFile& file, CostMeter& cost,
                                  Progress& progress) {
-  const Tick num_ticks = count_ticks(s, trace);
   Tick last_checkpoint = simulation.clock().tick;
   for (Tick k = simulation.clock().tick + 1; k <= num_ticks; ++k) {
-    const device::DeviceSample sample = sample_at(s, trace, k);
+    const device::DeviceSample sample = hand.advance(k, simulation.hand().gated().force);
     cost.begin();
     const StepStatus status = simulation.tick(sample);
     cost.end();
@@ -74,7 +73,10 @@ std::optional<Failure> run_ticks(const scenario::Scenario& s, const device::Trac
     if (!simulation.physics_due_last_tick()) continue;
     const bool is_due = s.checkpoint_period_ticks > 0 && k - last_checkpoint >= s.checkpoint_period_ticks;
     if ((is_due || g_interrupted) && k < num_ticks) {
-      file.write_checkpoint(simulation.take_snapshot());
+      Snapshot snapshot = simulation.take_snapshot();
+      Archive archive = Archive::make_saving(snapshot);
+      hand.exchange_state(archive);
+      file.write_checkpoint(snapshot);
       last_checkpoint = k;
       if (g_interrupted) break;
     }
@@ -119,8 +121,8 @@ std::uint64_t count_frames(const scenario::Scenario& s, Tick tick) {
   return 1 + static_cast<std::uint64_t>(tick / s.params.rates.frame_period_ticks);  // one at the start
 }
 
-LoopEnd run_loop(const scenario::Scenario& s, const device::Trace& trace, sim::Simulation& simulation,
-                 output::ResultFile& file, bool shows_progress) {
+LoopEnd run_loop(const scenario::Scenario& s, const device::Trace& trace, HandMotion& hand,
+                 sim::Simulation& simulation, output::ResultFile& file, bool shows_progress) {
   watch_signals();
   Progress progress(count_ticks(s, trace), shows_progress);
   StageClock clock;
@@ -130,7 +132,7 @@ LoopEnd run_loop(const scenario::Scenario& s, const device::Trace& trace, sim::S
   if (first == 0) file.append(simulation.make_frame());
   LoopEnd end;
   CostMeter cost;
-  end.failure = run_ticks(s, trace, simulation, file, cost, progress);
+  end.failure = run_ticks(s, count_ticks(s, trace), hand, simulation, file, cost, progress);
   const Tick last = simulation.clock().tick;
   end.is_interrupted = !end.failure && last < count_ticks(s, trace);
   if (!simulation.frame_due_last_tick()) file.append(simulation.make_frame());  // the last good state

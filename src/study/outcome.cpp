@@ -1,6 +1,7 @@
 #include "study/outcome.h"
 
 #include <array>
+#include <cmath>
 
 #include "study/run.h"
 
@@ -26,6 +27,7 @@ Outcome classify(const CaseResult& result, const RunFigures& figures, const RunE
   if (figures.energy_gain > bounds.growing_above) return Outcome::growing_energy;
   if (figures.chatter > bounds.chatter_above && !(figures.chatter <= 2.0 * errors.true_chatter))
     return Outcome::chatter;
+  if (bounds.compares && std::isnan(errors.force)) return Outcome::unknown;
   return errors.force > bounds.wrong_above ? Outcome::wrong : Outcome::accurate;
 }
 
@@ -33,10 +35,14 @@ bool is_stable(Outcome outcome) {
   return outcome == Outcome::accurate || outcome == Outcome::wrong;
 }
 
+bool is_known(Outcome outcome) {
+  return outcome != Outcome::killed && outcome != Outcome::unknown;
+}
+
 std::string to_string(Outcome outcome) {
-  constexpr std::array<const char*, 9> kNames = {"accurate", "wrong",    "growing_energy",
-                                                 "chatter",  "inverted", "not_converged",
-                                                 "failed",   "refused",  "killed"};
+  constexpr std::array<const char*, 10> kNames = {"accurate", "wrong",         "growing_energy", "chatter",
+                                                  "inverted", "not_converged", "failed",         "refused",
+                                                  "killed",   "unknown"};
   return kNames[static_cast<std::size_t>(outcome)];
 }
 

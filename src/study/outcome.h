@@ -17,7 +17,8 @@ enum class Outcome {
   not_converged,   ///< a solve found no solution
   failed,          ///< ended with code 3 for another reason
   refused,         ///< not accepted before the start
-  killed,          ///< by a signal, or it could not write
+  killed,          ///< by a signal, or it could not write: says nothing of the method
+  unknown,         ///< stable, but there was nothing to compare it with
 };
 
 /// Bounds between these.
@@ -25,15 +26,18 @@ struct OutcomeBounds {
   double wrong_above = 0.1;    ///< relative L² error of the hand force
   double growing_above = 0.1;  ///< RunFigures::energy_gain
   double chatter_above = 0.1;  ///< RunFigures::chatter: the just noticeable difference; and twice the truth's
+  bool compares = false;       ///< there is to be a truth: without one, accuracy is unknown
 };
 
-/// `figures` and `errors` count for runs that reached their end; errors.force unknown: nothing to compare
-/// with.
+/// `figures` and `errors` count for runs that reached their end; errors.force is no number where there was
+/// nothing to compare with.
 Outcome classify(const CaseResult& result, const RunFigures& figures, const RunErrors& errors,
                  const OutcomeBounds& bounds);
 
 /// Did it stay in its bounds, right or wrong?
 bool is_stable(Outcome outcome);
+/// Does it say anything of the method?
+bool is_known(Outcome outcome);
 
 std::string to_string(Outcome outcome);
 

@@ -158,11 +158,14 @@ int run(const RunOptions& options) {
   print_notes(scene, options);
   if (options.dry_run) return print_ready(s, simulation, count_ticks(s, scene.trace));
   const Identity identity = find_identity(s);
+  HandMotion hand(s, scene.trace);
   ResumePoint from;
   if (options.resume) from = find_resume_point(result, identity);
   if (from.kind == ResumePoint::Kind::done) return print_done_before(result, options);
   if (from.kind == ResumePoint::Kind::checkpoint) {
     simulation.restore(from.state, result);
+    Archive archive = Archive::make_restoring(from.state, result);
+    hand.exchange_state(archive);
     from.state.clear();
   }
   const Tick first = simulation.clock().tick;
@@ -173,7 +176,7 @@ int run(const RunOptions& options) {
     file.emplace(result, make_header(s, simulation, scene, tool, identity));
   LoopEnd end;
   try {
-    end = run_loop(s, scene.trace, simulation, *file, !options.quiet);
+    end = run_loop(s, scene.trace, hand, simulation, *file, !options.quiet);
     file->finish(end.failure, end.is_interrupted);
   } catch (const IoError&) {
     std::fprintf(stderr,

@@ -69,6 +69,7 @@ class Map {
  private:
   /// Is one accurate, wrong or unstable, and the other not? All ways to be unstable count as one.
   bool turns(std::size_t a, std::size_t b) const {
+    if (!is_known(m_places[a].outcome) || !is_known(m_places[b].outcome)) return false;
     const auto rank = [this](std::size_t i) {
       const Outcome outcome = m_places[i].outcome;
       return is_stable(outcome) ? static_cast<int>(outcome) : -1;
@@ -109,7 +110,10 @@ class Map {
     }
     OutcomeBounds bounds;
     bounds.wrong_above = m_study.wrong_above;
+    bounds.compares = !m_study.reference.empty();
     place.outcome = classify(place.result, place.figures, place.errors, bounds);
+    if (place.outcome == Outcome::unknown)
+      place.result.reason = "reference: " + (place.truth.reason.empty() ? "no force" : place.truth.reason);
   }
 
   /// Middle of a boundary; nothing when it is narrow enough.
@@ -207,7 +211,7 @@ void write_failure(const scenario::StabilityStudy& study, const Map& map, const 
   if (!out) throw IoError(file, "could not be written");
 }
 
-/// Of each way to fail that left a result, the place that is nearest to a boundary: the first found there.
+/// Of each way to fail that left a result, the place that is nearest to a boundary, or the first found.
 void write_failures(const scenario::StabilityStudy& study, const Map& map, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -215,11 +219,32 @@ void write_failures(const scenario::StabilityStudy& study, const Map& map, const
   std::map<Outcome, const Place*> nearest;
   for (const Boundary& b : map.boundaries())
     for (const std::size_t i : {b.below, b.above})
-      if (const Place& place = map.places()[i]; !is_stable(place.outcome) && !place.result.file.empty())
+      if (const Place& place = map.places()[i];
+          is_known(place.outcome) && !is_stable(place.outcome) && !place.result.file.empty())
         nearest.emplace(place.outcome, &place);
+  for (const Place& place : map.places())
+    if (is_known(place.outcome) && !is_stable(place.outcome) && !place.result.file.empty())
+      nearest.emplace(place.outcome, &place);
   const std::string stem = std::filesystem::path(study.file).stem().string();
   for (const auto& [outcome, place] : nearest)
     write_failure(study, map, *place, folder + "/" + stem + "_" + to_string(outcome) + ".json");
+}
+
+/// Rows that say nothing of the method make the map one to be made again.
+int print_accidents(const std::string& study, const Map& map) {
+  const auto count = [&](Outcome outcome) {
+    return std::count_if(map.places().begin(), map.places().end(),
+                         [&](const Place& p) { return p.outcome == outcome; });
+  };
+  const auto killed = count(Outcome::killed), unknown = count(Outcome::unknown);
+  if (killed > 0)
+    std::fprintf(stderr, "argil: %td runs of %s were killed or could not write: start it again\n", killed,
+                 study.c_str());
+  if (unknown > 0)
+    std::fprintf(stderr,
+                 "argil: %td runs of %s have no reference to compare with: see their reason in the table\n",
+                 unknown, study.c_str());
+  return killed + unknown > 0 ? kRunFailed : kDone;
 }
 
 }  // namespace
@@ -236,7 +261,7 @@ int map_stability(StudyOptions options, const std::string& failures) {
   if (!options.cases.quiet)
     std::printf("%s.csv: %zu runs, %zu boundaries\n", options.output.c_str(), map.places().size(),
                 map.boundaries().size());
-  return kDone;
+  return print_accidents(options.study, map);
 }
 
 }  // namespace argil::study

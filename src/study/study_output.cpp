@@ -34,6 +34,10 @@ std::vector<std::pair<std::string, std::string>> describe_study(const std::strin
                                                                 const std::string& scenario,
                                                                 const Settings& settings) {
   namespace fs = std::filesystem;
+  RunOptions options;
+  options.scenario = scenario;
+  std::string inputs = find_identity(load(options)).inputs;
+  std::replace(inputs.begin(), inputs.end(), '\n', ';');
   std::string build = describe_build();
   std::replace(build.begin(), build.end(), '\n', ';');
   return {{"about", about},
@@ -41,6 +45,7 @@ std::vector<std::pair<std::string, std::string>> describe_study(const std::strin
           {"study_sha256", hash_file(study)},
           {"scenario", fs::path(scenario).filename().string()},
           {"scenario_sha256", hash_file(scenario)},
+          {"inputs_sha256", inputs},
           {"settings", print_settings(settings)},
           {"build", build},
           {"machine",

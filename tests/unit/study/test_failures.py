@@ -18,6 +18,15 @@ FOLDER = Path(__file__).resolve().parents[3] / "scenarios" / "failures"
 ENDS_EARLY = ("growing_energy", "inverted", "not_converged", "failed")
 
 
+def share_above_50_hz(result):
+    """Rms of the hand force above 50 Hz over its rms, by Parseval's theorem of the series under a Hann window."""
+    with h5py.File(result) as data:
+        time, force = data["haptic/time"][()], data["haptic/force"][()]
+    spectrum = np.abs(np.fft.rfft(force * np.hanning(len(force))[:, None], axis=0))**2
+    frequency = np.fft.rfftfreq(len(force), time[1] - time[0])
+    return np.sqrt(spectrum[frequency > 50].sum() / spectrum.sum())
+
+
 class Failures(unittest.TestCase):
     def test_each_ends_as_it_says(self):
         files = sorted(FOLDER.glob("*.json"))
@@ -33,6 +42,8 @@ class Failures(unittest.TestCase):
                 if outcome in ENDS_EARLY:
                     said = about.split(": ", 2)[2].split(" is ")[0]  # stage and quantity, without tick and digits
                     self.assertIn(said, run.stderr)
+                if outcome == "chatter":
+                    self.assertGreater(share_above_50_hz(result), 0.1)
                 with h5py.File(result) as data:  # nothing in the file is no number
                     def check(name, item):
                         if isinstance(item, h5py.Dataset) and item.dtype.kind == "f":

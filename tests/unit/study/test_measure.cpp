@@ -28,7 +28,11 @@ TEST(Classify, GoesByTheWorstThatHappened) {
   CaseResult result;
   RunFigures figures;
   RunErrors errors;
-  EXPECT_EQ(classify(result, figures, errors, {}), Outcome::accurate);  // nothing to compare with
+  EXPECT_EQ(classify(result, figures, errors, {}), Outcome::accurate);  // nothing to compare with, nor asked for
+  OutcomeBounds bounds;
+  bounds.compares = true;
+  EXPECT_EQ(classify(result, figures, errors, bounds), Outcome::unknown);
+  EXPECT_FALSE(is_known(Outcome::unknown));
   errors.force = 0.2;
   EXPECT_EQ(classify(result, figures, errors, {}), Outcome::wrong);
   EXPECT_TRUE(is_stable(Outcome::wrong));

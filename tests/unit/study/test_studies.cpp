@@ -214,23 +214,74 @@ TEST_F(Study, BudgetPrintsThePatchOfTheMostAccurateRunThatFits) {
   EXPECT_EQ(chart_budget(options(kChart), 1e-9), kRunFailed);
 }
 
+/// A map of one place.
+std::string one_place(const std::string& settings, const std::string& pointer, const std::string& value,
+                      const std::string& reference = R"("/dynamics/iteration": "newton")",
+                      const std::string& more = "") {
+  return R"({"about": "one place", "scenario": "scene.json", "settings": {)" + more + settings +
+         R"(}, "x": {"name": "x", "pointers": [")" + pointer + R"("], "values": [)" + value +
+         R"(]}, "reference": {)" + reference + "}}";
+}
+
 TEST_F(Study, MapNamesEachWayToEnd) {
-  const auto outcome = [&](const std::string& settings, const std::string& pointer,
-                           const std::string& value) {
-    EXPECT_EQ(
-        map_stability(options(R"({"about": "one place", "scenario": "scene.json", "settings": {)" + settings +
-                              R"(}, "x": {"name": "x", "pointers": [")" + pointer + R"("], "values": [)" +
-                              value + R"(]}, "reference": {"/dynamics/iteration": "newton"}})"),
-                      ""),
-        kDone);
+  const auto outcome = [&](const std::string& study) {
+    EXPECT_EQ(map_stability(options(study), ""), kDone);
     return table().at(0).at("outcome");
   };
-  EXPECT_EQ(outcome("", "/material/poissons_ratio", "0.3"), "accurate");
-  EXPECT_EQ(outcome("", "/material/poissons_ratio", "0.7"), "refused");
-  EXPECT_EQ(outcome("", "/dynamics/min_volume_ratio", "0.999"), "inverted");
-  EXPECT_EQ(outcome(R"("/dynamics/solver/kind": "pcg_jacobi", "/dynamics/solver/tolerance": 1e-12)",
-                    "/dynamics/solver/max_iterations", "1"),
-            "not_converged");
+  EXPECT_EQ(outcome(one_place("", "/material/poissons_ratio", "0.3")), "accurate");
+  EXPECT_EQ(outcome(one_place("", "/material/poissons_ratio", "0.7", R"("/material/poissons_ratio": 0.3)")),
+            "refused");
+  EXPECT_EQ(
+      outcome(one_place("", "/dynamics/min_volume_ratio", "0.999", R"("/dynamics/min_volume_ratio": 0)")),
+      "inverted");
+  EXPECT_EQ(
+      outcome(one_place(R"("/dynamics/solver/kind": "pcg_jacobi", "/dynamics/solver/tolerance": 1e-12)",
+                        "/dynamics/solver/max_iterations", "1", R"("/dynamics/solver/max_iterations": 500)")),
+      "not_converged");
+  // Twice as stiff clay is felt as more than a tenth.
+  EXPECT_EQ(
+      outcome(one_place("", "/material/youngs_modulus_Pa", "2e4", R"("/material/youngs_modulus_Pa": 4e4)")),
+      "wrong");
+  // A stiff contact whose force is held for longer than the clay takes to give way.
+  EXPECT_EQ(
+      outcome(one_place(
+          R"("/haptics/physics_period_ticks": 10, "/haptics/frame_period_ticks": 50, "/contact/edge_edge_stiffness_N_per_m": 2000)",
+          "/contact/vertex_face_stiffness_N_per_m", "2000",
+          R"("/dynamics/implicit_contact": true, "/haptics/physics_period_ticks": 1)",
+          R"("/dynamics/implicit_contact": false, )")),
+      "chatter");
+}
+
+TEST_F(Study, MapWithoutATruthSaysSo) {
+  // The reference is refused, or the tool never comes near: nothing is accurate then.
+  for (const auto& [reference, reason] :
+       {std::pair(R"("/material/poissons_ratio": 0.7)", "reference: scene.json: /material/poissons_ratio"),
+        std::pair(R"("/trace/device_to_world/translation_m": [1, 0, 0])", "")}) {
+    EXPECT_EQ(map_stability(options(one_place("", "/material/density_kg_per_m3", "1500", reference)), ""),
+              kRunFailed);
+    EXPECT_EQ(table().at(0).at("outcome"), "unknown");
+    EXPECT_EQ(table().at(0).at("reason").find(reason), 0U) << table().at(0).at("reason");
+  }
+}
+
+TEST_F(Study, RunThatWasKilledOrDamagedIsRunAgain) {
+  const std::string study = one_place("", "/material/poissons_ratio", "0.3");
+  StudyOptions o = options(study);
+  // The first run of the program kills itself.
+  o.cases.program = test::write_text(
+      folder / "argil.sh", "#!/bin/sh\nif mkdir '" + (folder / "killed") +
+                               "' 2>/dev/null; then kill -9 $$; fi\nexec '" ARGIL_BINARY "' \"$@\"\n");
+  std::filesystem::permissions(o.cases.program, std::filesystem::perms::owner_all);
+  o.cases.jobs = 1;
+  EXPECT_EQ(map_stability(o, ""), kRunFailed);
+  EXPECT_EQ(table().at(0).at("outcome"), "killed");
+  EXPECT_EQ(map_stability(o, ""), kDone);
+  EXPECT_EQ(table().at(0).at("outcome"), "accurate");
+  const std::string whole = read_text(folder / "table.csv");
+  const std::string kept = folder / ("table.runs/" + table().at(0).at("run") + ".h5");
+  std::filesystem::resize_file(kept, std::filesystem::file_size(kept) / 2);
+  EXPECT_EQ(map_stability(o, ""), kDone);
+  EXPECT_EQ(read_text(folder / "table.csv"), whole);
 }
 
 TEST_F(Study, RefusesWhatItCannotRun) {
@@ -247,17 +298,30 @@ TEST_F(Study, RefusesWhatItCannotRun) {
   };
   const std::string head = R"({"about": "x", "scenario": "scene.json", )";
   expect(head + R"("curves": [{"name": "a"}]})", {"/refined", "is missing"});
-  expect(head + R"("refined": {"/a": 1}, "curves": []})", {"/curves", "is not a list"});
+  expect(head + R"("refined": {"/haptics/period_s": 1}, "curves": []})", {"/curves", "is not a list"});
   expect(head + R"("refined": {"a": 1}, "curves": [{"name": "a"}]})",
          {"/refined", "\"a\" is no JSON pointer"});
-  expect(head + R"("refined": {"/a": 1}, "curves": [{"name": "a", "along": {"/b": [1, 2], "/c": [1]}}]})",
-         {"/curves/0/along", "/c has 1 values, the first axis 2"});
-  expect(head + R"("refined": {"/a": 1}, "curve": [], "curves": [{"name": "a"}]})",
+  expect(head + R"("refined": {"/haptics/period_s": 1}, "curves": [{"name": "a",
+         "along": {"/body/loads/gravity_m_per_s2/0": [1, 2], "/trace/start_s": [1]}}]})",
+         {"/curves/0/along", "/trace/start_s has 1 values, the first axis 2"});
+  expect(head + R"("refined": {"/haptics/perod_s": 1}, "curves": [{"name": "a"}]})",
+         {"/refined", "\"/haptics/perod_s\" is no key of a scenario", "did you mean /haptics/period_s?"});
+  expect(head + R"("refined": {"/haptics/period_s": 1}, "curve": [], "curves": [{"name": "a"}]})",
          {"/curve", "is not a known key", "did you mean curves?"});
-  expect(head + R"("x": {"name": "x", "pointers": ["/a"], "values": [2, 1]}})",
+  expect(head + R"("x": {"name": "x", "pointers": ["/trace/start_s"], "values": [2, 1]}})",
          {"/x/values", "do not increase"}, true);
-  expect(head + R"("x": {"name": "x", "pointers": ["/a"], "logarithmic": true, "values": [0, 1]}})",
-         {"/x/values", "logarithm"}, true);
+  expect(
+      head + R"("x": {"name": "x", "pointers": ["/trace/start_s"], "logarithmic": true, "values": [0, 1]}})",
+      {"/x/values", "logarithm"}, true);
+  expect(head + R"("x": {"name": "x", "pointers": ["/material/poisons_ratio"], "values": [0.1]}})",
+         {"/x/pointers", "is no key of a scenario", "did you mean /material/poissons_ratio?"}, true);
+  expect(
+      head + R"("x": {"name": "x", "pointers": ["/trace/start_s"], "integers": true, "values": [1, 1.4]}})",
+      {"/x/values", "not whole"}, true);
+  expect(
+      head +
+          R"("refined": {"/about": "the same"}, "reference": {"/about": "the same"}, "curves": [{"name": "a"}]})",
+      {"/refined", "same run as /reference"});
   EXPECT_FALSE(std::filesystem::exists(folder / "table.csv"));
 }
 
