@@ -129,10 +129,13 @@ void add_run_commands(CLI::App& app, int& code) {
   info->add_option("FILE", o->first, "result file")->required();
   info->callback([o, &code] { code = print_info(o->first); });
 
-  CLI::App* exporting = app.add_subcommand("export", "write a result for a browser");
+  CLI::App* exporting = app.add_subcommand("export", "write a result for a browser or for VTK");
   exporting->add_option("FILE", o->exported.result, "result file")->required();
-  exporting->add_option("--html", o->exported.html, "one page that shows the result without a network")
-      ->required();
+  CLI::App* forms = exporting->add_option_group("forms");
+  forms->require_option(1, 2);
+  forms->add_option("--html", o->exported.html, "one page that shows the result without a network");
+  forms->add_option("--vtu", o->exported.vtu,
+                    "series for VTK: its list (.pvd), beside a folder of .vtu files");
   exporting
       ->add_option("--megabytes", o->exported.megabytes,
                    "for the page's frames before compression; fewer are shown")

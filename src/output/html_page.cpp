@@ -3,16 +3,15 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string_view>
 
 #include "base/error.h"
 #include "base/read_file.h"
 #include "output/page_data.h"
+#include "output/text.h"
 
 namespace argil::output {
 namespace {
@@ -198,15 +197,6 @@ std::string describe(const ResultReader& reader, const SurfaceFrames& surface, c
   return text + ",\n\"sections\":" + join(block.sections(), describe_section) + "}";
 }
 
-void write_text(const std::string& file, const std::string& text) {
-  errno = 0;
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << text;
-  stream.close();
-  if (!stream)
-    throw IoError(file, std::string("cannot be written: ") + std::strerror(errno != 0 ? errno : EIO));
-}
-
 }  // namespace
 
 std::vector<std::string> write_html(const std::string& result_file, const std::string& html_file,
@@ -236,7 +226,7 @@ std::vector<std::string> write_html(const std::string& result_file, const std::s
                "<script type=\"application/json\" id=\"argil-about\">" + about +
                    "</script>\n<script type=\"text/plain\" id=\"argil-data\">" +
                    to_base64(deflate_bytes(block.bytes())) + "</script>");
-  write_text(html_file, page);
+  write_file(html_file, page);
   return notes;
 }
 

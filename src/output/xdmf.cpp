@@ -1,12 +1,9 @@
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
-#include "base/error.h"
 #include "hdf5/file.h"
 #include "output/result_file.h"
+#include "output/text.h"
 
 namespace argil::output {
 namespace {
@@ -14,29 +11,6 @@ namespace {
 using hdf5::Dataset;
 using hdf5::Element;
 using hdf5::Group;
-
-std::string escape(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
 
 // Whole datasets only: a part of a dataset (HyperSlab) is not opened by ParaView's readers.
 struct Writer {
@@ -52,7 +26,7 @@ struct Writer {
     }
     const bool is_real = dataset.element() == Element::real64;
     text << "\" NumberType=\"" << (is_real ? "Float\" Precision=\"8" : "Int\" Precision=\"4") << "\">" << file
-         << ":" << escape(dataset.path()) << "</DataItem>";
+         << ":" << escape_xml(dataset.path()) << "</DataItem>";
   }
 
   void attribute(const Dataset& dataset, const char* name, const char* type, const char* centre) {
@@ -114,18 +88,13 @@ void write_xdmf(const std::string& result_file, const std::string& xdmf_file) {
   Writer out;
   out.text.precision(17);
   out.text.imbue(std::locale::classic());
-  out.file = escape(relative_name(result_file, xdmf_file));
+  out.file = escape_xml(relative_name(result_file, xdmf_file));
   out.text << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
   write_collection(out, "cage", root, write_cage);
   const bool has_skin = root.open_group("mesh").open_dataset("skin_triangles").shape()[0] > 0;
   if (has_skin) write_collection(out, "skin", root, write_skin);
   out.text << "  </Domain>\n</Xdmf>\n";
-  errno = 0;
-  std::ofstream stream(xdmf_file, std::ios::binary | std::ios::trunc);
-  stream << out.text.str();
-  stream.close();
-  if (!stream)
-    throw IoError(xdmf_file, std::string("cannot be written: ") + std::strerror(errno != 0 ? errno : EIO));
+  write_file(xdmf_file, out.text.str());
 }
 
 }  // namespace argil::output

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "output/html_page.h"
+#include "output/vtu.h"
 #include "study/files.h"
 #include "study/run.h"
 
@@ -24,15 +25,25 @@ std::string find_viewer() {
   return viewer.string();
 }
 
-}  // namespace
-
-int export_result(const ExportOptions& options) {
-  require_input_file(options.result);
+void export_page(const ExportOptions& options) {
   require_other_file(options.html, options.result, "the result", "--html");
   const auto notes =
       output::write_html(options.result, options.html, {find_viewer(), options.megabytes, options.cage});
   std::printf("%s: %.1f MB\n", options.html.c_str(), static_cast<double>(fs::file_size(options.html)) / 1e6);
   for (const std::string& note : notes) std::printf("  %s\n", note.c_str());
+}
+
+void export_series(const ExportOptions& options) {
+  const std::size_t count = output::write_vtu_series(options.result, options.vtu);
+  std::printf("%s: %zu frames\n", options.vtu.c_str(), count);
+}
+
+}  // namespace
+
+int export_result(const ExportOptions& options) {
+  require_input_file(options.result);
+  if (!options.html.empty()) export_page(options);
+  if (!options.vtu.empty()) export_series(options);
   return ExitCode::kDone;
 }
 

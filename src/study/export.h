@@ -4,10 +4,11 @@
 
 namespace argil::study {
 
-/// How `argil export` was called: exactly one of `html` and `vtu` is given.
+/// How `argil export` was called.
 struct ExportOptions {
   std::string result;
-  std::string html;         ///< page to write
+  std::string html;         ///< page to write; empty: none
+  std::string vtu;          ///< list (.pvd) of a series of .vtu files to write; empty: none
   double megabytes = 12.0;  ///< [MB] that the frames of a page may take before compression
   bool cage = false;        ///< show the cage's boundary also where there is a skin
 };

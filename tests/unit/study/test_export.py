@@ -189,6 +189,11 @@ class Refusals(Folder):
         self.assertEqual(done.returncode, 2)
         self.assertIn("would be overwritten; give another name to --html", done.stderr)
 
+    def test_a_series_lists_every_frame(self):
+        self.assertEqual(export(RESULT, "--vtu", self.path("ball.pvd")).returncode, 0)
+        with h5py.File(RESULT) as result:
+            self.assertEqual(len(list(self.path("ball").glob("cage_*.vtu"))), len(result["frames"]))
+
     def test_one_form_must_be_chosen(self):
         self.assertEqual(export(RESULT).returncode, 2)
 
