@@ -49,6 +49,7 @@ HAUNCH = Place(contact=(-6.0, -30.4, 62.0), normal=(0.0, -1.0, 0.0), slide=(0.35
 
 BLOCK = Place(contact=(0.37, 0.21, 30.0), normal=(0.0, 0.0, 1.0), slide=(1.0, 0.0, 0.0), tool_radius=24.0,
               is_smooth=True)
+BELLY = Place(contact=(13.7, 0.0, 125.0), normal=(1.0, 0.0, 0.0), slide=(0.0, 0.0, 1.0), tool_radius=8.0)
 POST = Place(contact=(-25.0, 0.23, 85.0), normal=(-1.0, 0.0, 0.0), slide=(0.0, 0.0, 1.0), tool_radius=8.0,
              is_smooth=True)
 
@@ -108,6 +109,18 @@ PULL = [  # touch, draw outward while sliding up, and away
     Stroke("pull", 0.60, 25.0, 0.0, 0.0),
 ]
 
+PUSH_PULL = [  # press the belly, go up, draw the chest out
+    Stroke("push", 0.50, 2.0, -4.0, 0.0),
+    Stroke("push", 0.30, -4.0, -4.0, 0.0),
+    Stroke("push", 0.50, -4.0, -4.0, 0.0),
+    Stroke("push", 0.30, 15.0, -4.0, 0.0),
+    Stroke("push", 0.50, 4.0, 16.0, 0.0),
+    Stroke("pull", 0.30, -0.5, 16.0, 0.0),
+    Stroke("pull", 0.60, 1.0, 16.0, 0.0),
+    Stroke("pull", 0.40, 12.0, 16.0, 0.0),
+    Stroke("pull", 0.50, 25.0, 0.0, 0.0),
+]
+
 LIGHT = [  # come, press, hold and let go
     Stroke("push", 0.10, 1.0, 0.0, 0.0),
     Stroke("push", 0.12, -2.0, 0.0, 0.0),
@@ -141,6 +154,7 @@ DRY = [stroke._replace(mode="dry") for stroke in WET]
 TRACES = {  # file: place, strokes before time zero of the tremor, strokes from there on
     "press_flank.csv": (HAUNCH, [], PRESS),
     "wet_press_flank.csv": (HAUNCH, WET, PRESS),
+    "figure_push_pull.csv": (BELLY, [], PUSH_PULL),
     "poke.csv": (HAUNCH, [], POKE),
     "block_light.csv": (BLOCK, [], LIGHT),
     "block_wet.csv": (BLOCK, [], WET_LIGHT),

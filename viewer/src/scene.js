@@ -41,7 +41,8 @@ function makeArrow() {
 function extentOf(result) {
   const low = new Vector3(...result.grid.low);
   const high = new Vector3(...result.grid.high);
-  return { middle: low.clone().add(high).multiplyScalar(0.5), size: high.sub(low).length() };
+  const box = high.clone().sub(low);
+  return { middle: low.add(high).multiplyScalar(0.5), box, size: box.length() };
 }
 
 export class View {
@@ -78,15 +79,23 @@ export class View {
     }
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
-    // From the side on which the tool is when it feels most.
-    this.side = result.touched[1] <= this.extent.middle.y ? -1 : 1;
+    this.away = this.findDirection(result.touched);
     this.reset();
   }
 
+  /** Towards the eye: 30 degrees off the side of the body's box that the tool is nearest to, and from above. */
+  findDirection(touched) {
+    const { middle, box } = this.extent;
+    const x = touched[0] - middle.x;
+    const y = touched[1] - middle.y;
+    const away = Math.abs(x) / box.x > Math.abs(y) / box.y
+      ? new Vector3(x > 0 ? 0.92 : -0.92, -0.5, 0.36) : new Vector3(0.5, y > 0 ? 0.92 : -0.92, 0.36);
+    return away.normalize();
+  }
+
   reset() {
-    const away = new Vector3(0.5, 0.92 * this.side, 0.36).normalize();
     const distance = (0.42 * this.extent.size) / Math.tan((OPENING_DEGREES * Math.PI) / 360);
-    this.camera.position.copy(this.extent.middle).addScaledVector(away, distance);
+    this.camera.position.copy(this.extent.middle).addScaledVector(this.away, distance);
     this.controls.target.copy(this.extent.middle);
     this.controls.update();
   }
