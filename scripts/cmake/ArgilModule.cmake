@@ -20,6 +20,12 @@ function(argil_module name)
   if(ARG_LIBRARIES)
     target_link_libraries(${target} ${scope} ${ARG_LIBRARIES})
   endif()
+  if(name STREQUAL cli)  # the program's own
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})  # argil::NAME for those who link it
+  install(TARGETS ${target} EXPORT argil COMPONENT development
+    ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}/argil" FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/argil")
 endfunction()
 
 # argil_test(NAME LABEL label … SOURCES a.cpp … DEPENDS mesh …)

@@ -11,7 +11,8 @@ target_compile_features(argil_options INTERFACE cxx_std_20)
 target_compile_definitions(argil_options INTERFACE EIGEN_DONT_PARALLELIZE)
 target_compile_options(argil_options INTERFACE
   -ffp-contract=off
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wold-style-cast
-  -Wnon-virtual-dtor -Woverloaded-virtual
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # g++ 12 warns of "literal" + std::string (GCC bug 105651)
-target_include_directories(argil_options INTERFACE "${PROJECT_SOURCE_DIR}/src")
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Wdouble-promotion;-Wold-style-cast>"
+  "$<BUILD_INTERFACE:-Wnon-virtual-dtor;-Woverloaded-virtual>"
+  # g++ 12 warns of "literal" + std::string (GCC bug 105651)
+  "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>")
+target_include_directories(argil_options INTERFACE "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>")
