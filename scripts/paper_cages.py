@@ -1,0 +1,86 @@
+#!/usr/bin/python3
+"""Cage and skin: what the embedding errs by, and how the pressed skin depends on the cage's resolution.
+
+Usage: paper_cages.py COARSE.h5 … FINE.h5 [-o STEM]. Runs of one scenario with other target_tets, of one or more bodies
+(the skin says which belong together); the finest of each is the measure. Writes STEM.csv, STEM.png, STEM.pdf.
+"""
+import argparse
+import csv
+from pathlib import Path
+
+import argil_plot as ap
+from argil_plot import np, plt
+from scipy.spatial import cKDTree
+
+NEAREST = 60  # tets around a skin vertex among which the containing one is looked for
+
+
+def find_weights(points, tets, skin):
+    """Containing tet of each skin vertex and its barycentric weights there."""
+    corners = points[tets]
+    inverse = np.linalg.inv((corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1))
+    _, nearest = cKDTree(corners.mean(axis=1)).query(skin, min(NEAREST, len(tets)))
+    last = np.einsum("vnij,vnj->vni", inverse[nearest], skin[:, None] - corners[nearest, 0])
+    weights = np.concatenate([1.0 - last.sum(axis=2, keepdims=True), last], axis=2)
+    best = weights.min(axis=2).argmax(axis=1)
+    rows = np.arange(len(skin))
+    return nearest[rows, best], weights[rows, best]
+
+
+def measure(file):
+    """Figures of one run. Embedding error: distance of a skin vertex from Σ wᵢ xᵢ with the weights of the first frame,
+    the largest over all frames [m]."""
+    with ap.open_result(file) as result:
+        frames = ap.frames_of(result)
+        tets = result["mesh/tets"][:]
+        first = frames[0]["skin_position"][:]
+        tet, weights = find_weights(frames[0]["position"][:], tets, first)
+        error = max(np.linalg.norm(np.einsum("vi,vij->vj", weights, frame["position"][:][tets[tet]])
+                                   - frame["skin_position"][:], axis=1).max() for frame in frames)
+        return {"body": Path(file).stem.split("_")[1], "tets": len(tets), "skin_vertices": len(first),
+                "lowest_weight": weights.min(), "embedding_error_m": error, "peak_N": ap.force_norm(result).max(),
+                "displacement": frames[-1]["skin_position"][:] - first}
+
+
+def draw(rows):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(160 * ap.MILLIMETRES, 65 * ap.MILLIMETRES))
+    for number, body in enumerate(sorted({row["body"] for row in rows})):
+        mine = [row for row in rows if row["body"] == body]
+        style = {"color": ap.COLOURS[number], "linestyle": ap.DASHES[number], "marker": "o", "markersize": 3}
+        left.loglog([r["tets"] for r in mine[:-1]], [1e3 * r["skin_difference_m"] for r in mine[:-1]], label=body, **style)
+        right.semilogx([r["tets"] for r in mine], [r["peak_N"] for r in mine], label=body, **style)
+    left.set_ylabel("final skin: rms distance\nfrom the finest [mm]")
+    right.set_ylabel("peak force [N]")
+    right.set_ylim(bottom=0.0)
+    for axes in (left, right):
+        axes.set_xticks([1000, 2500, 5000, 10000], ["1000", "2500", "5000", "10000"])
+        axes.minorticks_off()
+        axes.set_xlabel("tets of the cage [–]")
+        axes.legend()
+    return figure
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("files", nargs="+", metavar="RESULT.h5")
+    parser.add_argument("-o", "--output", default="cages", metavar="STEM")
+    options = parser.parse_args()
+    rows = [measure(file) for file in options.files]
+    for row in rows:
+        finest = max((r for r in rows if r["body"] == row["body"]), key=lambda r: r["tets"])
+        if finest["displacement"].shape != row["displacement"].shape:
+            ap.refuse("runs of one body have different skins")
+        difference = row["displacement"] - finest["displacement"]
+        row["skin_difference_m"] = np.sqrt((difference**2).sum(axis=1).mean())
+        row["largest_displacement_m"] = np.linalg.norm(row["displacement"], axis=1).max()
+    names = [name for name in rows[0] if name != "displacement"]
+    with open(f"{options.output}.csv", "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(names)
+        table.writerows([f"{row[n]:.4g}" if isinstance(row[n], float) else row[n] for n in names] for row in rows)
+    print(f"{options.output}.csv")
+    ap.save(draw(rows), options.output)
+
+
+if __name__ == "__main__":
+    main()
