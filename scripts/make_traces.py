@@ -151,6 +151,17 @@ SLIDE = [  # press and slide, to and fro
 
 DRY = [stroke._replace(mode="dry") for stroke in WET]
 
+SCULPT_WET = [*WET[:1], *WET[17:]]  # the inner rounds of the wiping
+SCULPT_PULL = [  # draw out above the dent, barely touching: wet clay follows easily
+    Stroke("push", 0.40, 6.0, -8.0, 0.0),
+    Stroke("pull", 0.30, -0.3, -8.0, 0.0),
+    Stroke("pull", 0.40, 0.7, -8.0, 0.0),
+    Stroke("pull", 0.30, 12.0, -8.0, 0.0),
+    Stroke("pull", 0.40, 25.0, 0.0, 0.0),
+]
+SCULPT_DRY = [stroke._replace(mode="dry", height=stroke.height - (2.5 if stroke.height < 0.0 else 0.0))
+              for stroke in SCULPT_WET]  # down in the dent
+
 TRACES = {  # file: place, strokes before time zero of the tremor, strokes from there on
     "press_flank.csv": (HAUNCH, [], PRESS),
     "wet_press_flank.csv": (HAUNCH, WET, PRESS),
@@ -160,6 +171,7 @@ TRACES = {  # file: place, strokes before time zero of the tremor, strokes from 
     "block_wet.csv": (BLOCK, [], WET_LIGHT),
     "block_slide.csv": (BLOCK, [], SLIDE),
     "post_bend.csv": (POST, [], BEND),
+    "sculpt.csv": (HAUNCH, SCULPT_WET, PRESS + SCULPT_PULL + SCULPT_DRY + PRESS),
     "long_session.csv": (HAUNCH, [], WET + PRESS + PULL + DRY + PRESS),
 }
 

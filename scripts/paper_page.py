@@ -77,7 +77,7 @@ def dry_wet():
 
 def sculpted():
     return ("The paper shows a tyrannosaur before and after sculpting and says nothing of the session. Ours is one motion of "
-            "52 s, generated: wipe with water, press three times, pull, dry, press again.\n\n"
+            "25 s, generated: wipe with water, press three times, pull, dry, press again.\n\n"
             + picture("sculpted.png", "before, wetting, drying, after")
             + picture("sculpted_skin.png", "the skin before and after, its displacement")
             + picture("sculpted_force.png", "force on the hand against time"))
