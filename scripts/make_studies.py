@@ -19,7 +19,9 @@ TITLES = {
     "map_poisson_p1_nodal": "Volumes averaged at nodes, towards ν = ½",
     "map_dilute_pole": "The paper's formula for wet clay",
     "map_rotation": "Linear strain under rotation", "map_creep_step": "Literal plastic flow",
-    "map_kernel_step": "Clay kernel once a step"}
+    "map_hand_damping": "A held force and the hand's damping",
+    "map_kernel_step": "Clay kernel once a step", "map_approach_speed": "A fast tool",
+    "map_sliver": "A flat tet under the tool", "map_wet_contrast": "Wet clay beside dry"}
 
 
 def main():

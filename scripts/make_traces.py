@@ -136,8 +136,8 @@ BEND = [  # push a post over
 
 WET_LIGHT = [  # wet a place, then press it
     Stroke("wet", 0.10, 1.0, 0.0, 0.0),
-    Stroke("wet", 0.05, -0.5, 0.0, 0.0),
-    Stroke("wet", 0.25, -0.5, 0.0, 0.0),
+    Stroke("wet", 0.05, -0.3, 0.0, 0.0),
+    Stroke("wet", 0.25, -0.3, 0.0, 0.0),
     Stroke("push", 0.05, 1.0, 0.0, 0.0),
     *LIGHT[1:],
 ]
