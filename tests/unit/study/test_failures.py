@@ -23,6 +23,7 @@ def share_above_50_hz(result):
     with h5py.File(result) as data:
         time, force = data["haptic/time"][()], data["haptic/force"][()]
     spectrum = np.abs(np.fft.rfft(force * np.hanning(len(force))[:, None], axis=0))**2
+    spectrum[1:] *= 2  # what stands for both signs of the frequency
     frequency = np.fft.rfftfreq(len(force), time[1] - time[0])
     return np.sqrt(spectrum[frequency > 50].sum() / spectrum.sum())
 
