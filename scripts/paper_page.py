@@ -44,12 +44,12 @@ def read_json(file):
 
 def table(head, rows):
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
+    return "\n" + "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
 def push_pull():
-    return ("The paper shows a figure before a push, pushed and pulled, with the region of influence coloured; it gives no "
-            "size of body, force or dent. Ours is 0.2 m tall, its back against a board.\n\n"
+    return ("The paper shows a figure before a push, pushed and pulled, with the region of influence coloured; neither mesh "
+            "nor clay is given, so the course can be compared, not its size. Ours is 0.2 m tall, its back against a board.\n\n"
             + picture("push_pull_influence.png", "region of influence before, under a push, under a pull, after")
             + picture("push_pull.png", "displacement of the skin before, under a push, under a pull, after")
             + picture("push_pull_force.png", "force on the hand against time")
@@ -59,8 +59,8 @@ def push_pull():
 
 def dry_wet():
     demo = read_json(ROOT / "results/demo/run.json")
-    words = ("The paper draws the hand's force against time, dry above wet, without numbers on the axes that could be "
-             "read off as measurements.\n\n" + picture("../demo/dinosaur.png", "dry and wet, before, during, after")
+    words = ("The paper draws the hand's force against time, dry and wet. Without its clay, mesh and motion the order can be "
+             "compared, not the size: dry is above wet.\n\n" + picture("../demo/dinosaur.png", "dry and wet, before, during, after")
              + picture("../demo/force.png", "force dry and wet")
              + picture("../demo/force_split.png", "elasticity alone, yield alone"))
     if demo:
@@ -70,13 +70,14 @@ def dry_wet():
                  f"{100 * (run['peak_N'] / dry['peak_N'] - 1):+.0f} %",
                  f"{100 * (run['impulse_N_s'] / dry['impulse_N_s'] - 1):+.0f} %"] for name, run in runs.items()]
         words += "\n" + table(["run", "peak [N]", "impulse [N s]", "peak, to dry", "impulse, to dry"], rows)
-    return (words + "\nLocking plays no part there, for the water is drained. Where it cannot leave (a block, 2.2 GPa), linear "
-            "tets hide what the water softens; `p1_nodal` does not:\n\n"
+    return (words + "\nLocking plays no part there, for the water is drained. Where it cannot leave (a block, 2.2 GPa), a linear tet "
+            "and the locking-free `p1_nodal` still give nearly the same force under this light press; what locking does to an "
+            "elastic body that is bent is under [7](#7-where-the-formulas-fail).\n\n"
             + picture("locking_force.png", "force of a locking and of a locking-free element on undrained clay"))
 
 
 def sculpted():
-    return ("The paper shows a tyrannosaur before and after sculpting and says nothing of the session. Ours is one motion of "
+    return ("The paper shows a tyrannosaur before and after sculpting; its session is not published. Ours is one motion of "
             "25 s, generated: wipe with water, press three times, pull, dry, press again.\n\n"
             + picture("sculpted.png", "before, wetting, drying, after")
             + picture("sculpted_skin.png", "the skin before and after, its displacement")
