@@ -55,7 +55,7 @@ void print_devices(std::vector<std::string> names) {
   if (names.empty()) {
     for (const device::DeviceKind& kind : device::device_kinds()) {
       std::printf("%-12s %s\n", kind.name.c_str(), kind.about.c_str());
-      if (kind.name.find(':') == std::string::npos) names.push_back(kind.name);
+      if (kind.name != "plugin") names.push_back(kind.name);  // which needs a file
     }
     std::puts("");
   }
