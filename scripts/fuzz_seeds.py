@@ -123,6 +123,11 @@ def own_files():
         yield "traces", head(file)
     yield "queries", b"0,1,1,2,-3,4\n" * 8
     yield "queries", b"1,3,1,2,5,7,1\n" * 16
+    device = {"device_id": "049D", "config": {"type": "inverse3"}, "state": {"cursor_position": {"x": 0.1, "y": -2e-3, "z": 0}}}
+    turn = {"x": 0, "y": 0, "z": 0.6, "w": 0.8}
+    for grip in ({"verse_grip": [{"device_id": "1", "state": {"button": True, "orientation": turn}}]},
+                 {"wireless_verse_grip": [{"device_id": "2", "state": {"buttons": {"a": True, "b": False}, "orientation": turn}}]}):
+        yield "messages", json.dumps({"session_id": 7, "inverse3": [device], **grip}).encode()
     yield "points", b"".join(b'{"index":%d,"id":"a1","scenario":"s.json","settings":{"/a/b":%s}}\n' % (i, value)
                              for i, value in enumerate((b"1", b'"x"', b"[1,2.5e-3,null]", b'{"k":true}')))
     for text in json_files("scenarios/sweeps/*.sweep.json"):

@@ -11,6 +11,7 @@ namespace argil::device::internal {
 std::unique_ptr<HapticDevice> make_simulated(const DeviceOptions& options);
 std::unique_ptr<HapticDevice> make_haply(const std::string& host, const std::string& port,
                                          const DeviceOptions& options);
+/// Throws InputError in a program that was built without libspnav.
 std::unique_ptr<HapticDevice> make_spacenav(const DeviceOptions& options);
 /// `place`: FILE or FILE,ARGUMENT. Throws InputError for a file that is no plug-in.
 std::unique_ptr<HapticDevice> make_plugin(const std::string& place, const DeviceOptions& options);

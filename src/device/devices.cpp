@@ -71,13 +71,7 @@ std::unique_ptr<HapticDevice> make_device(const std::string& name, const DeviceO
   if (name == "simulated") return internal::make_simulated(options);
   if (kind == "haply") return make_haply_at(place, options);
   if (kind == "plugin" && !place.empty()) return internal::make_plugin(place, options);
-  if (name == "spacenav") {
-#ifdef ARGIL_HAS_SPNAV
-    return internal::make_spacenav(options);
-#else
-    refuse(name, "argil was built without libspnav", "install libspnav-dev and build again");
-#endif
-  }
+  if (name == "spacenav") return internal::make_spacenav(options);
   std::string known;
   for (const DeviceKind& each : device_kinds()) known += (known.empty() ? "" : ", ") + each.name;
   throw InputError("--device", "", "unknown device \"" + name + "\"", "choose one of " + known);

@@ -1,5 +1,7 @@
 // 6-DoF controllers by spacenavd: what the cap does is integrated to a pose. No force.
 
+#ifdef ARGIL_HAS_SPNAV
+
 #include <poll.h>
 #include <sys/socket.h>
 
@@ -102,3 +104,19 @@ std::unique_ptr<HapticDevice> make_spacenav(const DeviceOptions& options) {
 }
 
 }  // namespace argil::device::internal
+
+#else
+
+#include "base/error.h"
+#include "device/backends.h"
+
+namespace argil::device::internal {
+
+std::unique_ptr<HapticDevice> make_spacenav(const DeviceOptions&) {
+  throw InputError("--device spacenav", "", "argil was built without libspnav",
+                   "install libspnav-dev and build again");
+}
+
+}  // namespace argil::device::internal
+
+#endif

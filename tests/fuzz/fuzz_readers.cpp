@@ -16,7 +16,9 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/read_file.h"
 #include "contact/queries.h"
+#include "device/haply_message.h"
 #include "device/trace.h"
 #include "mesh/readers.h"
 #include "scenario/scenario.h"
@@ -46,6 +48,17 @@ void read_points(const std::string& file) {
   for (const scenario::SweepPoint& point : scenario::load_points(file)) print_point(point);
 }
 
+/// A message that names a device leads to a command that is a message again, if not one with a state.
+void read_haply(const std::string& file) {
+  using namespace device::internal;
+  const HaplyMessage message = read_haply_message(read_file(file), "");
+  if (message.device_id.empty() != (message.problem.starts_with("no "))) std::abort();
+  if (message.device_id.empty()) return;
+  const HaplyMessage again =
+      read_haply_message(print_haply_force(message.device_id, Vec3(1.0, -0.5, 0.0)), "");
+  if (again.device_id != message.device_id || again.problem.empty()) std::abort();
+}
+
 const std::map<std::string, Reader, std::less<>>& readers() {
   static const std::map<std::string, Reader, std::less<>> kReaders = {
       {"tets",
@@ -54,6 +67,7 @@ const std::map<std::string, Reader, std::less<>>& readers() {
       {"surfaces",
        {{".obj", ".stl", ".ply"}, [](const std::string& file) { mesh::read_triangle_mesh(file); }}},
       {"traces", {{".csv"}, [](const std::string& file) { device::read_trace(file, {}); }}},
+      {"messages", {{".json"}, read_haply}},
       {"queries", {{".csv"}, [](const std::string& file) { contact::read_queries(file); }}},
       {"scenarios", {{".json"}, read_scenario}},
       {"points", {{".jsonl"}, read_points}},
