@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdio>
 
 #include "base/error.h"
 #include "device/trace_raw.h"
@@ -100,9 +101,12 @@ RawTrace read_hdf5(const std::string& file, const TraceOptions& options) {
   }
   if (group.has("mode")) {
     for (const double mode : read_rows(group, "mode", rows, 1)) {
-      if (!(mode >= 0 && mode < kNumToolModes))
-        throw InputError(file, group.path() + " mode, row " + std::to_string(raw.mode.size()),
-                         "mode " + std::to_string(static_cast<int>(mode)), "0 push, 1 pull, 2 wet, 3 dry");
+      if (!(mode >= 0 && mode < kNumToolModes)) {
+        char number[32];
+        std::snprintf(number, sizeof number, "mode %g", mode);
+        throw InputError(file, group.path() + " mode, row " + std::to_string(raw.mode.size()), number,
+                         "0 push, 1 pull, 2 wet, 3 dry");
+      }
       raw.mode.push_back(static_cast<ToolMode>(static_cast<int>(mode)));
     }
   }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace argil::hdf5 {
@@ -81,18 +82,28 @@ class Object {
   void write_attribute(const std::string& name, double value);
   void write_attribute(const std::string& name, std::int64_t value);
   bool has_attribute(const std::string& name) const;
+  /// Number of its file and its place there: the same for every name that an object has.
+  std::pair<std::uint64_t, std::uint64_t> find_identity() const;
   std::vector<std::string> attribute_names() const;  ///< sorted
   Element attribute_element(const std::string& name) const;
   std::string read_text(const std::string& name) const;
-  double read_real(const std::string& name) const;                ///< any number type
-  std::int64_t read_integer(const std::string& name) const;       ///< any integer type
-  std::vector<double> read_reals(const std::string& name) const;  ///< of any shape, flattened
+  std::vector<std::string> read_texts(const std::string& name) const;      ///< of any shape, flattened
+  double read_real(const std::string& name) const;                         ///< any number type
+  std::int64_t read_integer(const std::string& name) const;                ///< any integer type
+  std::vector<double> read_reals(const std::string& name) const;           ///< of any shape, flattened
+  std::vector<std::int64_t> read_integers(const std::string& name) const;  ///< of any shape, flattened
 
  protected:
   [[noreturn]] void fail(const std::string& action, const std::string& object) const;
   Handle m_handle;
   std::string m_file;
   std::string m_path;
+
+ private:
+  template <class T>
+  std::vector<T> read_values(const std::string& attribute) const;
+  template <class T>
+  T read_value(const std::string& attribute) const;
 };
 
 /// Array in a file.
@@ -111,16 +122,18 @@ class Dataset : public Object {
   void flush();
   /// Keeps the first `rows` rows.
   void truncate(std::uint64_t rows);
-  /// The whole array, row by row, converted to T by the library (integers to real and back).
+  /// The whole array, row by row, converted to T by the library (integers to real and back). An array that
+  /// declares more than the file can hold, or more than 4 GiB, is refused before memory is taken for it.
   template <class T>
   std::vector<T> read() const {
-    std::vector<T> values(compute_count(shape()));
+    std::vector<T> values(count_values());
     read_raw(values.data(), element_of<T>());
     return values;
   }
   std::string read_string() const;  ///< of a text dataset that holds one string
 
  private:
+  std::uint64_t count_values() const;
   void append_raw(const void* data, Element element, std::uint64_t rows);
   void read_raw(void* data, Element element) const;
 };

@@ -31,6 +31,14 @@ inline constexpr const char* kBusy =
     "another process has this file open (a run that writes it, or a reader); wait for it or choose another "
     "name";
 
+/// Lengths of a dataspace; one without values has {0}.
+Shape read_shape(Id space);
+
+/// Number of values that a dataset, or an opened attribute of an object, declares. To be called before any is
+/// read: throws IoError where they are more than the file can hold, or than argil reads at once.
+std::uint64_t count_stored_values(const Object& dataset);
+std::uint64_t count_stored_values(const Object& object, const std::string& attribute, Id opened);
+
 /// Lets a file that is opened with `access` change by whole flushes, with `file`'s journal beside it.
 bool use_commit_driver(hid_t access, const std::string& file);
 
@@ -55,25 +63,31 @@ inline Handle group(hid_t id) {
 
 /// Fixed-length UTF-8 string type that holds `text`, padded with zeros.
 Handle text_type(const std::string& text);
-/// Reads one string of fixed or variable length: `read(type, buffer)` fills it. Empty result on failure sets
-/// `ok`.
+/// Reads `count` strings of fixed or variable length: `read(type, buffer)` fills a buffer. Clears `ok` on
+/// failure.
 template <class Read>
-std::string read_string_with(hid_t stored, Read read, bool& ok) {
+std::vector<std::string> read_strings_with(hid_t stored, std::size_t count, Read read, bool& ok) {
+  std::vector<std::string> texts;
   if (H5Tis_variable_str(stored) > 0) {
     const Handle type = datatype(H5Tcopy(H5T_C_S1));
     H5Tset_size(type.id(), H5T_VARIABLE);
     H5Tset_cset(type.id(), H5Tget_cset(stored));
-    char* words = nullptr;
-    ok = read(type.id(), static_cast<void*>(&words)) >= 0;
-    std::string text = ok && words != nullptr ? words : "";
-    if (words != nullptr) H5free_memory(words);
-    return text;
+    std::vector<char*> words(count, nullptr);
+    ok = read(type.id(), static_cast<void*>(words.data())) >= 0;
+    for (char* word : words) {
+      texts.emplace_back(ok && word != nullptr ? word : "");
+      if (word != nullptr) H5free_memory(word);
+    }
+    return texts;
   }
-  std::string text(H5Tget_size(stored), '\0');
-  ok = read(stored, static_cast<void*>(text.data())) >= 0;
-  const std::size_t end = text.find('\0');
-  if (end != std::string::npos) text.resize(end);
-  return text;
+  const std::size_t size = H5Tget_size(stored);
+  std::string characters(count * size, '\0');
+  ok = read(stored, static_cast<void*>(characters.data())) >= 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string padded = characters.substr(i * size, size);
+    texts.push_back(padded.substr(0, padded.find('\0')));
+  }
+  return texts;
 }
 
 }  // namespace argil::hdf5::internal

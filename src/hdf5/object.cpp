@@ -90,6 +90,12 @@ bool Object::has_attribute(const std::string& name) const {
   return H5Aexists(id(), name.c_str()) > 0;
 }
 
+std::pair<std::uint64_t, std::uint64_t> Object::find_identity() const {
+  H5O_info_t info;
+  if (H5Oget_info2(id(), &info, H5O_INFO_BASIC) < 0) fail("cannot find", "");
+  return {info.fileno, info.addr};
+}
+
 std::vector<std::string> Object::attribute_names() const {
   std::vector<std::string> names;
   const auto add = [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
@@ -108,42 +114,55 @@ Element Object::attribute_element(const std::string& name) const {
   return element_of_type(type.id(), m_file, "attribute " + name + " of " + m_path);
 }
 
-std::string Object::read_text(const std::string& name) const {
+std::vector<std::string> Object::read_texts(const std::string& name) const {
   const Handle opened = open_attribute(*this, name);
   const Handle type = datatype(H5Aget_type(opened.id()));
   if (H5Tget_class(type.id()) != H5T_STRING)
     throw IoError(m_file, "attribute " + name + " of " + m_path + " is not text");
   bool ok = false;
-  std::string text = read_string_with(
-      type.id(), [&](hid_t t, void* buffer) { return H5Aread(opened.id(), t, buffer); }, ok);
+  std::vector<std::string> texts = read_strings_with(
+      type.id(), count_stored_values(*this, name, opened.id()),
+      [&](hid_t t, void* buffer) { return H5Aread(opened.id(), t, buffer); }, ok);
   if (!ok) fail("cannot read attribute " + name + " of", "");
-  return text;
+  return texts;
 }
 
-std::vector<double> Object::read_reals(const std::string& name) const {
+std::string Object::read_text(const std::string& name) const {
+  const std::vector<std::string> texts = read_texts(name);
+  if (texts.size() != 1) throw IoError(m_file, "attribute " + name + " of " + m_path + " is not one text");
+  return texts[0];
+}
+
+template <class T>
+std::vector<T> Object::read_values(const std::string& name) const {
   const Handle opened = open_attribute(*this, name);
-  const Handle space = dataspace(H5Aget_space(opened.id()));
-  const hssize_t count = H5Sget_simple_extent_npoints(space.id());
-  std::vector<double> values(count > 0 ? static_cast<std::size_t>(count) : 0);
-  if (count < 0 || H5Aread(opened.id(), H5T_NATIVE_DOUBLE, values.data()) < 0)
+  std::vector<T> values(count_stored_values(*this, name, opened.id()));
+  if (H5Aread(opened.id(), memory_type(element_of<T>()), values.data()) < 0)
     fail("cannot read attribute " + name + " of", "");
   return values;
 }
 
-double Object::read_real(const std::string& name) const {
-  const std::vector<double> values = read_reals(name);
+template <class T>
+T Object::read_value(const std::string& name) const {
+  const std::vector<T> values = read_values<T>(name);
   if (values.size() != 1) throw IoError(m_file, "attribute " + name + " of " + m_path + " is not one number");
   return values[0];
 }
 
+std::vector<double> Object::read_reals(const std::string& name) const {
+  return read_values<double>(name);
+}
+
+std::vector<std::int64_t> Object::read_integers(const std::string& name) const {
+  return read_values<std::int64_t>(name);
+}
+
+double Object::read_real(const std::string& name) const {
+  return read_value<double>(name);
+}
+
 std::int64_t Object::read_integer(const std::string& name) const {
-  const Handle opened = open_attribute(*this, name);
-  const Handle space = dataspace(H5Aget_space(opened.id()));
-  if (H5Sget_simple_extent_npoints(space.id()) != 1)
-    throw IoError(m_file, "attribute " + name + " of " + m_path + " is not one number");
-  std::int64_t value = 0;
-  if (H5Aread(opened.id(), H5T_NATIVE_INT64, &value) < 0) fail("cannot read attribute " + name + " of", "");
-  return value;
+  return read_value<std::int64_t>(name);
 }
 
 }  // namespace argil::hdf5

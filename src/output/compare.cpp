@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <set>
 #include <sstream>
+#include <utility>
 
 #include "base/error.h"
 #include "output/result_reader.h"
@@ -34,6 +36,14 @@ std::string print(double value) {
   return text.str();
 }
 
+std::string print(std::int64_t value) {
+  return std::to_string(value);
+}
+
+std::string print(const std::string& text) {
+  return "'" + text + "'";
+}
+
 std::string print(const Shape& shape) {
   std::string text = "(";
   for (const std::uint64_t length : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(length);
@@ -47,16 +57,32 @@ struct ValueDifference {
   double largest = 0.0;     // |a − b|, NaN when one is
 };
 
+double find_distance(double a, double b) {
+  return std::abs(a - b);
+}
+
+// Of integers that a double cannot tell apart, too: not 0 unless they are equal.
+double find_distance(std::int64_t a, std::int64_t b) {
+  const auto [low, high] = std::minmax(a, b);
+  return static_cast<double>(static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low));
+}
+
 bool is_same(double a, double b, const Tolerance* tolerance) {
   if (tolerance == nullptr)
     return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) && !std::isnan(a);
-  if (a == b) return true;  // also equal infinities, whose difference is NaN
-  return std::abs(a - b) <= tolerance->absolute + tolerance->relative * std::abs(a);  // a NaN is not
+  if (a == b) return true;  // also equal infinities
+  return std::isfinite(a) && std::isfinite(b) &&
+         find_distance(a, b) <= tolerance->absolute + tolerance->relative * std::abs(a);
 }
 
 bool is_same(std::int64_t a, std::int64_t b, const Tolerance* tolerance) {
-  return a == b ||
-         (tolerance != nullptr && is_same(static_cast<double>(a), static_cast<double>(b), tolerance));
+  return a == b || (tolerance != nullptr &&
+                    find_distance(a, b) <=
+                        tolerance->absolute + tolerance->relative * std::abs(static_cast<double>(a)));
+}
+
+bool is_same(const std::string& a, const std::string& b, const Tolerance*) {
+  return a == b;
 }
 
 template <class T>
@@ -66,7 +92,7 @@ ValueDifference compare_values(const std::vector<T>& a, const std::vector<T>& b,
   for (std::size_t i = 0; i < count; ++i) {
     if (is_same(a[i], b[i], tolerance)) continue;
     if (found.count++ == 0) found.first = i;
-    const double error = std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
+    const double error = find_distance(a[i], b[i]);
     if (!(error <= found.largest) && !std::isnan(found.largest)) found.largest = error;
   }
   return found;
@@ -131,28 +157,26 @@ class Comparison {
     for (const std::string& name : common(a.attribute_names(), b.attribute_names(), prefix, tick)) {
       if (name == "state_hash" && !m_options.tolerances.empty()) continue;
       ++m_report.num_compared;
-      const bool is_text = a.attribute_element(name) == Element::text;
-      if (a.attribute_element(name) != b.attribute_element(name)) {
+      const Element element = a.attribute_element(name);
+      if (element != b.attribute_element(name))
         add(prefix + name, "has another type", tick);
-      } else if (is_text) {
-        const std::string text_a = a.read_text(name);
-        const std::string text_b = b.read_text(name);
-        if (text_a != text_b)
-          add(prefix + name, std::string("is '").append(text_a).append("' and '").append(text_b).append("'"),
-              tick);
-      } else {
-        const std::vector<double> values_a = a.read_reals(name);
-        const std::vector<double> values_b = b.read_reals(name);
-        const bool is_equal = values_a.size() == values_b.size() &&
-                              compare_values(values_a, values_b, values_a.size(), nullptr).count == 0;
-        if (!is_equal)
-          add(prefix + name,
-              values_a.size() == 1 && values_b.size() == 1
-                  ? "is " + print(values_a[0]) + " and " + print(values_b[0])
-                  : std::string("differs"),
-              tick);
-      }
+      else if (element == Element::text)
+        compare_attribute(prefix + name, a.read_texts(name), b.read_texts(name), tick);
+      else if (element == Element::real64)
+        compare_attribute(prefix + name, a.read_reals(name), b.read_reals(name), tick);
+      else
+        compare_attribute(prefix + name, a.read_integers(name), b.read_integers(name), tick);
     }
+  }
+
+  template <class T>
+  void compare_attribute(const std::string& object, const std::vector<T>& a, const std::vector<T>& b,
+                         std::optional<Tick> tick) {
+    bool is_equal = a.size() == b.size();
+    for (std::size_t i = 0; is_equal && i < a.size(); ++i) is_equal = is_same(a[i], b[i], nullptr);
+    if (is_equal) return;
+    const bool is_one = a.size() == 1 && b.size() == 1;
+    add(object, is_one ? "is " + print(a[0]) + " and " + print(b[0]) : std::string("differs"), tick);
   }
 
   template <class T>
@@ -168,9 +192,8 @@ class Comparison {
     std::string what = std::to_string(found.count) + " of " + std::to_string(count) +
                        " values differ, first in row " + std::to_string(row);
     if (row_width > 1) what += ", component " + std::to_string(found.first % row_width);
-    what += ": " + print(static_cast<double>(values_a[found.first])) + " and " +
-            print(static_cast<double>(values_b[found.first])) + "; largest difference " +
-            print(found.largest);
+    what += ": " + print(values_a[found.first]) + " and " + print(values_b[found.first]) +
+            "; largest difference " + print(found.largest);
     if (row < ticks.size()) tick = ticks[row];
     add(a.path(), what, tick, found.count);
   }
@@ -207,6 +230,7 @@ class Comparison {
   }
 
   void compare_groups(const Group& a, const Group& b, std::optional<Tick> tick) {
+    if (!m_visited.insert({a.find_identity(), b.find_identity()}).second) return;  // by another of its names
     if (a.has_attribute("tick")) tick = a.read_integer("tick");
     compare_attributes(a, b, tick);
     std::vector<std::int64_t> ticks;  // of the longer file, so that missing rows have a tick, too
@@ -231,6 +255,8 @@ class Comparison {
   std::string m_file_a;
   std::string m_file_b;
   CompareReport m_report;
+  using Identity = std::pair<std::uint64_t, std::uint64_t>;
+  std::set<std::pair<Identity, Identity>> m_visited;  // pairs of groups
 };
 
 }  // namespace

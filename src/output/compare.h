@@ -10,7 +10,7 @@
 namespace argil::output {
 
 /// How far two values a (of the first file) and b of a dataset may lie apart: |a − b| ≤ absolute +
-/// relative·|a| + of_largest·max|a|.
+/// relative·|a| + of_largest·max|a|. Within any tolerance an infinity is equal to itself only.
 struct Tolerance {
   std::string dataset;      ///< path from the root; * stands for any text: "/frames/*/position"
   double relative = 0.0;    ///< ≥ 0

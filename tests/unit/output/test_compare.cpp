@@ -131,6 +131,46 @@ TEST(CompareResults, AValueThatIsNotFiniteWidensNoTolerance) {
   EXPECT_EQ(compare_results(pair.b, pair.a, options).differences.at(0).count, 2U);  // also as the first file
 }
 
+TEST(CompareResults, AnInfinityIsWithinNoToleranceOfAnythingElse) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  CompareOptions options;
+  options.tolerances = {{"/haptic/force", 1e-3, 1e-3}};
+  for (const double value : {1.0, -kInfinity, kInfinity}) {
+    Pair pair;
+    pair.change_haptic = [&](sim::HapticRecord& record) {
+      if (record.tick == 3) record.force.x() = value;
+    };
+    pair.compare();
+    Pair other;
+    other.change_haptic = [&](sim::HapticRecord& record) {
+      if (record.tick == 3) record.force.x() = kInfinity;
+    };
+    other.compare();
+    const bool is_equal = value == kInfinity;
+    EXPECT_EQ(compare_results(pair.b, other.b, options).is_equal(), is_equal) << value;
+    EXPECT_EQ(compare_results(other.b, pair.b, options).is_equal(), is_equal) << value;
+  }
+}
+
+TEST(CompareResults, ComparesIntegersThatADoubleCannotTellApart) {
+  constexpr std::int64_t kLast = std::int64_t{1} << 53;  // 2^53 + 1 is no double
+  CompareOptions options;
+  options.tolerances = {{"*", 0.0, 0.0}};
+  Pair pair;
+  pair.compare();
+  for (const auto& [file, value] : {std::pair(pair.a, kLast), std::pair(pair.b, kLast + 1)}) {
+    const hdf5::File opened = hdf5::File::open_for_writing(file);
+    opened.root().write_attribute("count", value);
+    opened.root().write_array("counts", &value, {}, false, {"1", "a number"});
+  }
+  const CompareReport report = compare_results(pair.a, pair.b, options);
+  ASSERT_EQ(report.differences.size(), 2U) << to_string(report);
+  EXPECT_EQ(report.differences[0].what, "is 9007199254740992 and 9007199254740993");
+  EXPECT_NE(report.differences[1].what.find("9007199254740992 and 9007199254740993; largest difference 1"),
+            std::string::npos)
+      << report.differences[1].what;
+}
+
 TEST(CompareResults, NeverTakesNaNForEqual) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   Pair pair;
