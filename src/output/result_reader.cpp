@@ -27,6 +27,26 @@ Array read_entities(const Group& group, const char* name) {
                                  static_cast<Eigen::Index>(shape[0]));
 }
 
+// Elements whose every corner is one of so many vertices.
+template <class Array>
+Array read_elements(const Group& group, const char* name, Eigen::Index num_vertices) {
+  Array elements = read_entities<Array>(group, name);
+  for (Eigen::Index i = 0; i < elements.size(); ++i)
+    if (elements(i) < 0 || elements(i) >= num_vertices)
+      throw IoError(group.file(), group.path() + "/" + name + " names vertex " + std::to_string(elements(i)) +
+                                      " in row " + std::to_string(i / elements.rows()) + ", and there are " +
+                                      std::to_string(num_vertices) + "; the file is damaged");
+  return elements;
+}
+
+// A frame's array has one entry for each of /mesh.
+void check_count(const Group& frame, const char* name, Eigen::Index count, const Dataset& owner) {
+  const hdf5::Shape shape = owner.shape();
+  if (shape.empty() || static_cast<std::uint64_t>(count) != shape[0])
+    throw IoError(frame.file(), frame.path() + "/" + name + " has not as many rows as " + owner.path() +
+                                    "; the file is damaged");
+}
+
 Field read_field(const Group& group, const char* name) {
   const std::vector<double> values = group.open_dataset(name).read<double>();
   return Eigen::Map<const Field>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -89,11 +109,12 @@ ResultHeader ResultReader::read_header() const {
   const Group mesh = m_root.open_group("mesh");
   ResultHeader header;
   header.rest_position = read_entities<Points>(mesh, "rest_position");
-  header.tets = read_entities<Tets>(mesh, "tets");
-  header.surface_triangles = read_entities<Triangles>(mesh, "surface_triangles");
+  const Eigen::Index num_vertices = header.rest_position.cols();
+  header.tets = read_elements<Tets>(mesh, "tets", num_vertices);
+  header.surface_triangles = read_elements<Triangles>(mesh, "surface_triangles", num_vertices);
   header.skin_triangles = read_entities<Triangles>(mesh, "skin_triangles");
   header.tool.vertices = read_entities<Points>(mesh, "tool_vertices");
-  header.tool.triangles = read_entities<Triangles>(mesh, "tool_triangles");
+  header.tool.triangles = read_elements<Triangles>(mesh, "tool_triangles", header.tool.vertices.cols());
   header.haptic_period = m_root.read_real("haptic_period_s");
   const Group provenance = m_root.open_group("provenance");
   for (const std::string& name : provenance.names())
@@ -199,6 +220,10 @@ sim::Frame ResultReader::read_frame(const FrameInfo& info) const {
   frame.position = read_entities<Points>(group, "position");
   frame.saturation = read_field(group, "saturation");
   frame.plastic_strain = read_entities<TensorField>(group, "plastic_strain");
+  const Group mesh = m_root.open_group("mesh");
+  check_count(group, "position", frame.position.cols(), mesh.open_dataset("rest_position"));
+  check_count(group, "saturation", frame.saturation.size(), mesh.open_dataset("tets"));
+  check_count(group, "plastic_strain", frame.plastic_strain.cols(), mesh.open_dataset("tets"));
   frame.skin_position = read_entities<Points>(group, "skin_position");
   frame.skin_saturation = read_field(group, "skin_saturation");
   frame.skin_influence = read_field(group, "skin_influence");

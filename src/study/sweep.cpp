@@ -44,32 +44,33 @@ RunOptions make_options(const SweepPoint& point, const std::string& points) {
 
 /// What of a point lies on the disk.
 struct Found {
-  bool has_ended = false;  ///< opens, has the point's id, and its run reached its end or failed
+  bool has_ended = false;  ///< reads, has the point's id, and its run reached its end or failed
   bool is_done = false;    ///< the former
   std::string reason;      ///< why there is no figure
+  SweepFigures figures;    ///< of what is done
 };
 
 Found look(const SweepPoint& point, const std::string& points) {
   const std::string name = name_point(points, point.index);
   if (fs::exists(name + ".refused")) {
     std::ifstream stream(name + ".refused");
-    Found found{true, false, ""};
+    Found found{true, false, "", {}};
     std::string id;
     std::getline(stream, id);
     std::getline(stream, found.reason);
     if (id == point.id) return found;
   }
   if (!fs::exists(name + ".h5"))
-    return {false, false, fs::exists(name + ".part.h5") ? "not finished" : "not run"};
+    return {false, false, fs::exists(name + ".part.h5") ? "not finished" : "not run", {}};
   try {
     const output::ResultReader reader(name + ".h5");
-    if (reader.find_provenance("run_id") != point.id) return {false, false, "its file is of another run"};
-    if (reader.outcome() == output::Outcome::done) return {true, true, ""};
+    if (reader.find_provenance("run_id") != point.id) return {false, false, "its file is of another run", {}};
+    if (reader.outcome() == output::Outcome::done) return {true, true, "", compute_sweep_figures(reader)};
     const std::optional<Failure> failure = reader.read_failure();
-    if (reader.outcome() == output::Outcome::failed && failure) return {true, false, to_string(*failure)};
-    return {false, false, "not finished"};
-  } catch (const std::runtime_error& error) {
-    return {false, false, std::string("its file does not open: ") + error.what()};
+    if (reader.outcome() == output::Outcome::failed && failure) return {true, false, to_string(*failure), {}};
+    return {false, false, "not finished", {}};
+  } catch (const std::exception& error) {
+    return {false, false, std::string("its file does not read: ") + error.what(), {}};
   }
 }
 
@@ -189,13 +190,11 @@ int collect_sweep(const std::string& file, const std::string& table_name) {
   std::size_t num_without = 0;
   for (const SweepPoint& point : points) {
     const Found found = look(point, file);
-    const std::string result = name_point(file, point.index) + ".h5";
     table.add(point,
               found.is_done     ? "done"
               : found.has_ended ? "failed"
                                 : "missing",
-              found.reason,
-              found.is_done ? compute_sweep_figures(output::ResultReader(result)) : SweepFigures());
+              found.reason, found.figures);
     num_without += !found.is_done;
   }
   const output::StudyTable written = table.take();

@@ -14,6 +14,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import h5py
+
 ARGIL = str(Path(sys.argv.pop(1)).resolve())
 BASE = Path(__file__).resolve().parents[2] / "golden" / "ball.json"
 SCRIPTS = Path(__file__).resolve().parents[3] / "scripts"
@@ -113,10 +115,33 @@ class Sweep(unittest.TestCase):
         self.assertEqual(self.call("missing", self.points, "--block", 2), "0-1")
         reasons = [row["reason"] for row in self.collect()]
         self.assertEqual(reasons[1], "not run")
-        self.assertIn("does not open", reasons[2])
+        self.assertIn("does not read", reasons[2])
         self.assertEqual(reasons[3], "its file is of another run")
         for block in (0, 1):
             self.call("run", self.points, "--block", 2, "--index", block)
+        self.assertEqual(self.collect(), table)
+
+    def test_a_damaged_result_is_a_row_and_is_run_again(self):
+        self.expand_and_run()
+        table = self.collect()
+        files = [self.folder / "points" / f"{i:06d}.h5" for i in range(6)]
+        with h5py.File(files[1], "r+") as file:
+            file["mesh/tets"][3, 1] = -7
+        with h5py.File(files[4], "r+") as file:  # what the disk turned to zeros
+            place = file["haptic/force"].id.get_chunk_info(0).byte_offset
+        with open(files[4], "r+b") as file:
+            file.seek(place)
+            file.write(bytes(512))
+        self.assertEqual(self.call("missing", self.points), "1,4")
+        damaged = self.collect()
+        for i, words in ((1, "/mesh/tets names vertex -7 in row 3"), (4, "cannot read /haptic/force")):
+            self.assertEqual(damaged[i]["outcome"], "missing")
+            self.assertIn("its file does not read: ", damaged[i]["reason"])
+            self.assertIn(words, damaged[i]["reason"])
+            self.assertEqual(damaged[i]["peak_force_N"], "")
+        self.assertEqual([damaged[i] for i in (0, 2, 3, 5)], [table[i] for i in (0, 2, 3, 5)])
+        for index in (1, 4):
+            self.call("run", self.points, "--index", index)
         self.assertEqual(self.collect(), table)
 
     def test_points_are_the_same_by_any_name(self):
