@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -189,13 +190,28 @@ Json describe_penalty(const contact::Penalty& penalty) {
           {"inside_at_end", penalty.inside_at_end}};
 }
 
-Json probe_vertex_face(Case& c) {
+/// Four moving points, with sizes whose sixth powers, squares of volumes, are numbers, too.
+contact::PairPath read_path(Case& c) {
+  constexpr double kLargest = 1e50;
+  constexpr double kSmallest = 1e-50;
   const contact::PairPath path{c.points("t0"), c.points("t1")};
+  double extent = 0.0;
+  for (const char* key : {"t0", "t1"})
+    for (const Vec3& point : key[1] == '0' ? path.t0 : path.t1) {
+      if (!(point.cwiseAbs().maxCoeff() <= kLargest)) c.refuse_range(key, "[-1e50, 1e50] m");
+      extent = std::max(extent, (point - path.t0[0]).cwiseAbs().maxCoeff());
+    }
+  if (!(extent >= kSmallest)) c.refuse_range("t0", "what is computed: points less than 1e-50 m apart");
+  return path;
+}
+
+Json probe_vertex_face(Case& c) {
+  const contact::PairPath path = read_path(c);
   return describe_penalty(contact::compute_vertex_face_penalty(path, c.flag("inside_at_start", false)));
 }
 
 Json probe_edge_edge(Case& c) {
-  const contact::PairPath path{c.points("t0"), c.points("t1")};
+  const contact::PairPath path = read_path(c);
   return describe_penalty(contact::compute_edge_edge_penalty(path, c.flag("inside_at_start", false), 0.0));
 }
 

@@ -59,6 +59,22 @@ TEST(ProbeVertexFace, MotionOutwardsOrBesideTheFaceIsNoPenetration) {
   EXPECT_TRUE(beside["intervals"].empty());
 }
 
+TEST(ProbeVertexFace, SizesWhoseVolumesAreNoNumbersAreRefusedWithTheBound) {
+  const auto scaled = [](const char* kernel, const std::string& unit, const std::string& end) {
+    const std::string face = ", [0,0,0], [" + unit + ",0,0], [0," + unit + ",0]]";
+    return probe_one(kernel,
+                     R"({"t0": [[0,0,)" + unit + "]" + face + R"(, "t1": [[0,0,)" + end + "]" + face + "}");
+  };
+  for (const char* kernel : {"vertex_face", "edge_edge"}) {
+    ARGIL_EXPECT_THROW_WITH(scaled(kernel, "1e200", "-1e200"), InputError, "is outside [-1e50, 1e50] m");
+    ARGIL_EXPECT_THROW_WITH(scaled(kernel, "1", "-1e308"), InputError, "cases[0].t1");
+    ARGIL_EXPECT_THROW_WITH(scaled(kernel, "1e-200", "-1e-200"), InputError, "less than 1e-50 m apart");
+  }
+  // At both bounds a drop to as far below as it was above crosses at one half.
+  for (const char* unit : {"1e50", "1e-50"})
+    EXPECT_EQ(at(scaled("vertex_face", unit, std::string("-") + unit)["intervals"], 0, 0), 0.5) << unit;
+}
+
 TEST(ProbeVertexFace, TurningFaceUsesItsUnitNormalAtEachMoment) {
   // Face (0,0,0) (1,0,0) (0,1,t), vertex at rest in (¼, ½, ¼). With N = (0, −t, 1), N·p = ¼ − t/2 turns
   // negative at ½, and ∫ N (N·p)/(1 + t²) dt from ½ to 1 has this primitive:
