@@ -3,6 +3,9 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
 
 #include "base/error.h"
 #include "cli/commands.h"
@@ -27,6 +30,16 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "argil: %s\n", error.what());
     return ExitCode::kInputRefused;
   } catch (const argil::IoError& error) {
+    std::fprintf(stderr, "argil: %s\n", error.what());
+    return ExitCode::kIoFailed;
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::fprintf(stderr, "argil: %s: %s; check the place and its permissions\n", error.path1().c_str(),
+                 error.code().message().c_str());
+    return ExitCode::kIoFailed;
+  } catch (const std::bad_alloc&) {
+    std::fputs("argil: not enough memory for this input; make it smaller\n", stderr);
+    return ExitCode::kIoFailed;
+  } catch (const std::exception& error) {
     std::fprintf(stderr, "argil: %s\n", error.what());
     return ExitCode::kIoFailed;
   }

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/finite_number.h"
 #include "contact/queries.h"
 #include "embed/cage.h"
 #include "mesh/quality.h"
@@ -75,7 +76,7 @@ void add_law_commands(CLI::App& app, int& code) {
   ccd->add_option("QUERIES", o->first, "CSV, eight rows of rational coordinates a query")->required();
   ccd->add_option("--minimum-separation", o->separation,
                   "report pairs that come this near, in the file's unit")
-      ->check(CLI::NonNegativeNumber)
+      ->check(finite_number(true))
       ->capture_default_str();
   ccd->callback([o, &code] { code = print_times_of_impact(o->second, o->first, o->separation); });
 
@@ -83,7 +84,7 @@ void add_law_commands(CLI::App& app, int& code) {
   cage->add_option("SURFACE", o->first, "OBJ, STL or PLY, clean or not")->required();
   cage->add_option("-o,--output", o->second, "cage (Gmsh, .msh)")->required();
   cage->add_option("--tets", o->target_tets, "wanted number of tets")->check(CLI::Range(100, 5000000));
-  cage->add_option("--scale", o->scale, "metres per unit of the file")->check(CLI::PositiveNumber);
+  cage->add_option("--scale", o->scale, "metres per unit of the file")->check(finite_number(false));
   cage->callback([o, &code] { code = make_cage_file(o->first, o->second, o->target_tets, o->scale); });
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/finite_number.h"
 #include "device/devices.h"
 #include "live/live.h"
 #include "output/compare.h"
@@ -97,7 +98,7 @@ void add_run_commands(CLI::App& app, int& code) {
   live->add_option("--set", o->run.settings, "as with run")->allow_extra_args(false);
   live->add_option("-o,--output", o->run.output, "result file, which argil run --trace replays");
   live->add_option("--duration", o->live.duration, "seconds (default: a simulated hand's trace; else Ctrl-C)")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_number(false));
   live->add_option("--threads", o->run.threads, "of the physics; results do not depend on them")
       ->check(CLI::Range(1, 256));
   live->add_option("--watch", o->live.watch, "HDF5 file that others may read while it grows (SWMR)");
@@ -139,7 +140,7 @@ void add_run_commands(CLI::App& app, int& code) {
   exporting
       ->add_option("--megabytes", o->exported.megabytes,
                    "for the page's frames before compression; fewer are shown")
-      ->check(CLI::PositiveNumber)
+      ->check(finite_number(false))
       ->capture_default_str();
   exporting->add_flag("--cage", o->exported.cage, "show the cage also where there is a skin");
   exporting->callback([o, &code] { code = study::export_result(o->exported); });

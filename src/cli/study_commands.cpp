@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/finite_number.h"
 #include "study/chart.h"
 #include "study/stability.h"
 #include "study/sweep.h"
@@ -37,7 +38,7 @@ void add_study_commands(CLI::App& app, int& code) {
   chart
       ->add_option("--budget", o->budget,
                    "print the most accurate setting of at most so many CPU seconds a second")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_number(false));
   chart->callback([o, &code] {
     code = o->budget > 0.0 ? study::chart_budget(o->study, o->budget) : study::chart(o->study);
   });

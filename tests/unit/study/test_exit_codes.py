@@ -117,6 +117,16 @@ class ExitCodes(unittest.TestCase):
         for arguments in ([], ["rum"], ["run"], ["run", "scene.json", "--threads", "0"], ["run", "scene.json", "--sett"]):
             self.assertEqual(self.call(*arguments)[0], 2, arguments)
 
+    def test_2_numbers_that_are_none(self):
+        for option, others in (("--minimum-separation", ["ccd", "--kind", "edge-edge", "press.csv"]),
+                               ("--budget", ["chart", "scene.json"]),
+                               ("--scale", ["cage", "press.csv", "-o", "cage.msh"]),
+                               ("--megabytes", ["export", "press.csv", "--html", "page.html"])):
+            for value in ("nan", "-nan", "inf", "-1", "x"):
+                code, _, error = self.call(*others, f"{option}={value}")
+                self.assertEqual(code, 2, error)
+                self.assertIn(option, error)
+
     def test_3_a_failed_run_keeps_the_last_good_state_and_the_failure(self):
         # A body whose tets may not lose a tenth of a thousandth of their volume, pressed.
         code, _, error = self.call("run", "scene.json", "-o", "out.h5", "--set", "/dynamics/min_volume_ratio=0.9999")
