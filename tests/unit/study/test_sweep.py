@@ -82,7 +82,7 @@ class Sweep(unittest.TestCase):
 
     def test_bad_sweeps_are_refused_by_name(self):
         for axes, words in (({"grid": {"material": [1]}}, "is no JSON pointer"),
-                            ({"zip": {"/a": [1], "/b": [1, 2]}}, "2 values, the first axis 1"),
+                            ({"zip": {"/trace/start_s": [1], "/trace/duration_s": [1, 2]}}, "2 values, the first axis 1"),
                             ({"grid": {"/water/porosty": [0.3]}}, "porosty"),
                             ({"grids": {}}, "did you mean grid?"),
                             ({"grid": {f"/{k}": list(range(100)) for k in range(4)}}, "more than a million"),
