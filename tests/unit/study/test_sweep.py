@@ -85,9 +85,9 @@ class Sweep(unittest.TestCase):
                             ({"zip": {"/trace/start_s": [1], "/trace/duration_s": [1, 2]}}, "2 values, the first axis 1"),
                             ({"grid": {"/water/porosty": [0.3]}}, "porosty"),
                             ({"grids": {}}, "did you mean grid?"),
-                            ({"grid": {f"/{k}": list(range(100)) for k in range(4)}}, "more than a million"),
-                            ({"grid": {f"/{k}": [0, 1] for k in range(19)}}, "4718592 settings, more than four million"),
-                            ({"sample": {"method": "halton", "count": 1e6, "axes": {f"/{k}": [0, 1] for k in range(5)}}},
+                            ({"grid": {f"/body/fixed/{k}/radius_m": list(range(100)) for k in range(4)}}, "more than a million"),
+                            ({"grid": {f"/body/fixed/{k}/radius_m": [0, 1] for k in range(19)}}, "4718592 settings, more than four million"),
+                            ({"sample": {"method": "halton", "count": 1e6, "axes": {f"/body/fixed/{k}/radius_m": [0, 1] for k in range(5)}}},
                              "5000000 settings, more than four million")):
             (self.folder / "sweep.json").write_text(json.dumps({"scenario": os.path.relpath(BASE, self.folder), **axes}))
             self.assertIn(words, self.call("expand", "sweep.json", "-o", self.points, expected=2))
