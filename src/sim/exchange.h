@@ -58,6 +58,8 @@ struct ContactLoad {
   explicit ContactLoad(Eigen::Index num_nodes) : force(Points::Zero(3, num_nodes)) {}
   /// Ready for the ticks of another step; keeps its storage.
   void clear();
+  /// Takes storage for as many contacts as a late step may gather.
+  void reserve();
 };
 
 /// What a step of the body gives the hand.

@@ -10,6 +10,13 @@ namespace argil::sim {
 
 using device::ToolMode;
 
+void ContactLoad::reserve() {
+  constexpr std::size_t kContacts = 16384;
+  stiffness.reserve(kContacts);
+  yields.reserve(kContacts);
+  groups.reserve(kContacts);
+}
+
 void ContactLoad::clear() {
   if (is_touched) force.setZero();
   is_touched = false;
@@ -42,10 +49,7 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
 
 /// The detector makes its trees at its first look, which here sees nothing move.
 void HandSide::prepare() {
-  constexpr std::size_t kContacts = 4096;
-  m_load.stiffness.reserve(kContacts);
-  m_load.yields.reserve(kContacts);
-  m_load.groups.reserve(kContacts);
+  m_load.reserve();
   m_detector.find_contacts(m_state.contact_x, m_state.contact_x, m_state.tool, m_state.tool, m_contacts, 0.0);
 }
 

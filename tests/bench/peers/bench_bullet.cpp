@@ -131,7 +131,7 @@ class BulletBox {
   BulletBox& operator=(const BulletBox&) = delete;
 
   void step() { m_world.stepSimulation(static_cast<btScalar>(kStep), 1, static_cast<btScalar>(kStep)); }
-  double top() const { return m_body->m_nodes[m_top].m_x.x() - m_start; }
+  double top() const { return static_cast<double>(m_body->m_nodes[m_top].m_x.x()) - m_start; }
 
  private:
   btSoftBodyRigidBodyCollisionConfiguration m_configuration;
@@ -207,7 +207,7 @@ void bullet(benchmark::State& state) {
 void argil_box(benchmark::State& state) {
   const mesh::TetMesh mesh = make_box(state);
   sim::Simulation simulation = make_argil_box(mesh, static_cast<int>(state.range(1)));
-  const device::DeviceSample away = {simulation.state().tool.position, Quat::Identity(),
+  const device::DeviceSample away = {simulation.hand_state().tool.position, Quat::Identity(),
                                      device::ToolMode::push};
   const int top = find_top(mesh);
   const double start = mesh.vertices(0, top);

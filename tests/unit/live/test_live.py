@@ -117,10 +117,11 @@ class Live(unittest.TestCase):
         with h5py.File(self.folder / "live.h5") as live, h5py.File(self.folder / "again.h5") as again:
             for name in "force", "torque", "device_force", "force_age", "tool_position":
                 numpy.testing.assert_array_equal(live["haptic"][name], again["haptic"][name])
-            steps = live["physics/tick"].shape[0]
-            if steps:
-                numpy.testing.assert_array_equal(live["physics/elastic_energy"],
-                                                 again["physics/elastic_energy"][:steps])
+            # Ticks and steps are flushed apart: the last steps may be of ticks that are lost, or the other way about.
+            steps = min(live["physics/tick"].shape[0], again["physics/tick"].shape[0])
+            numpy.testing.assert_array_equal(live["physics/elastic_energy"][:steps],
+                                             again["physics/elastic_energy"][:steps])
+            self.assertGreater(steps, 0)
 
     def test_an_interrupt_ends_it_with_a_complete_file_and_130(self):
         process = self.start()

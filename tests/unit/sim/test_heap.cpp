@@ -131,7 +131,7 @@ const Case kCases[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(Heap, Tick, testing::ValuesIn(kCases),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& one) { return std::string(one.param.name); });
 
 TEST(HeapCount, SeesAnAllocation) {
   const std::size_t before = test::count_allocations();
