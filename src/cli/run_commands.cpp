@@ -119,12 +119,12 @@ void add_run_commands(CLI::App& app, int& code) {
 
   CLI::App* show = app.add_subcommand("show", "print a scenario with every default written out");
   add_scenario(show);
-  show->callback([o, &code] { std::cout << scenario::print_resolved(study::load(o->run)); });
+  show->callback([o] { std::cout << scenario::print_resolved(study::load(o->run)); });
 
   CLI::App* schema = app.add_subcommand("schema", "print the JSON Schema of a scenario");
   schema->add_flag("--reference", o->reference, "print the reference page (Markdown) instead");
   schema->callback(
-      [o, &code] { std::cout << (o->reference ? scenario::print_reference() : scenario::print_schema()); });
+      [o] { std::cout << (o->reference ? scenario::print_reference() : scenario::print_schema()); });
 
   CLI::App* info = app.add_subcommand("info", "describe a result file");
   info->add_option("FILE", o->first, "result file")->required();

@@ -68,7 +68,7 @@ HandModel::HandModel(const HandParams& params, const Trace& intent, double perio
       m_hand(hand_omega(params), params.damping / (2.0 * params.mass * hand_omega(params)), period),
       m_tremor(2.0 * std::numbers::pi * params.tremor_frequency, kTremorDamping, period),
       m_tremor_drive(params.tremor * std::sqrt(3.0 / stationary_variance(m_tremor))),
-      m_rng(params.seed, "tremor"),
+      m_rng(static_cast<std::uint64_t>(params.seed), "tremor"),
       m_x(interpolate(intent, start).position) {
   ARGIL_ASSERT(params.mass > 0.0 && params.stiffness > 0.0 && params.damping >= 0.0, params.mass,
                params.stiffness, params.damping);
@@ -107,7 +107,7 @@ void HandModel::exchange_state(Archive& archive) {
   archive.array("hand_model/shake", m_shake);
   archive.array("hand_model/shake_v", m_shake_v);
   if (!archive.is_restoring() || !(m_tremor_drive > 0.0)) return;
-  m_rng = Rng(m_params.seed, "tremor");  // gives again what it gave
+  m_rng = Rng(static_cast<std::uint64_t>(m_params.seed), "tremor");  // gives again what it gave
   for (Tick k = 0; k < 3 * m_tick; ++k) m_rng.next_bits();
 }
 

@@ -16,7 +16,7 @@ struct HandParams {
   double reaction_delay = 0.0;    ///< [s], ≥ 0: the intent reaches the muscle so much later
   double tremor = 0.0;            ///< root mean square of the intended point's tremor, each axis [m]
   double tremor_frequency = 9.0;  ///< its resonance [Hz], > 0
-  std::uint64_t seed = 1;         ///< of the tremor
+  int seed = 1;                   ///< of the tremor
 };
 
 /// A body on a spring and a damper, ẍ = ω² (u − x) − 2ζω ẋ, over one step with u held: exact.

@@ -14,7 +14,6 @@
 #include "live/recorder.h"
 #include "scenario/build.h"
 #include "study/files.h"
-#include "study/hand_motion.h"
 #include "study/loop.h"
 #include "study/replay.h"
 #include "study/start.h"
@@ -62,7 +61,7 @@ device::DeviceOptions make_device_options(const scenario::Scenario& s, const dev
   options.mode = study::find_fixed_mode(s).value_or(s.trace.options.default_mode);
   options.period = s.params.rates.haptic_period;
   options.intent = trace;
-  options.hand = study::hand_params(s);
+  options.hand = s.hand.params;
   return options;
 }
 

@@ -396,7 +396,7 @@ void bind_hand(Binder& b, HandSpec& hand) {
   b.number("/hand/tremor_frequency_Hz", h.tremor_frequency, positive(), "Hz",
            "Where the tremor is strongest.")
       .applies = simulated;
-  b.integer("/hand/seed", hand.seed, between(0, 2147483647), "Of the tremor.").applies = simulated;
+  b.integer("/hand/seed", h.seed, between(0, 2147483647), "Of the tremor.").applies = simulated;
 }
 
 void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {

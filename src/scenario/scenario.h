@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "device/trace.h"
 #include "device/hand_model.h"
+#include "device/trace.h"
 #include "mesh/shapes.h"
 #include "sim/params.h"
 #include "solid/loads.h"
@@ -73,8 +73,7 @@ enum class HandKind {
 
 struct HandSpec {
   HandKind kind = HandKind::prescribed;
-  device::HandParams params;  ///< without the seed
-  int seed = 1;               ///< of the tremor
+  device::HandParams params;
 };
 
 /// A validated scene in SI units; paths resolved against the scenario's folder.
@@ -89,10 +88,10 @@ struct Scenario {
   HandSpec hand;
   sim::Params params;
   int checkpoint_period_ticks = 1000;  ///< of runs with a trace; 0: none but where a signal ends it
-  bool allow_locking = false;         ///< run nearly incompressible tets although they lock
-  std::string medium_status;          ///< where eq. 6 stands at all that the run can reach; empty when it
-                                      ///< takes the mesh's fields to know (then Scene has it)
-  std::vector<std::string> warnings;  ///< of validation; a run prints them and writes them to its file
+  bool allow_locking = false;          ///< run nearly incompressible tets although they lock
+  std::string medium_status;           ///< where eq. 6 stands at all that the run can reach; empty when it
+                                       ///< takes the mesh's fields to know (then Scene has it)
+  std::vector<std::string> warnings;   ///< of validation; a run prints them and writes them to its file
 };
 
 /// One `--set /json/pointer=value`.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -27,19 +28,6 @@ namespace argil::study {
 namespace {
 
 namespace fs = std::filesystem;
-
-RunOptions make_run_options(const Case& c) {
-  RunOptions options;
-  options.scenario = c.scenario;
-  for (const scenario::Setting& setting : c.settings)
-    options.settings.push_back(setting.pointer + "=" + setting.value);
-  return options;
-}
-
-/// Names the bits that a case gives. Throws InputError when the scenario is refused.
-std::string make_id(const Case& c) {
-  return find_identity(load(make_run_options(c))).id().substr(0, 16);
-}
 
 /// The result of one case as it is kept beside its file: a line a figure, the reason last.
 void write_result(const CaseResult& result, const std::string& file) {
@@ -107,6 +95,8 @@ bool is_whole(const std::string& file) {
   dup2(log, STDERR_FILENO);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() == parent) execv(arguments[0], arguments);
+  constexpr std::string_view kWhy = "argil: the program could not be started\n";
+  if (::write(STDERR_FILENO, kWhy.data(), kWhy.size()) < 0) _exit(126);
   _exit(127);
 }
 
@@ -126,6 +116,7 @@ class Runner {
     std::error_code error;
     fs::create_directories(m_options.folder, error);
     if (error) throw IoError(m_options.folder, "cannot be made (" + error.message() + ")");
+    remove_what_died();
     for (const Case& c : m_cases) m_repeats.push_back(c.repeats);
     std::vector<std::size_t> accepted, waiting;
     for (std::size_t i = 0; i < m_cases.size(); ++i)
@@ -148,6 +139,26 @@ class Runner {
     return (fs::path(m_options.folder) / (m_results[i].id + suffix)).string();
   }
 
+  /// Files of runs whose study is no more: ID.part.PROCESS…, ID.again.PROCESS…, ID.PROCESS.log. A day old, as
+  /// the process may be another machine's.
+  void remove_what_died() const {
+    std::error_code ignored;
+    std::vector<fs::path> dead;
+    for (const fs::directory_entry& entry : fs::directory_iterator(m_options.folder, ignored)) {
+      std::istringstream words(entry.path().filename().string());
+      std::string word;
+      std::getline(words, word, '.');  // the id
+      while (std::getline(words, word, '.')) {
+        const bool is_process =
+            word.size() < 10 && !word.empty() && word.find_first_not_of("0123456789") == word.npos;
+        if (!is_process || fs::exists("/proc/" + word)) continue;
+        if (fs::file_time_type::clock::now() - entry.last_write_time(ignored) > std::chrono::hours(24))
+          dead.push_back(entry.path());
+      }
+    }
+    for (const fs::path& file : dead) fs::remove(file, ignored);
+  }
+
   /// Of this process alone: another study may run the same case into the same folder.
   std::string part(const Job& job) const {
     return path(job.place, job.repeat == 0 ? ".part." : ".again.") + std::to_string(getpid());
@@ -158,7 +169,10 @@ class Runner {
   bool prepare(std::size_t i) {
     CaseResult& result = m_results[i];
     try {
-      result.id = make_id(m_cases[i]);
+      const Identity identity =
+          find_identity(load(make_run_options(m_cases[i].scenario, m_cases[i].settings)));
+      result.id = identity.id().substr(0, 16);
+      result.inputs = identity.inputs;
     } catch (const InputError& refused) {
       result.exit_code = kInputRefused;
       result.reason = leave_out_folder(refused.what(), m_cases[i].scenario);
@@ -176,6 +190,7 @@ class Runner {
     CaseResult& result = m_results[i];
     CaseResult kept;
     kept.id = result.id;
+    kept.inputs = result.inputs;
     const bool is_kept =
         read_result(path(i, ".case"), kept) && static_cast<int>(kept.cpu_seconds.size()) >= m_repeats[i];
     const bool has_file = is_whole(path(i, ".h5"));
@@ -190,7 +205,7 @@ class Runner {
     const std::size_t i = job.place;
     std::vector<std::string> words = {m_options.program, "run", m_cases[i].scenario, "--quiet",
                                       "--threads",       "1",   "--output",          part(job) + ".h5"};
-    for (const std::string& text : make_run_options(m_cases[i]).settings) {
+    for (const std::string& text : make_run_options(m_cases[i].scenario, m_cases[i].settings).settings) {
       words.emplace_back("--set");
       words.push_back(text);
     }
@@ -283,6 +298,14 @@ class Runner {
 };
 
 }  // namespace
+
+RunOptions make_run_options(const std::string& scenario, const std::vector<scenario::Setting>& settings) {
+  RunOptions options;
+  options.scenario = scenario;
+  for (const scenario::Setting& setting : settings)
+    options.settings.push_back(setting.pointer + "=" + setting.value);
+  return options;
+}
 
 bool is_accident(int exit_code) {
   return exit_code != kDone && exit_code != kInputRefused && exit_code != kRunFailed;

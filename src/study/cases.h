@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scenario/scenario.h"
+#include "study/run.h"
 
 namespace argil::study {
 
@@ -16,10 +17,11 @@ struct Case {
 
 /// How a case ended and what it cost.
 struct CaseResult {
-  std::string id;                   ///< hash of scenario, trace, meshes and build: equal ids give equal bits
-  int exit_code = 0;                ///< of `argil run`; above 128: killed by that signal less 128
-  std::string reason;               ///< why it was refused or failed; empty when done
-  std::string file;                 ///< its result; empty when refused
+  std::string inputs;  ///< Identity::inputs: hashes of the files that it reads; empty when refused
+  std::string id;      ///< hash of scenario, trace, meshes and build: equal ids give equal bits
+  int exit_code = 0;   ///< of `argil run`; above 128: killed by that signal less 128
+  std::string reason;  ///< why it was refused or failed; empty when done
+  std::string file;    ///< its result; empty when refused
   std::vector<double> cpu_seconds;  ///< of the ticks alone, one a repeat
   double peak_memory_MiB = 0.0;     ///< of the process
   double instructions = 0.0;        ///< in user mode, of the ticks; 0: the machine does not count them
@@ -31,6 +33,9 @@ struct CaseOptions {
   int jobs = 1;                            ///< runs at a time
   bool quiet = false;
 };
+
+/// Options of `argil run` for a scenario with settings.
+RunOptions make_run_options(const std::string& scenario, const std::vector<scenario::Setting>& settings);
 
 /// Can a run that ended with this code end otherwise another time? Killed, or without room to write.
 bool is_accident(int exit_code);

@@ -145,7 +145,9 @@ output::StudyTable make_table(const scenario::ChartStudy& study, const std::vect
                           row.result.id,
                           row.result.reason});
   }
-  table.provenance = describe_study(study.file, study.about, study.scenario, study.settings);
+  std::vector<CaseResult> results;
+  for (const Row& row : rows) results.push_back(row.result);
+  table.provenance = describe_study(study.file, study.about, study.scenario, study.settings, results);
   return table;
 }
 
@@ -165,21 +167,6 @@ std::vector<Row> make_chart(const scenario::ChartStudy& study, StudyOptions& opt
   return rows;
 }
 
-}  // namespace
-
-int chart(StudyOptions options) {
-  const scenario::ChartStudy study = scenario::read_chart_study(options.study);
-  const std::vector<Row> rows = make_chart(study, options);
-  for (const std::size_t i : {kReference, kRefined})
-    if (rows[i].result.exit_code != kDone) return print_reference_failure(rows[i]);
-  if (!options.cases.quiet)
-    std::printf("%s.csv: %zu runs, the reference's own force error %.2g\n", options.output.c_str(),
-                rows.size(), rows[kReference].errors.force);
-  return kDone;
-}
-
-namespace {
-
 /// The most accurate run within the budget. Errors below the reference's own cannot be told apart: of those,
 /// the cheapest.
 const Row* find_best(const std::vector<Row>& rows, double budget, double own_error) {
@@ -194,6 +181,19 @@ const Row* find_best(const std::vector<Row>& rows, double budget, double own_err
 }
 
 }  // namespace
+
+int chart(StudyOptions options) {
+  const scenario::ChartStudy study = scenario::read_chart_study(options.study);
+  const std::vector<Row> rows = make_chart(study, options);
+  for (const std::size_t i : {kReference, kRefined})
+    if (rows[i].result.exit_code != kDone) return print_reference_failure(rows[i]);
+  if (!options.cases.quiet)
+    std::printf("%s.csv: %zu runs, the reference's own force error %.2g\n", options.output.c_str(),
+                rows.size(), rows[kReference].errors.force);
+  std::vector<Outcome> outcomes;
+  for (const Row& row : rows) outcomes.push_back(row.outcome);
+  return print_accidents(options.study, outcomes);
+}
 
 int chart_budget(StudyOptions options, double budget) {
   const scenario::ChartStudy study = scenario::read_chart_study(options.study);

@@ -4,16 +4,10 @@
 
 namespace argil::study {
 
-device::HandParams hand_params(const scenario::Scenario& s) {
-  device::HandParams params = s.hand.params;
-  params.seed = static_cast<std::uint64_t>(s.hand.seed);
-  return params;
-}
-
 HandMotion::HandMotion(const scenario::Scenario& s, const device::Trace& trace)
     : m_scenario(s), m_trace(trace) {
   if (s.hand.kind == scenario::HandKind::simulated)
-    m_hand.emplace(hand_params(s), trace, s.params.rates.haptic_period, s.trace.start);
+    m_hand.emplace(s.hand.params, trace, s.params.rates.haptic_period, s.trace.start);
 }
 
 device::DeviceSample HandMotion::advance(Tick k, const Vec3& felt) {

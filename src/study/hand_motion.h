@@ -8,9 +8,6 @@
 
 namespace argil::study {
 
-/// The simulated hand of a scenario.
-device::HandParams hand_params(const scenario::Scenario& s);
-
 /// Where the tool goes, tick by tick: along the trace, or with a simulated hand that means to.
 class HandMotion {
  public:

@@ -121,10 +121,10 @@ std::uint64_t count_frames(const scenario::Scenario& s, Tick tick) {
   return 1 + static_cast<std::uint64_t>(tick / s.params.rates.frame_period_ticks);  // one at the start
 }
 
-LoopEnd run_loop(const scenario::Scenario& s, const device::Trace& trace, HandMotion& hand,
-                 sim::Simulation& simulation, output::ResultFile& file, bool shows_progress) {
+LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, sim::Simulation& simulation,
+                 output::ResultFile& file, bool shows_progress) {
   watch_signals();
-  Progress progress(count_ticks(s, trace), shows_progress);
+  Progress progress(num_ticks, shows_progress);
   StageClock clock;
   simulation.observe_stages(&clock);
   const auto start = std::chrono::steady_clock::now();
@@ -132,9 +132,9 @@ LoopEnd run_loop(const scenario::Scenario& s, const device::Trace& trace, HandMo
   if (first == 0) file.append(simulation.make_frame());
   LoopEnd end;
   CostMeter cost;
-  end.failure = run_ticks(s, count_ticks(s, trace), hand, simulation, file, cost, progress);
+  end.failure = run_ticks(s, num_ticks, hand, simulation, file, cost, progress);
   const Tick last = simulation.clock().tick;
-  end.is_interrupted = !end.failure && last < count_ticks(s, trace);
+  end.is_interrupted = !end.failure && last < num_ticks;
   if (!simulation.frame_due_last_tick()) file.append(simulation.make_frame());  // the last good state
   end.seconds = seconds_since(start);
   auto timing = clock.seconds(end.seconds, last - first);

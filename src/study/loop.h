@@ -29,10 +29,10 @@ struct LoopEnd {
   double seconds = 0.0;         ///< of wall clock
 };
 
-/// Feeds the simulation the hand's motion from its present tick to the end and appends records, frames,
+/// Feeds the simulation the hand's motion from its present tick to `num_ticks` and appends records, frames,
 /// checkpoints and timing as they come. A signal ends it after the next physics step, with a checkpoint
 /// there.
-LoopEnd run_loop(const scenario::Scenario& s, const device::Trace& trace, HandMotion& hand,
-                 sim::Simulation& simulation, output::ResultFile& file, bool shows_progress);
+LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, sim::Simulation& simulation,
+                 output::ResultFile& file, bool shows_progress);
 
 }  // namespace argil::study

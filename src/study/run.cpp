@@ -176,7 +176,7 @@ int run(const RunOptions& options) {
     file.emplace(result, make_header(s, simulation, scene, tool, identity));
   LoopEnd end;
   try {
-    end = run_loop(s, scene.trace, hand, simulation, *file, !options.quiet);
+    end = run_loop(s, count_ticks(s, scene.trace), hand, simulation, *file, !options.quiet);
     file->finish(end.failure, end.is_interrupted);
   } catch (const IoError&) {
     std::fprintf(stderr,

@@ -183,7 +183,9 @@ output::StudyTable make_table(const scenario::StabilityStudy& study, const Map& 
     for (std::size_t i = 0; i < limit.x.size(); ++i)
       table.rows.push_back({"limit", limit.x[i], limit.y.empty() ? kUnknown : limit.y[i], kUnknown, kUnknown,
                             limit.name, kUnknown, kUnknown, kUnknown, kUnknown, "", ""});
-  table.provenance = describe_study(study.file, study.about, study.scenario, study.settings);
+  std::vector<CaseResult> results;
+  for (const Place& p : map.places()) results.insert(results.end(), {p.result, p.truth});
+  table.provenance = describe_study(study.file, study.about, study.scenario, study.settings, results);
   table.provenance.emplace_back("x", study.x.name);
   table.provenance.emplace_back("y", study.y.name);
   table.provenance.emplace_back(
@@ -194,11 +196,7 @@ output::StudyTable make_table(const scenario::StabilityStudy& study, const Map& 
 /// The scenario of a place that failed, until just after it did.
 void write_failure(const scenario::StabilityStudy& study, const Map& map, const Place& place,
                    const std::string& file) {
-  RunOptions options;
-  options.scenario = study.scenario;
-  for (const scenario::Setting& s : map.settings_at(place.x, place.y))
-    options.settings.push_back(s.pointer + "=" + s.value);
-  scenario::Scenario s = load(options);
+  scenario::Scenario s = load(make_run_options(study.scenario, map.settings_at(place.x, place.y)));
   if (const auto failure = output::ResultReader(place.result.file).read_failure())
     s.trace.duration = static_cast<double>(failure->tick + 1) * s.params.rates.haptic_period;
   s.about = "Ends as " + to_string(place.outcome) + " by design of " +
@@ -217,34 +215,16 @@ void write_failures(const scenario::StabilityStudy& study, const Map& map, const
   std::filesystem::create_directories(folder, error);
   if (error) throw IoError(folder, "cannot be made (" + error.message() + ")");
   std::map<Outcome, const Place*> nearest;
-  for (const Boundary& b : map.boundaries())
-    for (const std::size_t i : {b.below, b.above})
-      if (const Place& place = map.places()[i];
-          is_known(place.outcome) && !is_stable(place.outcome) && !place.result.file.empty())
-        nearest.emplace(place.outcome, &place);
-  for (const Place& place : map.places())
+  const auto add = [&nearest](const Place& place) {
     if (is_known(place.outcome) && !is_stable(place.outcome) && !place.result.file.empty())
       nearest.emplace(place.outcome, &place);
+  };
+  for (const Boundary& b : map.boundaries())
+    for (const std::size_t i : {b.below, b.above}) add(map.places()[i]);
+  for (const Place& place : map.places()) add(place);
   const std::string stem = std::filesystem::path(study.file).stem().string();
   for (const auto& [outcome, place] : nearest)
     write_failure(study, map, *place, folder + "/" + stem + "_" + to_string(outcome) + ".json");
-}
-
-/// Rows that say nothing of the method make the map one to be made again.
-int print_accidents(const std::string& study, const Map& map) {
-  const auto count = [&](Outcome outcome) {
-    return std::count_if(map.places().begin(), map.places().end(),
-                         [&](const Place& p) { return p.outcome == outcome; });
-  };
-  const auto killed = count(Outcome::killed), unknown = count(Outcome::unknown);
-  if (killed > 0)
-    std::fprintf(stderr, "argil: %td runs of %s were killed or could not write: start it again\n", killed,
-                 study.c_str());
-  if (unknown > 0)
-    std::fprintf(stderr,
-                 "argil: %td runs of %s have no reference to compare with: see their reason in the table\n",
-                 unknown, study.c_str());
-  return killed + unknown > 0 ? kRunFailed : kDone;
 }
 
 }  // namespace
@@ -261,7 +241,9 @@ int map_stability(StudyOptions options, const std::string& failures) {
   if (!options.cases.quiet)
     std::printf("%s.csv: %zu runs, %zu boundaries\n", options.output.c_str(), map.places().size(),
                 map.boundaries().size());
-  return print_accidents(options.study, map);
+  std::vector<Outcome> outcomes;
+  for (const Place& place : map.places()) outcomes.push_back(place.outcome);
+  return print_accidents(options.study, outcomes);
 }
 
 }  // namespace argil::study

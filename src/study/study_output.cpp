@@ -1,8 +1,11 @@
 #include "study/study_output.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <sstream>
 #include <thread>
 
 #include "study/files.h"
@@ -21,6 +24,18 @@ std::string find_processor() {
   return "unknown processor";
 }
 
+/// Lines "POINTER SHA-256" of all runs, each once.
+std::string list_inputs(const std::vector<CaseResult>& results) {
+  std::set<std::string> lines;
+  for (const CaseResult& result : results) {
+    std::istringstream text(result.inputs);
+    for (std::string line; std::getline(text, line);) lines.insert(line);
+  }
+  std::string list;
+  for (const std::string& line : lines) list += line + ";";
+  return list;
+}
+
 }  // namespace
 
 void name_outputs(StudyOptions& options) {
@@ -32,12 +47,9 @@ void name_outputs(StudyOptions& options) {
 std::vector<std::pair<std::string, std::string>> describe_study(const std::string& study,
                                                                 const std::string& about,
                                                                 const std::string& scenario,
-                                                                const Settings& settings) {
+                                                                const Settings& settings,
+                                                                const std::vector<CaseResult>& results) {
   namespace fs = std::filesystem;
-  RunOptions options;
-  options.scenario = scenario;
-  std::string inputs = find_identity(load(options)).inputs;
-  std::replace(inputs.begin(), inputs.end(), '\n', ';');
   std::string build = describe_build();
   std::replace(build.begin(), build.end(), '\n', ';');
   return {{"about", about},
@@ -45,11 +57,24 @@ std::vector<std::pair<std::string, std::string>> describe_study(const std::strin
           {"study_sha256", hash_file(study)},
           {"scenario", fs::path(scenario).filename().string()},
           {"scenario_sha256", hash_file(scenario)},
-          {"inputs_sha256", inputs},
+          {"inputs_sha256", list_inputs(results)},
           {"settings", print_settings(settings)},
           {"build", build},
           {"machine",
            find_processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads"}};
+}
+
+int print_accidents(const std::string& study, const std::vector<Outcome>& outcomes) {
+  const auto killed = std::count(outcomes.begin(), outcomes.end(), Outcome::killed);
+  const auto unknown = std::count(outcomes.begin(), outcomes.end(), Outcome::unknown);
+  if (killed > 0)
+    std::fprintf(stderr, "argil: %td runs of %s were killed or could not write: start it again\n", killed,
+                 study.c_str());
+  if (unknown > 0)
+    std::fprintf(stderr,
+                 "argil: %td runs of %s have no reference to compare with: see their reason in the table\n",
+                 unknown, study.c_str());
+  return killed + unknown > 0 ? kRunFailed : kDone;
 }
 
 Settings join(const Settings& a, const Settings& b) {

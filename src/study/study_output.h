@@ -6,6 +6,7 @@
 
 #include "scenario/scenario.h"
 #include "study/cases.h"
+#include "study/outcome.h"
 
 namespace argil::study {
 
@@ -21,11 +22,17 @@ struct StudyOptions {
 /// Fills in the names that the user left out.
 void name_outputs(StudyOptions& options);
 
-/// Provenance of a study's table: what was asked, of which scene, by which build, on which machine.
+/// Provenance of a study's table: what was asked, of which scene and inputs (of `results`), by which build,
+/// on which machine.
 std::vector<std::pair<std::string, std::string>> describe_study(const std::string& study,
                                                                 const std::string& about,
                                                                 const std::string& scenario,
-                                                                const Settings& settings);
+                                                                const Settings& settings,
+                                                                const std::vector<CaseResult>& results);
+
+/// Rows that say nothing of a method make a study one to be run again: says how many there are. kDone without
+/// any.
+int print_accidents(const std::string& study, const std::vector<Outcome>& outcomes);
 
 /// a, then b, which wins.
 Settings join(const Settings& a, const Settings& b);
