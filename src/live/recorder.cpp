@@ -2,11 +2,15 @@
 
 namespace argil::live {
 
+/// Ticks go before the step that they led to, which may have come after they were looked for.
 void Recorder::drain(Session& session) {
-  HandTick tick;
-  while (session.pop(tick)) write(tick);
   BodyStep step;
-  while (session.pop(step)) write(step);
+  bool has_step = false;
+  do {
+    has_step = session.pop(step);
+    for (HandTick tick; session.pop(tick);) write(tick);
+    if (has_step) write(step);
+  } while (has_step);
 }
 
 /// The record last: its flush takes the other rows of the tick along.

@@ -79,6 +79,7 @@ void Watch::append(const HandTick& tick) {
 
 void Watch::append(const sim::Frame& frame) {
   const bool has_skin = m_impl->has_skin;
+  m_impl->ticks.show();  // first: those that led to the picture
   m_impl->position.append(has_skin ? frame.skin_position.data() : frame.position.data(), 1);
   m_impl->saturation.append(has_skin ? frame.skin_saturation.data() : frame.saturation.data(), 1);
   m_impl->position.flush();
@@ -86,7 +87,6 @@ void Watch::append(const sim::Frame& frame) {
   m_impl->frame_ticks.put(frame.tick);
   m_impl->frame_ticks.end_row();
   m_impl->frame_ticks.show();  // last: what it counts is there
-  m_impl->ticks.show();
 }
 
 }  // namespace argil::live
