@@ -152,11 +152,12 @@ SLIDE = [  # press and slide, to and fro
 DRY = [stroke._replace(mode="dry") for stroke in WET]
 
 SCULPT_WET = [*WET[:1], *WET[17:]]  # the inner rounds of the wiping
-SCULPT_PULL = [  # draw out above the dent, barely touching: wet clay follows easily
-    Stroke("push", 0.40, 6.0, -8.0, 0.0),
-    Stroke("pull", 0.30, -0.3, -8.0, 0.0),
-    Stroke("pull", 0.40, 0.7, -8.0, 0.0),
-    Stroke("pull", 0.30, 12.0, -8.0, 0.0),
+SCULPT_PULL = [  # draw a ridge out above the dent: 2 mm into clay that the water has reached less, and slowly back
+    Stroke("push", 0.40, 6.0, -14.0, 0.0),
+    Stroke("pull", 0.30, -4.0, -14.0, 0.0),
+    Stroke("pull", 0.20, -4.0, -14.0, 0.0),
+    Stroke("pull", 0.60, -1.0, -14.0, 0.0),
+    Stroke("pull", 0.30, 12.0, -14.0, 0.0),
     Stroke("pull", 0.40, 25.0, 0.0, 0.0),
 ]
 SCULPT_DRY = [stroke._replace(mode="dry", height=stroke.height - (2.5 if stroke.height < 0.0 else 0.0))

@@ -12,6 +12,7 @@
 #include "live/live.h"
 #include "output/compare.h"
 #include "output/info.h"
+#include "scenario/model_summary.h"
 #include "scenario/tolerance_file.h"
 #include "study/export.h"
 #include "study/files.h"
@@ -46,7 +47,10 @@ int compare_files(const std::string& a, const std::string& b, const std::string&
 
 int print_info(const std::string& file) {
   study::require_input_file(file);
-  std::cout << output::describe_result(file);
+  const output::ResultReader reader(file);
+  std::cout << output::describe_result(reader);
+  if (const auto scenario = reader.find_provenance("scenario"))
+    std::cout << scenario::describe_model(*scenario, file + ": /provenance/scenario");
   return ExitCode::kDone;
 }
 

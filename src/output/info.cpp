@@ -4,13 +4,23 @@
 #include <array>
 #include <sstream>
 
-#include "output/result_reader.h"
+#include "output/text.h"
 
 namespace argil::output {
 namespace {
 
+/// "name" in a column of its own; the lines of one list have it once.
+std::string label(const std::string& name) {
+  constexpr std::size_t kColumn = 12;
+  return name + std::string(kColumn - std::min(kColumn - 1, name.size()), ' ');
+}
+
+std::string count(std::size_t number, const std::string& things) {
+  return std::to_string(number) + ' ' + things + (number == 1 ? "" : "s");
+}
+
 void describe_outcome(std::ostream& out, const ResultReader& reader) {
-  out << "outcome     ";
+  out << label("outcome");
   switch (reader.outcome()) {
     case Outcome::done:
       out << "done\n";
@@ -30,30 +40,38 @@ void describe_outcome(std::ostream& out, const ResultReader& reader) {
 }
 
 void describe_body(std::ostream& out, const ResultHeader& header) {
-  out << "body        " << header.rest_position.cols() << " vertices, " << header.tets.cols() << " tets, "
+  out << label("body") << header.rest_position.cols() << " vertices, " << header.tets.cols() << " tets, "
       << header.surface_triangles.cols() << " surface triangles";
   if (header.skin_triangles.cols() > 0) out << ", skin of " << header.skin_triangles.cols() << " triangles";
   if (header.rest_position.cols() > 0) {
     const Vec3 size = header.rest_position.rowwise().maxCoeff() - header.rest_position.rowwise().minCoeff();
-    out << "; " << size.x() << " × " << size.y() << " × " << size.z() << " m";
+    out << "; " << with_prefix(size.x(), "m") << " × " << with_prefix(size.y(), "m") << " × "
+        << with_prefix(size.z(), "m");
   }
-  out << "\ntool        " << header.tool.num_vertices() << " vertices, " << header.tool.num_triangles()
+  out << '\n'
+      << label("tool") << header.tool.num_vertices() << " vertices, " << header.tool.num_triangles()
       << " triangles\n";
 }
 
+/// The first of equal maxima, so that the answer does not depend on anything else.
+void describe_peak(std::ostream& out, const std::vector<sim::HapticRecord>& records) {
+  const auto peak = std::max_element(records.begin(), records.end(), [](const auto& a, const auto& b) {
+    return a.force.stableNorm() < b.force.stableNorm();
+  });
+  out << label("peak force") << with_prefix(peak->force.stableNorm(), "N") << " on the hand at "
+      << with_prefix(peak->time, "s") << " (" << to_string(peak->mode) << "), "
+      << with_prefix(peak->device_force.stableNorm(), "N") << " as the device gives it, torque "
+      << with_prefix(peak->torque.stableNorm(), "N m") << '\n';
+}
+
 void describe_haptic(std::ostream& out, const std::vector<sim::HapticRecord>& records, double period) {
-  out << "haptic      " << records.size() << " ticks of " << period << " s";
+  out << label("motion");
+  if (!records.empty()) out << with_prefix(records.back().time, "s") << ": ";
+  out << count(records.size(), "tick") << " of " << with_prefix(period, "s");
   if (records.empty()) {
     out << '\n';
     return;
   }
-  out << ", " << records.back().time << " s\n";
-  // The first of equal maxima, so that the answer does not depend on anything else.
-  const auto peak = std::max_element(records.begin(), records.end(), [](const auto& a, const auto& b) {
-    return a.force.stableNorm() < b.force.stableNorm();
-  });
-  out << "peak force  " << peak->force.stableNorm() << " N at " << peak->time << " s (device "
-      << peak->device_force.stableNorm() << " N), torque " << peak->torque.stableNorm() << " N m\n";
   std::array<std::size_t, device::kNumToolModes> in_mode{};
   std::size_t touching = 0;
   std::size_t gated = 0;
@@ -64,66 +82,102 @@ void describe_haptic(std::ostream& out, const std::vector<sim::HapticRecord>& re
     gated += record.gate_events != 0 ? 1 : 0;
     oldest = std::max(oldest, record.force_age);
   }
-  out << "contact     " << touching << " ticks; modes";
   for (std::size_t mode = 0; mode < in_mode.size(); ++mode)
     if (in_mode[mode] > 0)
-      out << ' ' << to_string(static_cast<device::ToolMode>(mode)) << ' ' << in_mode[mode];
-  out << "; oldest force " << oldest << " ticks; output gate acted in " << gated << '\n';
+      out << ", " << to_string(static_cast<device::ToolMode>(mode)) << ' ' << in_mode[mode];
+  out << '\n'
+      << label("contact") << "in " << count(touching, "tick") << "; the oldest force was "
+      << count(static_cast<std::size_t>(std::max(0, oldest)), "tick") << " old; the device's limits acted in "
+      << gated << '\n';
+  describe_peak(out, records);
 }
 
 void describe_physics(std::ostream& out, const std::vector<sim::PhysicsRecord>& records) {
-  out << "physics     " << records.size() << " steps";
+  out << label("physics") << count(records.size(), "step");
   if (records.empty()) {
     out << '\n';
     return;
   }
-  double smallest_volume = records.front().min_volume_ratio;
-  double largest_plastic = 0.0;
-  double largest_residual = 0.0;
-  int most_active = 0;
+  sim::PhysicsRecord worst = records.front();
   for (const sim::PhysicsRecord& record : records) {
-    smallest_volume = std::min(smallest_volume, record.min_volume_ratio);
-    largest_plastic = std::max(largest_plastic, record.max_plastic_strain);
-    largest_residual = std::max(largest_residual, record.residual);
-    most_active = std::max(most_active, record.active_nodes);
+    worst.min_volume_ratio = std::min(worst.min_volume_ratio, record.min_volume_ratio);
+    worst.max_plastic_strain = std::max(worst.max_plastic_strain, record.max_plastic_strain);
+    worst.residual = std::max(worst.residual, record.residual);
+    worst.active_nodes = std::max(worst.active_nodes, record.active_nodes);
   }
   const sim::PhysicsRecord& first = records.front();
   const sim::PhysicsRecord& last = records.back();
-  out << ", at most " << most_active << " active vertices, " << last.factorisations
-      << " factorisations, largest residual " << largest_residual << '\n';
-  out << "body state  smallest volume ratio " << smallest_volume << ", largest plastic strain "
-      << largest_plastic << '\n';
-  out << "energy      kinetic " << last.kinetic_energy << " J, elastic " << last.elastic_energy
-      << " J, dissipated " << last.plastic_dissipation << " J, contact work " << last.contact_work
-      << " J at the end\n";
-  out << "water       " << first.water_mass << " kg after the first step, " << last.water_mass
-      << " kg at the end; added " << last.water_added << " kg, removed " << last.water_removed << " kg\n";
+  out << "; at most " << worst.active_nodes << " vertices solved for, " << last.factorisations
+      << " factorisations, largest residual " << rounded(worst.residual) << '\n';
+  out << label("clay") << "a tet shrank to " << rounded(100.0 * worst.min_volume_ratio)
+      << " % of its volume at worst; plastic strain up to " << rounded(100.0 * worst.max_plastic_strain)
+      << " %\n";
+  out << label("energy") << "at the end kinetic " << with_prefix(last.kinetic_energy, "J") << ", elastic "
+      << with_prefix(last.elastic_energy, "J") << "; since the start dissipated by flow "
+      << with_prefix(last.plastic_dissipation, "J") << ", given by contact "
+      << with_prefix(last.contact_work, "J") << '\n';
+  constexpr double kGrams = 1e3;
+  out << label("water") << with_prefix(kGrams * first.water_mass, "g") << " after the first step, "
+      << with_prefix(kGrams * last.water_mass, "g") << " at the end; the tool gave "
+      << with_prefix(kGrams * last.water_added, "g") << " and took "
+      << with_prefix(kGrams * last.water_removed, "g") << '\n';
+}
+
+/// Wall clock: in all, beside the hand's time, and each stage, the longest first.
+void describe_timing(std::ostream& out, std::vector<std::pair<std::string, double>> timing, double moved) {
+  std::stable_sort(timing.begin(), timing.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string stages;
+  for (const auto& [name, value] : timing) {
+    if (name == "total") {
+      out << label("timing") << with_prefix(value, "s") << " of wall clock";
+      if (moved > 0.0 && value > 0.0) out << ", " << rounded(value / moved) << " times as long as the motion";
+      out << '\n';
+    } else if (name == "tick_rate_Hz") {
+      out << label("rate") << rounded(value) << " ticks in a second of wall clock\n";
+    } else if (name != "instructions" && !name.starts_with("num_")) {
+      stages += (stages.empty() ? "" : ", ") + name + ' ' + with_prefix(value, "s");
+    }
+  }
+  if (!stages.empty()) out << label("of it") << stages << '\n';
+}
+
+/// What the run was made from: notes of its start, build, hashes, a line each. The scenario has a page of its
+/// own.
+void describe_provenance(std::ostream& out, const ResultHeader& header) {
+  for (const auto& [name, text] : header.provenance) {
+    if (name == "about" || name == "scenario") continue;
+    std::istringstream lines(text);
+    std::string joined;
+    for (std::string line; std::getline(lines, line);) {
+      if (name == "notes")
+        out << label("note") << line << '\n';
+      else
+        joined += (joined.empty() ? "" : ", ") + line;
+    }
+    if (!joined.empty()) out << label("made from") << name << ": " << joined << '\n';
+  }
 }
 
 }  // namespace
 
-std::string describe_result(const std::string& file) {
-  const ResultReader reader(file);
+std::string describe_result(const ResultReader& reader) {
   const ResultHeader header = reader.read_header();
   const std::vector<FrameInfo> frames = reader.read_frame_list();
+  const std::vector<sim::HapticRecord> haptic = reader.read_haptic();
   std::ostringstream out;
-  out.precision(6);
-  out << "file        " << file << '\n';
+  out << label("file") << reader.file() << '\n';
+  if (const auto about = reader.find_provenance("about")) out << label("about") << *about << '\n';
   describe_outcome(out, reader);
   describe_body(out, header);
-  describe_haptic(out, reader.read_haptic(), header.haptic_period);
+  describe_haptic(out, haptic, header.haptic_period);
   describe_physics(out, reader.read_physics());
-  out << "frames      " << frames.size();
+  out << label("frames") << frames.size();
   if (!frames.empty())
     out << ", last at tick " << frames.back().tick << ", state " << frames.back().state_hash;
   out << '\n';
-  for (const auto& [name, text] : header.provenance) {
-    constexpr std::size_t kShort = 100;  // scenarios have pages of their own (argil show)
-    if (text.size() <= kShort && text.find('\n') == std::string::npos)
-      out << "made from   " << name << ": " << text << '\n';
-  }
-  for (const auto& [name, value] : reader.read_timing())
-    out << "timing      " << name << ": " << value << (name.ends_with("_Hz") ? " Hz\n" : " s\n");
+  describe_timing(out, reader.read_timing(), haptic.empty() ? 0.0 : haptic.back().time);
+  describe_provenance(out, header);
   return out.str();
 }
 

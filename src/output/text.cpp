@@ -1,8 +1,12 @@
 #include "output/text.h"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 
 #include "base/error.h"
 
@@ -29,6 +33,27 @@ std::string escape_xml(const std::string& text) {
     }
   }
   return safe;
+}
+
+std::string rounded(double value) {
+  constexpr int kDigits = 4;
+  std::ostringstream out;
+  out.precision(kDigits);
+  out << value;
+  return out.str();
+}
+
+std::string with_prefix(double value, const std::string& unit) {
+  constexpr std::array kPrefixes = {"n", "µ", "m", "", "k", "M", "G"};
+  constexpr int kNone = 3;   // where there is no prefix
+  constexpr int kEvery = 3;  // decimal places from one to the next
+  if (value == 0.0 || !std::isfinite(value)) return rounded(value) + ' ' + unit;
+  // Of the digits that are printed: 999.96 becomes 1 of the next prefix.
+  const double printed = std::stod(rounded(value));
+  const int places = static_cast<int>(std::floor(std::log10(std::abs(printed)) / kEvery));
+  const int step = std::clamp(places, -kNone, static_cast<int>(kPrefixes.size()) - 1 - kNone);
+  return rounded(value / std::pow(10.0, kEvery * step)) + ' ' +
+         kPrefixes[static_cast<std::size_t>(kNone + step)] + unit;
 }
 
 void write_file(const std::string& file, const std::string& content) {

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "output/text.h"
 #include "records.h"
 #include "support/temp_folder.h"
 
@@ -16,25 +19,39 @@ TEST(DescribeResult, NamesOutcomeBodyPeakForceWaterAndTiming) {
   {
     ResultFile file(folder / "r.h5", test::make_header());
     test::append_run(file, 0, 21);
-    file.append_timing({{"total_s", 12.5}});
+    file.append_timing({{"water", 0.25}, {"total", 12.5}, {"solve", 9.0}});
     file.finish(Failure{20, "solid", 3, "volume ratio", -0.5, 0.0});
   }
-  const std::string text = describe_result(folder / "r.h5");
+  const std::string text = describe_result(ResultReader(folder / "r.h5"));
   for (const std::string words :
        {"failed: tick 20, solid: volume ratio is -0.5, bound 0, element 3", "5 vertices, 2 tets",
-        "skin of 1 triangles", "1 × 1 × 1 m", "21 ticks of 0.001 s, 0.02 s",
-        // ‖(1/23, 2, 60)‖ = 60.0333…
-        "peak force  60.0333 N at 0.02 s (device 10 N)",
-        "contact     18 ticks; modes push 6 pull 5 wet 5 dry 5", "physics     11 steps",
-        "5 kg after the first step, 25 kg at the end; added 26 kg, removed 27 kg",
-        "frames      3, last at tick 20", "total_s: 12.5 s"})
+        "skin of 1 triangles", "1 m × 1 m × 1 m", "20 ms: 21 ticks of 1 ms, push 6, pull 5, wet 5, dry 5",
+        // ‖(1/23, 2, 60)‖ = 60.0333…; tick 20 pushes; its torque is ‖(2, 0.2, 0.3)‖ = 2.0322…
+        "peak force  60.03 N on the hand at 20 ms (push), 10 N as the device gives it, torque 2.032 N m",
+        "contact     in 18 ticks; the oldest force was 13 ticks old; the device's limits acted in 19",
+        "physics     11 steps", "a tet shrank to 50 % of its volume at worst; plastic strain up to 12.5 %",
+        "kinetic 21 J, elastic 22 J; since the start dissipated by flow 23 J, given by contact 24 J",
+        "5 kg after the first step, 25 kg at the end; the tool gave 26 kg and took 27 kg",
+        "frames      3, last at tick 20", "12.5 s of wall clock, 625 times as long as the motion",
+        "of it       solve 9 s, water 250 ms"})
     EXPECT_NE(text.find(words), std::string::npos) << words << "\nin\n" << text;
+}
+
+TEST(WithPrefix, KeepsFourDigitsBetweenOneAndAThousand) {
+  EXPECT_EQ(with_prefix(0.0021534, "N"), "2.153 mN");
+  EXPECT_EQ(with_prefix(-1500.0, "g"), "-1.5 kg");
+  EXPECT_EQ(with_prefix(999.97, "m"), "1 km");
+  EXPECT_EQ(with_prefix(1.0, "m"), "1 m");
+  EXPECT_EQ(with_prefix(1e-3, "s"), "1 ms");
+  EXPECT_EQ(with_prefix(3e-14, "J"), "3e-05 nJ");
+  EXPECT_EQ(with_prefix(0.0, "J"), "0 J");
+  EXPECT_EQ(with_prefix(std::nan(""), "J"), "nan J");
 }
 
 TEST(DescribeResult, DescribesARunThatHasNothingYet) {
   const TempFolder folder;
   { const ResultFile file(folder / "r.h5", test::make_header()); }
-  const std::string text = describe_result(folder / "r.h5");
+  const std::string text = describe_result(ResultReader(folder / "r.h5"));
   EXPECT_NE(text.find("not finished"), std::string::npos) << text;
   EXPECT_NE(text.find("0 ticks"), std::string::npos) << text;
 }

@@ -81,7 +81,10 @@ class ExitCodes(unittest.TestCase):
             for name, timing in file["timing"].items():
                 self.assertEqual(timing.attrs["units"], b"Hz" if name == "tick_rate_Hz" else b"s", name)
             self.assertAlmostEqual(rate[0] * total[0], 100.0, delta=1e-9)  # ticks
-        self.assertRegex(self.call("info", "out.h5")[1], r"tick_rate_Hz: [0-9.e+]+ Hz\n")
+        page = self.call("info", "out.h5")[1]
+        self.assertRegex(page, r"rate +[0-9.e+]+ ticks in a second")
+        self.assertIn("\nmotion      100 ms: 100 ticks of 1 ms", page)
+        self.assertIn("\nsimplified  friction: none\n", page)
 
     def test_0_version_and_help(self):
         self.assertEqual(self.call("--version")[0], 0)
