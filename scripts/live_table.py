@@ -2,15 +2,16 @@
 """How well a live session keeps its times, on the demonstration's dinosaur, with physics of three rates; each session is
 replayed and compared.
 
-    scripts/live_table.py [--build BUILD] [--seconds 60] [--devices simulated haply …] [--output results/live]
+    scripts/live_table.py [--build BUILD] [--seconds 60] [--devices simulated haply spacenav …] [--output results/live]
 
-writes live.csv and README.md there. One line a session. Run it on a machine with nothing else to do. A simulated
-hand follows traces/long_session.csv and rests at its end. "haply" is the
-stand-in of the tests, started here; any other device must be there.
+writes live.csv and README.md there, one line a session; lines of other devices stay. Run it on a machine with nothing
+else to do. A simulated hand means to press, wet, press and dry the haunch, to and fro, for as long as the session
+lasts. "haply" and "spacenav" are the stand-ins of the tests, started here; any other device must be there.
 """
 import argparse
 import contextlib
 import csv
+import math
 import os
 import platform
 import subprocess
@@ -23,47 +24,68 @@ ROOT = Path(__file__).resolve().parent.parent
 SCENARIO = ROOT / "scenarios" / "demo_dino_dry.json"
 # Ticks of 1 ms: a physics step, the water's, a picture.
 RATES = {"1000": (1, 10, 40), "333": (3, 12, 42), "71": (14, 14, 42)}
+STAND_INS = {"haply": ("haply_stand_in.py", (-0.006, 0.074, -0.088)),
+             "spacenav": ("spacenav_stand_in.py", (-0.006, -0.2364, 0.062))}
 FIGURES = ["wake_late_p50", "wake_late_p99", "wake_late_p999", "wake_late_max", "tick_work_p50", "tick_work_p99",
            "tick_work_max", "step_work_p50", "step_work_p99", "step_work_max", "num_surface_age_ticks_p50",
            "num_surface_age_ticks_p99", "num_surface_age_ticks_max", "num_ticks", "num_missed_ticks", "num_steps",
            "num_late_steps"]
 
 
-def call(argil, *arguments):
-    done = subprocess.run([argil, *map(str, arguments)], capture_output=True, text=True, check=False)
+def call(argil, *arguments, environment=None):
+    done = subprocess.run([argil, *map(str, arguments)], capture_output=True, text=True, check=False,
+                          env={**os.environ, **(environment or {})})
     return done.returncode, done.stdout + done.stderr
+
+
+def write_intent(file, seconds):
+    """A hand that comes to the haunch, presses and slides for 2 s of every 3, and goes on to the next mode."""
+    rows = []
+    for k in range(int(50 * seconds) + 1):
+        t = k / 50
+        mode = ("push", "wet", "push", "dry")[int(t / 3.0) % 4]
+        depth = 0.0025 * (1.0 - math.cos(math.pi * min(t % 3.0, 2.0))) / 2.0 if t % 3.0 < 2.0 else 0.0
+        slide = 0.003 * math.sin(2.0 * math.pi * t / 7.0)
+        rows.append(f"{t:.2f},{-0.006 + slide:.6f},{-0.0394 + depth:.6f},0.062,0,0,0,1,{mode}\n")
+    file.write_text("# argil-trace: 1\n# device: intent of a simulated hand\n# units: m\n"
+                    "time_s,x_m,y_m,z_m,qx,qy,qz,qw,mode\n" + "".join(rows), encoding="utf-8")
 
 
 @contextlib.contextmanager
 def stand_in(device):
-    """Name of the device that argil is given, and the settings that bring its motion to the dinosaur's flank."""
-    if device != "haply":
-        yield device, []
+    """Name of the device that argil is given, the environment, and where its origin lies so that it meets the haunch."""
+    if device not in STAND_INS:
+        yield device, {}, []
         return
-    process = subprocess.Popen([ROOT / "tests" / "support" / "haply_stand_in.py"], stdin=subprocess.PIPE,
-                               stdout=subprocess.PIPE, text=True)
+    program, place = STAND_INS[device]
+    process = subprocess.Popen([ROOT / "tests" / "support" / program], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                               text=True)
     try:
-        port = process.stdout.readline().split()[1]
-        yield f"haply:127.0.0.1:{port}", ["/trace/device_to_world/translation_m=[-0.006, 0.074, -0.088]"]
+        said = process.stdout.readline().split()[1]
+        placed = [f"/trace/device_to_world/translation_m={list(place)}"]
+        yield ((f"haply:127.0.0.1:{said}", {}, placed) if device == "haply" else
+               (device, {"SPNAV_SOCKET": said}, placed))
     finally:
         process.stdin.close()
         process.wait()
 
 
 def run_session(argil, folder, device, rate, seconds):
-    with stand_in(device) as (name, placed):
-        return record(argil, folder, (device, name), placed, rate, seconds)
+    with stand_in(device) as (name, environment, placed):
+        return record(argil, folder, (device, name, environment), placed, rate, seconds)
 
 
 def record(argil, folder, devices, placed, rate, seconds):
-    device, name = devices
+    device, name, environment = devices
+    write_intent(folder / "intent.csv", seconds)
     physics, water, frame = RATES[rate]
     settings = [f"/haptics/physics_period_ticks={physics}", f"/haptics/water_period_ticks={water}",
                 f"/haptics/frame_period_ticks={frame}", "/haptics/between_frames=re_evaluate",
-                f"/trace/file={ROOT / 'traces' / 'long_session.csv'}"]
+                f"/trace/file={folder / 'intent.csv'}"]
     sets = [word for setting in settings + placed for word in ("--set", setting)]
     live, again = folder / "live.h5", folder / "again.h5"
-    code, said = call(argil, "live", SCENARIO, "--device", name, "--duration", seconds, "-o", live, "-q", *sets)
+    code, said = call(argil, "live", SCENARIO, "--device", name, "--duration", seconds, "-o", live, "-q", *sets,
+                      environment=environment)
     if code != 0:
         raise SystemExit(f"{device} at {rate} Hz: code {code}: {said}")
     sets = [word for setting in settings[:-1] for word in ("--set", setting)]
@@ -78,6 +100,15 @@ def record(argil, folder, devices, placed, rate, seconds):
             row[name] = float(file["timing"][name][-1])
         row["largest_force_N"] = float(abs(file["haptic/device_force"][:]).max())
     return row
+
+
+def read_others(table, devices):
+    """Rows of devices that are not measured now."""
+    with open(table, encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["device"] not in devices]
+    for row in rows:
+        row.update({name: float(row[name]) for name in FIGURES})
+    return rows
 
 
 def write_readme(file, rows, seconds):
@@ -105,17 +136,18 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, default=ROOT / "build")
     parser.add_argument("--seconds", type=float, default=60.0)
-    parser.add_argument("--devices", nargs="+", default=["simulated", "haply"])
+    parser.add_argument("--devices", nargs="+", default=["simulated", *STAND_INS])
     parser.add_argument("--output", type=Path, default=ROOT / "results" / "live")
     options = parser.parse_args()
-    rows = []
+    table = options.output / "live.csv"
+    rows = read_others(table, options.devices) if table.is_file() else []
     for device in options.devices:
         for rate in RATES:
             with tempfile.TemporaryDirectory() as folder:
                 rows.append(run_session(options.build / "bin" / "argil", Path(folder), device, rate, options.seconds))
             print(rows[-1])
     options.output.mkdir(parents=True, exist_ok=True)
-    with open(options.output / "live.csv", "w", newline="", encoding="utf-8") as file:
+    with open(table, "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, rows[0].keys())
         writer.writeheader()
         writer.writerows(rows)

@@ -50,7 +50,7 @@ HAUNCH = Place(contact=(-6.0, -30.4, 62.0), normal=(0.0, -1.0, 0.0), slide=(0.35
 BLOCK = Place(contact=(0.37, 0.21, 30.0), normal=(0.0, 0.0, 1.0), slide=(1.0, 0.0, 0.0), tool_radius=24.0,
               is_smooth=True)
 BELLY = Place(contact=(13.7, 0.0, 125.0), normal=(1.0, 0.0, 0.0), slide=(0.0, 0.0, 1.0), tool_radius=8.0)
-POST = Place(contact=(-25.0, 0.23, 85.0), normal=(-1.0, 0.0, 0.0), slide=(0.0, 0.0, 1.0), tool_radius=8.0,
+POST = Place(contact=(-50.0 / 3.0, 0.23, 85.0), normal=(-1.0, 0.0, 0.0), slide=(0.0, 1.0, 0.0), tool_radius=8.0,
              is_smooth=True)
 
 START = Stroke("push", 0.0, 25.0, 0.0, 0.0)  # where every motion begins
@@ -128,10 +128,10 @@ LIGHT = [  # come, press, hold and let go
     Stroke("push", 0.10, 1.0, 0.0, 0.0),
 ]
 
-BEND = [  # push a post over
-    Stroke("push", 0.10, 1.0, 0.0, 0.0),
-    Stroke("push", 0.30, -25.0, 0.0, 0.0),
-    Stroke("push", 0.10, -25.0, 0.0, 0.0),
+BEND = [  # push a post over with the middle of a rod of 60 mm held across it
+    Stroke("push", 0.10, 1.0, -30.0, 90.0),
+    Stroke("push", 0.30, -25.0, -30.0, 90.0),
+    Stroke("push", 0.10, -25.0, -30.0, 90.0),
 ]
 
 WET_LIGHT = [  # wet a place, then press it

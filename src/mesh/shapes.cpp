@@ -1,7 +1,6 @@
 #include "mesh/shapes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -37,14 +36,17 @@ double combine_walls(const Vector& q) {
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
 }
 
-ImplicitSurface make_box(double edge) {
-  const double half = 0.5 * edge;
+Vec3 find_box_size(const Shape& shape) {
+  return {shape.size / shape.slenderness, shape.size / shape.slenderness, shape.size};
+}
+
+ImplicitSurface make_box(const Vec3& size) {
+  const Vec3 half = 0.5 * size;
   ImplicitSurface surface;
-  surface.lower = Vec3(-half, -half, 0.0);
-  surface.upper = Vec3(half, half, edge);
+  surface.lower = Vec3(-half(0), -half(1), 0.0);
+  surface.upper = Vec3(half(0), half(1), size(2));
   surface.value = [half](const Vec3& x) {
-    const Vec3 q = (x - Vec3(0.0, 0.0, half)).cwiseAbs() - Vec3::Constant(half);
-    return combine_walls(q);
+    return combine_walls(Vec3((x - Vec3(0.0, 0.0, half(2))).cwiseAbs() - half));
   };
   return surface;
 }
@@ -61,15 +63,17 @@ ImplicitSurface make_cylinder(double height) {
   return surface;
 }
 
-// Cells along x, y, z that differ by one at most.
-Eigen::Vector3i choose_box_counts(double num_cubes) {
-  const int n = std::max(1, static_cast<int>(std::floor(std::cbrt(num_cubes))));
-  const std::array<Eigen::Vector3i, 4> choices = {Eigen::Vector3i(n, n, n), Eigen::Vector3i(n, n, n + 1),
-                                                  Eigen::Vector3i(n, n + 1, n + 1),
-                                                  Eigen::Vector3i(n + 1, n + 1, n + 1)};
-  return *std::min_element(choices.begin(), choices.end(), [num_cubes](const auto& a, const auto& b) {
-    return std::abs(a.prod() - num_cubes) < std::abs(b.prod() - num_cubes);
-  });
+// Cells along x, y, z that are nearly cubes and whose number is nearest to `num_cubes`.
+Eigen::Vector3i choose_box_counts(const Shape& shape, double num_cubes) {
+  const double along = std::cbrt(num_cubes / shape.slenderness);
+  const auto floor_of = [](double cells) { return std::max(1, static_cast<int>(std::floor(cells))); };
+  const Eigen::Vector3i fewest(floor_of(along), floor_of(along), floor_of(shape.slenderness * along));
+  Eigen::Vector3i best = fewest;
+  for (int i = 1; i < 8; ++i) {
+    const Eigen::Vector3i counts = fewest + Eigen::Vector3i(i >> 2 & 1, i >> 1 & 1, i & 1);
+    if (std::abs(counts.prod() - num_cubes) < std::abs(best.prod() - num_cubes)) best = counts;
+  }
+  return best;
 }
 
 // Counts whose cells are nearest to cubes and whose number is nearest to `num_cells`.
@@ -130,7 +134,7 @@ ImplicitSurface make_implicit_shape(const Shape& shape) {
     case ShapeKind::cylinder:
       return make_cylinder(shape.size);
     case ShapeKind::box:
-      return make_box(shape.size);
+      return make_box(find_box_size(shape));
     case ShapeKind::dinosaur:
       return make_dinosaur(shape.size);
     case ShapeKind::figure:
@@ -150,7 +154,7 @@ TetMesh make_shape_mesh(const Shape& shape, int target_tets) {
   const double num_cubes = static_cast<double>(target_tets) / kTetsPerCube;
   TetMesh mesh;
   if (shape.kind == ShapeKind::box)
-    mesh = split_hexahedra(make_box_hexahedra(Vec3::Constant(shape.size), choose_box_counts(num_cubes)));
+    mesh = split_hexahedra(make_box_hexahedra(find_box_size(shape), choose_box_counts(shape, num_cubes)));
   else if (shape.kind == ShapeKind::cylinder)
     mesh = split_hexahedra(
         make_cylinder_hexahedra(0.25 * shape.size, shape.size, choose_cylinder_counts(num_cubes)));
@@ -170,8 +174,9 @@ TriangleMesh make_shape_skin(const Shape& shape, int min_triangles) {
   ARGIL_ASSERT(min_triangles <= 20'000'000, min_triangles);
   const double wanted = std::max(min_triangles, 100);
   if (shape.kind == ShapeKind::box) {
-    const int n = static_cast<int>(std::ceil(std::sqrt(wanted / 12.0)));
-    return extract_boundary(make_box_hexahedra(Vec3::Constant(shape.size), Eigen::Vector3i::Constant(n)));
+    const int n = static_cast<int>(std::ceil(std::sqrt(wanted / (4.0 + 8.0 * shape.slenderness))));
+    const int layers = static_cast<int>(std::ceil(shape.slenderness * n));
+    return extract_boundary(make_box_hexahedra(find_box_size(shape), {n, n, layers}));
   }
   if (shape.kind == ShapeKind::cylinder) {
     CylinderCounts counts;

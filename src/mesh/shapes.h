@@ -13,8 +13,9 @@ enum class ShapeKind { sphere, cylinder, box, dinosaur, figure };
 
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
-  double size = 0.1;  ///< [m] sphere: diameter; cylinder: height (diameter = half); box: edge; dinosaur:
-                      ///< length; figure: height
+  double size = 0.1;         ///< [m] sphere: diameter; cylinder: height (diameter = half); box: height;
+                             ///< dinosaur: length; figure: height
+  double slenderness = 1.0;  ///< box: height over the edge of its square base [–]
 };
 
 /// Signed distance-like function of a shape, z up, feet or bottom at z = 0, centred in x and y.

@@ -84,8 +84,11 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
                             "Body that argil makes itself.")
       .applies = only(BodyKind::shape);
   b.number("/body/shape/size_m", body.shape.size, positive(), "m",
-           "Diameter, height, edge or length of the shape.")
+           "Diameter of the sphere, length of the dinosaur, height of the others.")
       .applies = only(BodyKind::shape);
+  b.number("/body/shape/slenderness", body.shape.slenderness, between(0.1, 10), "",
+           "box: height over the edge of its square base.")
+      .applies = [&body] { return body.kind == BodyKind::shape && body.shape.kind == mesh::ShapeKind::box; };
   b.integer("/body/shape/target_tets", body.target_tets, between(100, 5e6),
             "Wanted number of tets, reached within 15 %.")
       .applies = only(BodyKind::shape);
@@ -426,6 +429,13 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
   b.number("/haptics/device/max_force_rate_N_per_s", l.max_force_rate, positive(), "N/s",
            "Fastest change of the force sent.");
   b.number("/haptics/device/ramp_s", l.ramp_s, not_negative(), "s", "Start-up ramp from zero.");
+  device::WatchdogLimits& w = l.watchdog;
+  b.number("/haptics/device/watchdog/max_sample_age_s", w.max_sample_age, positive(), "s",
+           "Live: age of the device's last sample at which the hand is let go.");
+  b.number("/haptics/device/watchdog/max_physics_age_s", w.max_physics_age, positive(), "s",
+           "Live: age of the surface that the hand feels at which it is let go.");
+  b.number("/haptics/device/watchdog/release_s", w.release_s, not_negative(), "s",
+           "In which the force falls to zero then, and comes back; 0: at once.");
   TraceSpec& t = s.trace;
   b.path("/trace/file", t.file, folder, "Recorded motion (CSV or HDF5).").required = true;
   b.choice<device::ToolMode>("/trace/default_mode", t.options.default_mode,
@@ -440,10 +450,11 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
             "CSV: names of the columns from the left, in place of a header row.");
   b.number("/trace/start_s", t.start, not_negative(), "s", "Where in the trace the run starts.");
   b.number("/trace/duration_s", t.duration, not_negative(), "s", "How long it runs; 0: to the trace's end.");
-  device::DeviceToWorld& w = t.options.device_to_world;
-  b.number("/trace/device_to_world/scale", w.scale, positive(), "", "World metres per device metre.");
-  b.quaternion("/trace/device_to_world/rotation_xyzw", w.rotation, "Unit quaternion, device to world.");
-  b.vector("/trace/device_to_world/translation_m", w.translation, "m",
+  device::DeviceToWorld& to_world = t.options.device_to_world;
+  b.number("/trace/device_to_world/scale", to_world.scale, positive(), "", "World metres per device metre.");
+  b.quaternion("/trace/device_to_world/rotation_xyzw", to_world.rotation,
+               "Unit quaternion, device to world.");
+  b.vector("/trace/device_to_world/translation_m", to_world.translation, "m",
            "World position of the device's origin.");
   bind_hand(b, s.hand);
   b.integer(

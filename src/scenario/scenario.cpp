@@ -364,7 +364,7 @@ std::string print_resolved(const Scenario& scenario) {
   return write_parameters(make_parameter_table(copy, scenario.file)).dump(2) + "\n";
 }
 
-std::string print_portable(const Scenario& scenario) {
+std::string print_portable(const Scenario& scenario, const std::vector<Setting>& unchecked) {
   Scenario copy = scenario;
   // Absolute both: the same text however the scenario was named.
   const std::filesystem::path folder =
@@ -379,6 +379,7 @@ std::string print_portable(const Scenario& scenario) {
     }
     object[Json::json_pointer(row.pointer)] = value;
   }
+  for (const Setting& setting : unchecked) apply_setting(object, setting, scenario.file);
   return object.dump(2) + "\n";
 }
 

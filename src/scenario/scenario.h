@@ -121,8 +121,8 @@ std::vector<InputFile> list_input_files(const Scenario& scenario);
 std::string print_resolved(const Scenario& scenario);
 
 /// The same with files relative to the scenario's folder: what a result keeps and hashes, so that two
-/// checkouts write the same bits.
-std::string print_portable(const Scenario& scenario);
+/// checkouts write the same bits. `unchecked` settings come on top, also such as no scenario may have.
+std::string print_portable(const Scenario& scenario, const std::vector<Setting>& unchecked = {});
 
 /// JSON Schema (2020-12) of a scenario.
 std::string print_schema();

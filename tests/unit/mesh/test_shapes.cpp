@@ -32,6 +32,21 @@ TEST(MakeShapeMesh, CountComesWithinFifteenPercentAndTetsAreSound) {
     }
 }
 
+TEST(MakeShapeMesh, APostIsABoxOfItsSlenderness) {
+  const Shape post = {ShapeKind::box, 0.1, 4.0};  // 25 mm × 25 mm × 100 mm
+  for (const int target : {300, 1200, 5000}) {
+    const TetMesh mesh = make_shape_mesh(post, target);
+    EXPECT_NEAR(mesh.num_tets(), target, 0.15 * target);
+    EXPECT_NEAR((mesh.vertices.rowwise().maxCoeff() - Vec3(0.0125, 0.0125, 0.1)).norm(), 0.0, 1e-15);
+    EXPECT_NEAR((mesh.vertices.rowwise().minCoeff() - Vec3(-0.0125, -0.0125, 0.0)).norm(), 0.0, 1e-15);
+    EXPECT_NEAR(compute_volumes(mesh.vertices, mesh.tets).sum(), 6.25e-5, 1e-17);
+  }
+  const TriangleMesh skin = make_shape_skin(post, 1000);
+  EXPECT_GE(skin.num_triangles(), 1000);
+  EXPECT_NEAR((skin.vertices.rowwise().maxCoeff() - Vec3(0.0125, 0.0125, 0.1)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR(make_implicit_shape(post).value(Vec3(0.0, 0.02, 0.05)), 0.0075, 1e-15);
+}
+
 TEST(MakeShapeMesh, BoxHasItsExactVolumeAndArea) {
   const TetMesh mesh = make_shape_mesh({ShapeKind::box, 0.2}, 3000);
   EXPECT_NEAR(compute_volumes(mesh.vertices, mesh.tets).sum(), 0.008, 1e-15);

@@ -1,0 +1,126 @@
+#include "study/stability_map.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "output/result_reader.h"
+#include "study/run.h"
+
+namespace argil::study {
+
+void StabilityMap::run() {
+  std::vector<std::pair<double, double>> grid;
+  for (const double y : m_study.y.values.empty() ? std::vector<double>{kUnknown} : m_study.y.values)
+    for (const double x : m_study.x.values) grid.emplace_back(x, y);
+  const std::vector<std::size_t> places = visit(grid);
+  const std::size_t width = m_study.x.values.size();
+  for (std::size_t i = 0; i + 1 < places.size(); ++i)
+    if ((i + 1) % width != 0 && turns(places[i], places[i + 1]))
+      m_boundaries.push_back({places[i], places[i + 1]});
+  while (m_study.bisect_to > 0.0 && bisect()) {
+  }
+}
+
+Settings StabilityMap::settings_at(double x, double y) const {
+  Settings settings = m_study.settings;
+  const auto put = [&](const scenario::MapAxis& axis, double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, axis.is_integer ? "%.0f" : "%.17g", value);
+    for (const std::string& pointer : axis.pointers) settings.push_back({pointer, digits});
+  };
+  put(m_study.x, x);
+  if (!m_study.y.values.empty()) put(m_study.y, y);
+  return settings;
+}
+
+/// With the truth of each where there is one.
+std::vector<Place> StabilityMap::run_places(const std::vector<std::pair<double, double>>& points,
+                                            const Settings& extra) const {
+  std::vector<Case> cases;
+  for (const auto& [x, y] : points) {
+    const Settings settings = join(settings_at(x, y), extra);
+    cases.push_back({m_study.scenario, settings});
+    if (!m_study.reference.empty()) cases.push_back({m_study.scenario, join(settings, m_study.reference)});
+  }
+  const std::vector<CaseResult> results = run_cases(cases, m_options);
+  const std::size_t stride = m_study.reference.empty() ? 1 : 2;
+  std::vector<Place> places;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Place& place = places.emplace_back();
+    place.x = points[i].first;
+    place.y = points[i].second;
+    place.result = results[stride * i];
+    if (stride == 2) place.truth = results[stride * i + 1];
+    judge(place);
+  }
+  return places;
+}
+
+Place StabilityMap::run_with(const Place& place, const Settings& extra) const {
+  return run_places({{place.x, place.y}}, extra).front();
+}
+
+/// Where they stand in the list.
+std::vector<std::size_t> StabilityMap::visit(const std::vector<std::pair<double, double>>& points) {
+  std::vector<std::size_t> list;
+  for (Place& place : run_places(points, {})) {
+    list.push_back(m_places.size());
+    m_places.push_back(std::move(place));
+  }
+  return list;
+}
+
+void StabilityMap::judge(Place& place) const {
+  if (place.result.exit_code == kDone) {
+    const output::ResultReader reader(place.result.file);
+    place.figures = compute_figures(reader);
+    if (!place.truth.file.empty() && place.truth.exit_code == kDone)
+      place.errors = compute_errors(reader, output::ResultReader(place.truth.file));
+  }
+  OutcomeBounds bounds;
+  bounds.wrong_above = m_study.wrong_above;
+  bounds.compares = !m_study.reference.empty();
+  place.outcome = classify(place.result, place.figures, place.errors, bounds);
+  if (place.outcome == Outcome::unknown)
+    place.result.reason = "reference: " + (place.truth.reason.empty() ? "no force" : place.truth.reason);
+}
+
+/// Is one accurate, wrong or unstable, and the other not? All ways to be unstable count as one.
+bool StabilityMap::turns(std::size_t a, std::size_t b) const {
+  if (!is_known(m_places[a].outcome) || !is_known(m_places[b].outcome)) return false;
+  const auto rank = [this](std::size_t i) {
+    const Outcome outcome = m_places[i].outcome;
+    return is_stable(outcome) ? static_cast<int>(outcome) : -1;
+  };
+  return rank(a) != rank(b);
+}
+
+/// Middle of a boundary; nothing when it is narrow enough.
+std::optional<double> StabilityMap::find_middle(const Boundary& boundary) const {
+  const double a = m_places[boundary.below].x;
+  const double b = m_places[boundary.above].x;
+  if (m_study.x.is_integer) return b - a > 1.5 ? std::optional(std::round(0.5 * (a + b))) : std::nullopt;
+  const double range = m_study.x.values.back() - m_study.x.values.front();
+  const bool is_narrow =
+      m_study.x.is_logarithmic ? b / a - 1.0 <= m_study.bisect_to : b - a <= m_study.bisect_to * range;
+  if (is_narrow) return {};
+  return m_study.x.is_logarithmic ? std::sqrt(a * b) : 0.5 * (a + b);
+}
+
+/// One round over all boundaries; false when all are found.
+bool StabilityMap::bisect() {
+  std::vector<std::pair<double, double>> middles;
+  std::vector<Boundary*> halved;
+  for (Boundary& boundary : m_boundaries)
+    if (const auto middle = find_middle(boundary)) {
+      middles.emplace_back(*middle, m_places[boundary.below].y);
+      halved.push_back(&boundary);
+    }
+  if (middles.empty()) return false;
+  const std::vector<std::size_t> places = visit(middles);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    (turns(halved[i]->below, places[i]) ? halved[i]->above : halved[i]->below) = places[i];
+  return true;
+}
+
+}  // namespace argil::study

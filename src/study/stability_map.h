@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "scenario/study_file.h"
+#include "study/cases.h"
+#include "study/measure.h"
+#include "study/outcome.h"
+#include "study/study_output.h"
+
+namespace argil::study {
+
+/// A place on a stability map and what happened there.
+struct Place {
+  double x = 0.0;
+  double y = kUnknown;
+  CaseResult result;
+  CaseResult truth;
+  Outcome outcome = Outcome::killed;
+  RunFigures figures;
+  RunErrors errors;
+};
+
+/// Two places of one row of the map between which the outcome turns.
+struct Boundary {
+  std::size_t below;  ///< in the list of places
+  std::size_t above;
+};
+
+/// The runs of a stability study: its grid, then bisection along x.
+class StabilityMap {
+ public:
+  /// Both are kept by reference.
+  StabilityMap(const scenario::StabilityStudy& study, const CaseOptions& options)
+      : m_study(study), m_options(options) {}
+
+  void run();
+  const std::vector<Place>& places() const { return m_places; }
+  const std::vector<Boundary>& boundaries() const { return m_boundaries; }
+  const scenario::StabilityStudy& study() const { return m_study; }
+  Settings settings_at(double x, double y) const;
+  /// A place anew, with other settings on top; not in the list.
+  Place run_with(const Place& place, const Settings& extra) const;
+
+ private:
+  std::vector<Place> run_places(const std::vector<std::pair<double, double>>& points,
+                                const Settings& extra) const;
+  std::vector<std::size_t> visit(const std::vector<std::pair<double, double>>& points);
+  void judge(Place& place) const;
+  bool turns(std::size_t a, std::size_t b) const;
+  std::optional<double> find_middle(const Boundary& boundary) const;
+  bool bisect();
+
+  const scenario::StabilityStudy& m_study;
+  const CaseOptions& m_options;
+  std::vector<Place> m_places;
+  std::vector<Boundary> m_boundaries;
+};
+
+}  // namespace argil::study
