@@ -113,6 +113,21 @@ def shared_files(shared):
         yield "queries", b"".join(file.read_bytes().splitlines(True)[:16])
 
 
+def hdf5_traces():
+    """Records of tests/fuzz/hdf5_input.h: a trace with everything in it, the motion of a result, and sizes past all bounds."""
+    def record(place, kind, layout, lengths, data):
+        return bytes([place, kind, layout, len(lengths), *lengths, len(data)]) + data
+
+    times = struct.pack("<3d", 0, 0.001, 0.002)
+    points = struct.pack("<9d", *(0.01 * i for i in range(9)))
+    turns = struct.pack("<4d", 0, 0, 0, 1)
+    yield record(0, 1, 0, [3], times) + record(1, 1, 1, [3, 3], points) + record(2, 1, 2, [3, 4], turns) + \
+        record(3, 4, 0, [3], bytes([0, 16, 32])) + record(8, 5, 0, [], b"mm") + record(10, 6, 0, [], b"hand") + \
+        record(11, 1, 0, [], struct.pack("<d", 2)) + record(12, 1, 0, [4], turns) + record(13, 1, 0, [3], times)
+    yield record(4, 1, 1, [3], times) + record(5, 1, 1, [3, 3], points) + record(6, 1, 0, [3, 4], turns)
+    yield record(0, 1, 1, [240], b"") + record(1, 1, 1, [240, 3], b"") + record(14, 1, 3, [], b"/")
+
+
 def own_files():
     for name, files in (("tets", tet_files()), ("surfaces", surface_files())):
         for ending, text in files:
@@ -121,6 +136,8 @@ def own_files():
         yield "scenarios", text
     for file in sorted(ROOT.glob("traces/*.csv")):
         yield "traces", head(file)
+    for records in hdf5_traces():
+        yield "hdf5", records
     yield "queries", b"0,1,1,2,-3,4\n" * 8
     yield "queries", b"1,3,1,2,5,7,1\n" * 16
     device = {"device_id": "049D", "config": {"type": "inverse3"}, "state": {"cursor_position": {"x": 0.1, "y": -2e-3, "z": 0}}}

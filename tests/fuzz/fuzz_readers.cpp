@@ -20,6 +20,7 @@
 #include "contact/queries.h"
 #include "device/haply_message.h"
 #include "device/trace.h"
+#include "hdf5_input.h"
 #include "mesh/readers.h"
 #include "scenario/scenario.h"
 #include "scenario/study_file.h"
@@ -67,6 +68,7 @@ const std::map<std::string, Reader, std::less<>>& readers() {
       {"surfaces",
        {{".obj", ".stl", ".ply"}, [](const std::string& file) { mesh::read_triangle_mesh(file); }}},
       {"traces", {{".csv"}, [](const std::string& file) { device::read_trace(file, {}); }}},
+      {"hdf5", {{".h5"}, [](const std::string& file) { device::read_trace(file, {}); }}},
       {"messages", {{".json"}, read_haply}},
       {"queries", {{".csv"}, [](const std::string& file) { contact::read_queries(file); }}},
       {"scenarios", {{".json"}, read_scenario}},
@@ -141,7 +143,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     file_of(".ele").put(input.substr(std::min(end + 1, input.size())));
     input = input.substr(0, end);
   }
-  file_of(ending).put(input);
+  if (ending == ".h5")
+    write_hdf5(input, file_of(ending).name());
+  else
+    file_of(ending).put(input);
   try {
     reader.read(file_of(ending).name());
   } catch (const InputError&) {
