@@ -107,7 +107,7 @@ struct ResultFile::Impl {
   Table haptic;
   Table physics;
   std::uint64_t num_frames = 0;
-  std::optional<Table> session, tick_timing, step_timing;
+  std::optional<Table> session = {}, tick_timing = {}, step_timing = {};
   bool is_broken = false;  // a write failed: what follows would have a hole
 
   // Runs a write; after one that failed nothing more is tried.

@@ -36,7 +36,9 @@ inline constexpr std::array kHaptic = {
     Column{"gate_events",
            uint8,
            1,
-           {"1", "what the output gate did, sum of 1 not finite, 2 clamped, 4 slew, 8 ramp"}},
+           {"1",
+            "what the output gate did, sum of 1 not finite, 2 clamped, 4 slew, 8 ramp, 16 watchdog, 32 no "
+            "sample yet"}},
     Column{"port_energy",
            real64,
            1,

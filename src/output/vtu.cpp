@@ -31,7 +31,6 @@ class Grid {
     close("Points");
     open("Cells");
     array("connectivity", "Int32", cells, 1);
-    const int corners = static_cast<int>(cells.rows());
     Eigen::RowVectorXi ends(cells.cols());
     for (Eigen::Index cell = 0; cell < cells.cols(); ++cell)
       ends(cell) = static_cast<int>(cells.rows() * (cell + 1));

@@ -102,7 +102,7 @@ double BodySide::clay_factor(Eigen::Index node, const ContactLoad& load, double 
 /// that swells is left alone: its water gives it energy, too, that no one books.
 StepStatus BodySide::check_energy(const ContactLoad& contacts) {
   if (m_params.energy_limit == 0.0 || m_params.water.swelling > 0.0) return StepStatus::ok();
-  constexpr double kSpeed = 1e-4;  // [m/s] of a body that counts as still: there is rounding below
+  constexpr double kSpeed = 1e-3;  // [m/s] of a body that counts as still: below is what a loose solve leaves
   const solid::SolidState& solid = m_state.solid;
   const Field& mass = m_solid.mass();
   m_state.energy_given += ordered_sum(solid.x.cols(), [&](std::ptrdiff_t n) {
