@@ -1,11 +1,13 @@
 #!/usr/bin/python3
 """What can be measured of the questions that the paper asked its users.
 
-Usage: paper_measures.py ARGIL --works DRY.h5 WET.h5 --delays HOLD.h5 … [-o STEM]   → STEM.json, STEM.png, STEM.pdf
+Usage: paper_measures.py ARGIL --works DRY.h5 WET.h5 --hands ON.h5 OFF.h5 --delays HOLD.h5 … [-o STEM]
+       → STEM.json, STEM.png, STEM.pdf
 
-Force on or off: the work that the hand does against the force; with the force off it is nothing. Delay: age of the force
-that the hand feels while it touches. Realism: strength of the clay against its water, beside measured clays, each over
-its strength at the liquid limit; the water's axis is the liquidity index, which the law takes for the saturation.
+Force on or off: what a hand that yields gives the clay with the force and without; and the work that a hand
+which is put along its trace does against it. Delay: age of the force that the hand feels while it touches. Realism:
+strength of the clay against its water, beside measured clays, each over its strength at the liquid limit; the
+water's axis is the liquidity index, which the law takes for the saturation.
 """
 import argparse
 import json
@@ -19,13 +21,16 @@ SCENARIO = Path(__file__).resolve().parent.parent / "scenarios/demo_dino_wet.jso
 PLASTIC_OVER_LIQUID_LIMIT = 0.5  # of water contents; Cochin clay's law is given in w/w_L, and needs it
 
 
-def work_of_hand(file):
-    """∫ −F·dx [J] over the pressing part: what the hand gives."""
+def touch(file):
+    """Of the pressing ticks: what the hand gave against the force that the device gave it, what the contact gave
+    the body [J], and how deep the body is dented at the end [m]."""
     with ap.open_result(file) as result:
-        steps = np.diff(result["haptic/tool_position"][:], axis=0)
-        force = result["haptic/force"][:]
-        mean = 0.5 * (force[1:] + force[:-1])
-        return float(-(np.einsum("ij,ij->i", mean, steps) * ap.is_deforming(result)[1:]).sum())
+        frames = ap.frames_of(result)
+        name = "skin_position" if "skin_position" in frames[0] else "position"
+        moved = np.linalg.norm(frames[-1][name][:] - frames[0][name][:], axis=1)
+        given = np.diff(result["haptic/port_energy"][:], prepend=0.0)  # by the device to the hand
+        return {"work_of_hand_J": float(-given[ap.is_deforming(result)].sum()),
+                "contact_work_J": float(result["physics/contact_work"][-1]), "dent_m": float(moved.max())}
 
 
 def delay(file):
@@ -37,12 +42,13 @@ def delay(file):
 
 
 def strength(argil, saturation):
-    """Undrained shear strength [Pa] = yield strain · 2G/√2, both as the scenario's clay has them at this water."""
+    """Undrained shear strength [Pa] = yield strain · 2G/√2, both as the scenario's clay has them when so wet."""
     show = subprocess.run([argil, "show", SCENARIO], capture_output=True, text=True, check=True).stdout
     scene = json.loads(show)
     material, porosity = scene["material"], scene["water"]["porosity"]
     medium = material["effective_medium"]
-    cases = [{"youngs_modulus_Pa": material["youngs_modulus_Pa"], "poissons_ratio": material["poissons_ratio"],
+    cases = [{"youngs_modulus_Pa": material["youngs_modulus_Pa"],
+              "poissons_ratio": material["poissons_ratio"],
               "fluid_bulk_modulus_Pa": 0.0, "fluid_shear_modulus_Pa": 0.0, "phi": porosity * float(s),
               "scheme": medium["scheme"], "aspect": medium["aspect"]} for s in saturation]
     answer = subprocess.run([argil, "probe", "effective_medium"], input=json.dumps({"cases": cases}),
@@ -76,11 +82,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("argil")
     parser.add_argument("--works", nargs=2, required=True, metavar=("DRY.h5", "WET.h5"))
+    parser.add_argument("--hands", nargs=2, required=True, metavar=("ON.h5", "OFF.h5"))
     parser.add_argument("--delays", nargs="+", required=True, metavar="RESULT.h5")
     parser.add_argument("-o", "--output", default="measures", metavar="STEM")
     options = parser.parse_args()
     figure, distances = draw_strength(options.argil)
-    figures = {"work_of_hand_J": {Path(file).stem: work_of_hand(file) for file in options.works},
+    figures = {"press": {Path(file).stem: touch(file) for file in options.works},
+               "yielding_hand": {name: touch(file) for name, file in zip(("on", "off"), options.hands)},
                "force_age": {Path(file).stem: delay(file) for file in options.delays},
                "rms_log10_distance_from_measured_clay": distances}
     Path(f"{options.output}.json").write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
