@@ -1,10 +1,14 @@
 #!/usr/bin/python3
-"""argil live with the simulated hand: a session replays to the same bits, however it ended.
+"""argil live with devices that are programs: a session replays to the same bits, however it ended.
 
 Usage: test_live.py ARGIL        the program
 """
 import json
 import math
+import os
+import pty
+import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -16,7 +20,7 @@ from pathlib import Path
 import h5py
 import numpy
 
-STAND_IN = Path(__file__).resolve().parents[2] / "support" / "haply_stand_in.py"
+SUPPORT = Path(__file__).resolve().parents[2] / "support"
 ARGIL = str(Path(sys.argv.pop(1)).resolve())
 
 
@@ -54,8 +58,9 @@ class Live(unittest.TestCase):
     def write_scene(self, name, haptics):
         (self.folder / name).write_text(json.dumps(make_scene(haptics)))
 
-    def call(self, *arguments):
-        return subprocess.run([ARGIL, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=300)
+    def call(self, *arguments, environment=None):
+        return subprocess.run([ARGIL, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=300,
+                              env={**os.environ, **(environment or {})})
 
     def start(self, *arguments):
         process = subprocess.Popen([ARGIL, "live", "scene.json", "--device", "simulated", "-o", "live.h5", *arguments],
@@ -152,12 +157,16 @@ class Live(unittest.TestCase):
         with h5py.File(self.folder / "live.h5") as file:
             self.assertGreater(file["timing/picture_delay_max"][0], 0)
 
+    def start_support(self, program, *arguments):
+        """What it prints first, without the word before it."""
+        process = subprocess.Popen([SUPPORT / program, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.communicate)
+        return process.stdout.readline().split()[1]
+
     def start_stand_in(self, mode):
         """A service on loopback whose hand circles over the ball's flank and touches it after a second."""
-        process = subprocess.Popen([STAND_IN, "--mode", mode, "--good", "1500"], stdin=subprocess.PIPE,
-                                   stdout=subprocess.PIPE, text=True)
-        self.addCleanup(process.communicate)
-        return ["--device", "haply:127.0.0.1:" + process.stdout.readline().split()[1],
+        port = self.start_support("haply_stand_in.py", "--mode", mode, "--good", "1500")
+        return ["--device", "haply:127.0.0.1:" + port,
                 "--set", "/trace/device_to_world/translation_m=[0.012, 0.12, -0.1075]"]
 
     def test_a_haply_service_is_felt_and_replays(self):
@@ -167,6 +176,51 @@ class Live(unittest.TestCase):
         self.assert_equal()
         with h5py.File(self.folder / "live.h5") as file:
             self.assertGreater(numpy.abs(file["haptic/device_force"]).max(), 0.01)
+
+    @unittest.skipUnless(shutil.which("spacenavd"), "spacenavd is not installed")
+    def test_a_controller_presses_and_replays(self):
+        # Its reach ends at y = 0.2 m: there the tool is 2 mm deep in the ball's flank, at y = -0.018 m.
+        socket = self.start_support("spacenav_stand_in.py", "--counts", "350", "--stroke", "1.2")
+        done = self.call("live", "scene.json", "-o", "live.h5", "--device", "spacenav", "--duration", "6",
+                         "--set", "/trace/device_to_world/translation_m=[0.001, -0.224, 0.02]",
+                         environment={"SPNAV_SOCKET": socket})
+        if "built without" in done.stderr or "unknown device" in done.stderr:
+            self.skipTest("built without libspnav")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.replay()
+        self.assert_equal()
+        with h5py.File(self.folder / "live.h5") as file:
+            self.assertLessEqual(file["haptic/tool_position"][:, 1].max(), -0.024 + 1e-12)
+            self.assertGreater(numpy.abs(file["haptic/force"][:, 1]).max(), 0.01)
+
+    def test_a_hand_of_4_kHz_replays(self):
+        self.write_scene("scene.json", {"period_s": 0.00025, "physics_period_ticks": 8, "water_period_ticks": 40,
+                                        "frame_period_ticks": 200})
+        done = self.call("live", "scene.json", "--device", "simulated", "-o", "live.h5", "--duration", "1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.replay()
+        self.assert_equal()
+        with h5py.File(self.folder / "live.h5") as file:
+            self.assertEqual(file["haptic/tick"].shape[0], 4000)
+
+    def test_a_terminal_sees_force_water_rate_and_lateness(self):
+        terminal, end = pty.openpty()
+        words = [ARGIL, "live", "scene.json", "--device", "simulated", "-o", "live.h5", "--duration", "2"]
+        process = subprocess.Popen(words, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=end)
+        os.close(end)
+        seen = b""
+        try:
+            while piece := os.read(terminal, 4096):
+                seen += piece
+        except OSError:  # the other end is closed
+            pass
+        os.close(terminal)
+        self.assertEqual(process.wait(), 0, seen)
+        lines = re.findall(r"(\d+\.\d) s +(\d+) ticks/s +force +(\d+\.\d+) N +S +(\d+\.\d) % +late +(\d+) us p99",
+                           seen.decode())
+        self.assertGreater(len(lines), 3, seen)
+        self.assertGreater(max(float(line[2]) for line in lines), 0.01)  # the hand is at its deepest after half a second
+        self.assertEqual({line[3] for line in lines}, {"0.0"})  # dry
 
     def test_a_service_that_vanishes_ends_it_with_a_complete_file(self):
         done = self.call("live", "scene.json", "-o", "live.h5", "--duration", "60", *self.start_stand_in("vanish"))
