@@ -83,12 +83,18 @@ void publish(const std::string& part, const std::string& name) {
     throw IoError(name, std::string("cannot be given its name: ") + std::strerror(errno));
 }
 
-/// Another run's leftovers are not resumed.
-void remove_foreign(const std::string& part, const std::string& id) {
+/// Another run's leftovers are not resumed, nor what the disk has damaged: the point is begun anew.
+void remove_unusable(const std::string& part, const std::string& id) {
   if (!fs::exists(part)) return;
   try {
-    if (output::ResultReader(part).find_provenance("run_id") == id) return;
-  } catch (const InputError&) {  // no result at all
+    const output::ResultReader reader(part);
+    if (reader.find_provenance("run_id") == id) {
+      if (reader.find_checkpoint()) compute_sweep_figures(reader);
+      return;
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "argil: note: what was there of the point does not read, it is begun anew: %s\n",
+                 error.what());
   }
   fs::remove(part);
 }
@@ -111,7 +117,7 @@ int run_point(const SweepPoint& point, const SweepRun& sweep) {
                      "was expanded from other inputs or by another build of argil",
                      "run argil sweep expand again");
   fs::create_directories(fs::path(name).parent_path());
-  remove_foreign(options.output, point.id);
+  remove_unusable(options.output, point.id);
   fs::remove(name + ".refused");
   try {
     const int code = run(options);

@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -149,6 +150,40 @@ class Sweep(unittest.TestCase):
         for index in (1, 2, 4):
             self.call("run", self.points, "--index", index)
         self.assertEqual(self.collect(), table)
+
+    def kill_after_a_checkpoint(self, part):
+        process = subprocess.Popen([ARGIL, "sweep", "run", self.points, "--index", "0"], cwd=self.folder)
+        for _ in range(6000):
+            time.sleep(0.01)
+            try:
+                with h5py.File(part, "r", locking=False) as file:
+                    if "checkpoint" in file:
+                        break
+            except OSError:
+                pass  # not there, or between two flushes
+        process.kill()
+        process.wait()
+        self.assertTrue(part.exists())
+
+    def test_what_is_there_of_a_point_is_gone_on_with_unless_it_is_damaged(self):
+        self.expand(list=[{"/output/checkpoint_period_ticks": 20}])
+        self.call("run", self.points, "--index", 0)
+        whole, part = self.folder / "points" / "000000.h5", self.folder / "points" / "000000.part.h5"
+        expected = self.collect()
+        for is_damaged in (False, True):
+            whole.unlink()
+            self.kill_after_a_checkpoint(part)
+            if is_damaged:
+                with h5py.File(part, "r") as file:
+                    place = file["haptic/force"].id.get_chunk_info(0).byte_offset
+                with open(part, "r+b") as file:
+                    file.seek(place)
+                    file.write(bytes(512))
+            done = subprocess.run([ARGIL, "sweep", "run", self.points, "--index", "0"], cwd=self.folder,
+                                  capture_output=True, text=True, timeout=300)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual("it is begun anew" in done.stderr, is_damaged, done.stderr)
+            self.assertEqual(self.collect(), expected)
 
     def test_points_are_the_same_by_any_name(self):
         self.expand_and_run()
