@@ -20,7 +20,8 @@ if not MISSING:
     import numpy as np
     import plot_force
     import plot_water
-    import render
+    import render_shots
+    import render_vtk
     import summarise
 
 PUSH, WET = 0, 2
@@ -134,23 +135,30 @@ class Figures(unittest.TestCase):
     def test_moments_name_the_frames(self):
         with h5py.File(self.file("wet.h5")) as result:
             moments = ("before", "wetting", "during", "after", "0.07")
-            times = [float(render.find_time(result, moment)) for moment in moments]
+            times = [float(render_shots.find_time(result, moment)) for moment in moments]
         for found, wanted in zip(times, (0.0, 0.0295, 0.12, 0.18, 0.07)):
             self.assertAlmostEqual(found, wanted)
 
     def test_values_at_vertices_are_means_of_the_tets_around(self):
         with h5py.File(self.file("wet.h5")) as result:
-            values = render.point_values(result, result["frames/000009"], "saturation", skinned=False)
+            values = render_shots.point_values(result, result["frames/000009"], "saturation", skinned=False)
         # Vertex 4 has the wet tet and one dry, vertex 0 and 7 all six, vertex 6 the wet and one dry, the others none.
         np.testing.assert_allclose(values, [0.15, 0, 0, 0, 0.45, 0, 0.45, 0.15])
 
     def test_rotations_follow_the_quaternion(self):
         half = np.sqrt(0.5)
-        np.testing.assert_allclose(render.rotation_matrix([half, 0, 0, half]) @ [0, 0, 1], [0, -1, 0], atol=1e-15)
+        np.testing.assert_allclose(render_shots.rotation_matrix([half, 0, 0, half]) @ [0, 0, 1], [0, -1, 0], atol=1e-15)
         # 120 degrees about the diagonal turn the axes into one another.
-        np.testing.assert_allclose(render.rotation_matrix([0.5, 0.5, 0.5, 0.5]) @ [1, 2, 3], [3, 1, 2], atol=1e-15)
-        np.testing.assert_allclose(render.rotation_matrix([0, 0, half, half]) @ [1, 2, 3], [-2, 1, 3], atol=1e-15)
-        np.testing.assert_allclose(render.rotation_matrix([0, half, 0, half]) @ [1, 2, 3], [3, 2, -1], atol=1e-15)
+        np.testing.assert_allclose(render_shots.rotation_matrix([0.5, 0.5, 0.5, 0.5]) @ [1, 2, 3], [3, 1, 2], atol=1e-15)
+        np.testing.assert_allclose(render_shots.rotation_matrix([0, 0, half, half]) @ [1, 2, 3], [-2, 1, 3], atol=1e-15)
+        np.testing.assert_allclose(render_shots.rotation_matrix([0, half, 0, half]) @ [1, 2, 3], [3, 2, -1], atol=1e-15)
+
+    def test_the_eye_is_on_the_touched_side_however_far_the_tool_goes(self):
+        body = 0.1 * np.array([[-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]])
+        for side in (1.0, -1.0):
+            touched, gone = np.array([[0.1 * side, 0.0, 0.1]]), np.array([[0.5 * side, 0.0, 0.1]])
+            camera = render_vtk.Camera(np.concatenate([body, touched, gone]), body, touched[0], 1.0)
+            self.assertGreater(side * camera.direction[0], 0.5)
 
     def test_figures_are_written_and_equal_when_drawn_again(self):
         for script, files in (("plot_force.py", ["dry.h5", "wet.h5"]), ("plot_water.py", ["wet.h5"])):
@@ -183,6 +191,24 @@ class Figures(unittest.TestCase):
         self.assertEqual(share_of_blue("dry.png"), 0)
         self.assertGreater(share_of_blue("wet.png"), 1e-3)
         self.expect_refusal("moment 'soon'", "render.py", "dry.h5", "--frames", "soon")
+
+    @unittest.skipUnless(importlib.util.find_spec("vtk") and shutil.which("Xvfb") and shutil.which("ffprobe"),
+                         "needs python3-vtk9, xvfb and ffmpeg")
+    def test_a_movie_has_a_picture_a_frame_in_the_time_of_the_run(self):
+        self.assertEqual(self.draw("render.py", "wet.h5", "--movie", "wet.mp4").returncode, 0)
+        say = ["ffprobe", "-v", "error", "-show_entries", "stream=codec_name,nb_frames,duration", "-of", "csv=p=0",
+               self.file("wet.mp4")]
+        codec, seconds, frames = subprocess.run(say, capture_output=True, text=True, check=True).stdout.split(",")
+        self.assertEqual((codec, int(frames)), ("h264", 10))
+        self.assertAlmostEqual(float(seconds), 10 * 0.02, delta=1e-3)  # ten frames, 20 ms apart
+
+    @unittest.skipUnless(importlib.util.find_spec("vtk"), "needs python3-vtk9")
+    def test_a_movie_without_ffmpeg_is_refused_with_the_remedy(self):
+        run = subprocess.run([SCRIPTS / "render.py", "wet.h5", "--movie", "wet.mp4"], capture_output=True, text=True,
+                             cwd=self.folder, env={"PATH": str(self.folder)})
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("there is no ffmpeg (package ffmpeg); a .gif needs none", run.stderr)
+        self.assertFalse(Path(self.file("wet.mp4")).exists())
 
 
 if __name__ == "__main__":

@@ -1,0 +1,122 @@
+"""What is drawn of a result: the chosen moments, their surfaces and the field that colours them."""
+from typing import NamedTuple
+
+import argil_plot as ap
+from argil_plot import np
+from matplotlib.colors import LinearSegmentedColormap
+
+MOMENTS = ("before", "wetting", "drying", "push", "pull", "during", "after")
+MODES_OF = {"wetting": ("wet",), "drying": ("dry",), "push": ("push",), "pull": ("pull",),
+            "during": ("push", "pull")}
+CLAY = (0.80, 0.56, 0.43)
+
+
+class Field(NamedTuple):
+    """How a quantity is named and coloured."""
+
+    title: str
+    colours: LinearSegmentedColormap
+    scale: float = 1.0  # from SI to the title's unit
+    top: float = None  # of the colour bar; the largest value of all panels when None
+    on_cage_only: bool = False
+    on_skin_only: bool = False
+
+
+# From dry clay to deep water: lightness falls all the way, so the order survives a grey print.
+WET = LinearSegmentedColormap.from_list("wet", (CLAY, (0.52, 0.56, 0.62), (0.13, 0.40, 0.66),
+                                                (0.04, 0.15, 0.40)))
+STRAINED = LinearSegmentedColormap.from_list("strained", (CLAY, (0.72, 0.33, 0.36), (0.40, 0.12, 0.40),
+                                                          (0.13, 0.04, 0.24)))
+
+FIELDS = {
+    "saturation": Field("saturation S [–]", WET, top=1.0),
+    "displacement": Field("displacement [mm]", STRAINED, scale=1e3),
+    "influence": Field("region of influence [–]", STRAINED, top=1.0, on_skin_only=True),
+    "plastic_strain": Field("plastic strain ‖ε_p‖ [–]", STRAINED, on_cage_only=True),
+}
+
+
+class Shot:
+    """One moment of a run: surface, field, tool (None where there is none) and force. SI units."""
+
+    def __init__(self, result, frame, field):
+        self.time = float(frame.attrs["time"])
+        mesh, haptic = result["mesh"], result["haptic"]
+        skinned = len(mesh["skin_triangles"]) > 0 and not FIELDS[field].on_cage_only
+        if FIELDS[field].on_skin_only and not skinned:
+            ap.refuse(f"{result.filename}: has no skin, so there is no field '{field}'")
+        self.points = frame["skin_position" if skinned else "position"][:]
+        self.triangles = mesh["skin_triangles" if skinned else "surface_triangles"][:]
+        self.cage, self.cage_triangles = frame["position"][:], mesh["surface_triangles"][:]
+        self.values = FIELDS[field].scale * point_values(result, frame, field, skinned)
+        self.force, self.tool_points = np.zeros(3), None
+        self.tool_triangles = mesh["tool_triangles"][:]
+        if len(haptic["time"]) > 0 and len(self.tool_triangles) > 0:
+            sample = min(np.searchsorted(haptic["time"][:], self.time - 1e-9), len(haptic["time"]) - 1)
+            self.tool_position = haptic["tool_position"][sample]
+            turned = mesh["tool_vertices"][:] @ rotation_matrix(haptic["tool_orientation"][sample]).T
+            self.tool_points = turned + self.tool_position
+            self.force = haptic["force"][sample]
+
+
+def rotation_matrix(quaternion):
+    """Of a unit quaternion x, y, z, w."""
+    x, y, z, w = quaternion
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+
+
+def point_values(result, frame, field, skinned):
+    """The field at the vertices that are drawn. What is held per tet is averaged around each vertex."""
+    if field == "displacement":
+        name = "skin_position" if skinned else "position"
+        return np.linalg.norm(frame[name][:] - ap.frames_of(result)[0][name][:], axis=1)
+    if skinned:
+        return frame["skin_influence" if field == "influence" else "skin_saturation"][:]
+    per_tet = frame["plastic_strain_norm" if field == "plastic_strain" else "saturation"][:]
+    tets = result["mesh/tets"][:]
+    num_points = len(frame["position"])
+    total = np.bincount(tets.ravel(), weights=np.repeat(per_tet, 4), minlength=num_points)
+    return total / np.maximum(np.bincount(tets.ravel(), minlength=num_points), 1)
+
+
+def contact_force(result, moment):
+    """Size of the force [N] at each haptic tick in a mode of that moment, 0 at the others."""
+    modes = [ap.MODES.index(mode) for mode in MODES_OF[moment]]
+    return ap.force_norm(result) * np.isin(result["haptic/mode"][:], modes)
+
+
+def find_time(result, moment):
+    """Time [s] of a moment's name, or of a number of seconds."""
+    if moment in ("before", "after"):
+        return ap.frames_of(result)[0 if moment == "before" else -1].attrs["time"]
+    if moment in MODES_OF:
+        force = contact_force(result, moment)
+        if not np.max(force, initial=0.0) > 0.0:
+            ap.refuse(f"{result.filename}: no such contact, so there is no moment '{moment}'")
+        time = result["haptic/time"][:]
+        return np.median(time[force > 0.0]) if moment in ("wetting", "drying") else time[np.argmax(force)]
+    try:
+        return float(moment)
+    except ValueError:
+        ap.refuse(f"moment '{moment}': use {', '.join(MOMENTS)} or seconds")
+
+
+def default_moments(file):
+    with ap.open_result(file) as result:
+        touched = np.max(contact_force(result, "during"), initial=0.0) > 0.0
+    return ["before", "during", "after"] if touched else ["before", "after"]
+
+
+def read_all_shots(file, field):
+    with ap.open_result(file) as result:
+        return [Shot(result, frame, field) for frame in ap.frames_of(result)]
+
+
+def read_shots(file, moments, field):
+    with ap.open_result(file) as result:
+        frames = ap.frames_of(result)
+        times = np.array([frame.attrs["time"] for frame in frames])
+        nearest = [frames[np.argmin(np.abs(times - find_time(result, moment)))] for moment in moments]
+        return [Shot(result, frame, field) for frame in nearest]
