@@ -111,13 +111,16 @@ def read_others(table, devices):
     return rows
 
 
-def write_readme(file, rows, seconds):
+def write_readme(file, rows, options):
     us, ms = 1e6, 1e3
     lines = [
         "# How well a live session keeps its times", "",
-        f"The dinosaur of `demo_dino_dry`, {seconds:g} s a session, hand at 1 kHz, `re_evaluate`; {os.cpu_count()} processors,"
-        f" {platform.machine()}, Linux {platform.release()}. Each session is replayed in one thread; \"equal\": `argil compare` finds no"
-        " difference, forces and hashes included. `scripts/live_table.py` writes this.", "",
+        f"The dinosaur of `demo_dino_dry`, {options.seconds:g} s a session, hand at 1 kHz, `re_evaluate`; {os.cpu_count()} processors,",
+        f"{platform.machine()}, Linux {platform.release()}. Each session is replayed in one thread; \"equal\": `argil compare` finds",
+        f"no difference, forces and hashes included. `scripts/live_table.py` writes this. {options.note}".rstrip(), "",
+        "\"Woken late\": by the system, after the time that the hand asked for. A tick is missed when that is more than a period.",
+        "\"Late steps\": those for which the body was not ready when the hand had the next load for it; the hand went on against the",
+        "last surface, whose age is in the column before.", "",
         "| device | physics | woken late, p50 / p99 / p99.9 / max [µs] | a tick's work, p50 / p99 / max [µs] |"
         " a step's work, p50 / p99 / max [ms] | age of the surface, p50 / p99 / max [ticks] | missed ticks | late steps | replay |",
         "|---|---|---|---|---|---|---|---|---|"]
@@ -137,6 +140,7 @@ def main():
     parser.add_argument("--build", type=Path, default=ROOT / "build")
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--devices", nargs="+", default=["simulated", *STAND_INS])
+    parser.add_argument("--note", default="", help="a sentence about the machine for the page")
     parser.add_argument("--output", type=Path, default=ROOT / "results" / "live")
     options = parser.parse_args()
     table = options.output / "live.csv"
@@ -151,7 +155,7 @@ def main():
         writer = csv.DictWriter(file, rows[0].keys())
         writer.writeheader()
         writer.writerows(rows)
-    write_readme(options.output / "README.md", rows, options.seconds)
+    write_readme(options.output / "README.md", rows, options)
 
 
 if __name__ == "__main__":
