@@ -1,7 +1,7 @@
 """What the figures of argil share: how a result file is read, the style, and how a figure is saved.
 
-Colours are those of Okabe and Ito, which people with any kind of colour blindness tell apart; lines also differ in
-their dashes, so that a figure survives a grey print.
+Colours are those of Okabe and Ito, which people with any kind of colour blindness tell apart; from the third on
+lines also differ in their dashes, for a grey print.
 """
 import sys
 from pathlib import Path

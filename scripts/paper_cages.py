@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Cage and skin: what the embedding errs by, and how the pressed skin depends on the cage's resolution.
 
-Usage: paper_cages.py COARSE.h5 … FINE.h5 [-o STEM]. Runs of one scenario with other target_tets, of one or more bodies
-(the skin says which belong together); the finest of each is the measure. Writes STEM.csv, STEM.png, STEM.pdf.
+Usage: paper_cages.py COARSE.h5 … FINE.h5 [-o STEM]. Runs of one scenario with other target_tets, of one or more
+bodies (files are named cage_BODY_TETS.h5); the finest of each is the measure. Writes STEM.csv, STEM.png, STEM.pdf.
 """
 import argparse
 import csv
@@ -28,8 +28,8 @@ def find_weights(points, tets, skin):
 
 
 def measure(file):
-    """Figures of one run. Embedding error: distance of a skin vertex from Σ wᵢ xᵢ with the weights of the first frame,
-    the largest over all frames [m]."""
+    """Figures of one run. Embedding error: distance of a skin vertex from Σ wᵢ xᵢ with the weights of the first
+    frame, the largest over all frames [m]."""
     with ap.open_result(file) as result:
         frames = ap.frames_of(result)
         tets = result["mesh/tets"][:]
@@ -38,17 +38,20 @@ def measure(file):
         error = max(np.linalg.norm(np.einsum("vi,vij->vj", weights, frame["position"][:][tets[tet]])
                                    - frame["skin_position"][:], axis=1).max() for frame in frames)
         return {"body": Path(file).stem.split("_")[1], "tets": len(tets), "skin_vertices": len(first),
-                "lowest_weight": weights.min(), "embedding_error_m": error, "peak_N": ap.force_norm(result).max(),
-                "displacement": frames[-1]["skin_position"][:] - first}
+                "lowest_weight": weights.min(), "embedding_error_m": error,
+                "peak_N": ap.force_norm(result).max(), "displacement": frames[-1]["skin_position"][:] - first}
 
 
 def draw(rows):
     figure, (left, right) = plt.subplots(1, 2, figsize=(160 * ap.MILLIMETRES, 65 * ap.MILLIMETRES))
     for number, body in enumerate(sorted({row["body"] for row in rows})):
         mine = [row for row in rows if row["body"] == body]
-        style = {"color": ap.COLOURS[number], "linestyle": ap.DASHES[number], "marker": "o", "markersize": 3}
-        left.loglog([r["tets"] for r in mine[:-1]], [1e3 * r["skin_difference_m"] for r in mine[:-1]], label=body, **style)
+        style = {"color": ap.COLOURS[number], "linestyle": ap.DASHES[number],
+                 "marker": "os"[number % 2], "markersize": 3}
+        left.loglog([r["tets"] for r in mine[:-1]], [1e3 * r["skin_difference_m"] for r in mine[:-1]], label=body,
+                    **style)
         right.semilogx([r["tets"] for r in mine], [r["peak_N"] for r in mine], label=body, **style)
+    left.set_yticks([0.02, 0.05, 0.1, 0.2, 0.5], ["0.02", "0.05", "0.1", "0.2", "0.5"])
     left.set_ylabel("final skin: rms distance\nfrom the finest [mm]")
     right.set_ylabel("peak force [N]")
     right.set_ylim(bottom=0.0)
@@ -77,7 +80,8 @@ def main():
     with open(f"{options.output}.csv", "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(names)
-        table.writerows([f"{row[n]:.4g}" if isinstance(row[n], float) else row[n] for n in names] for row in rows)
+        table.writerows([f"{row[name]:.4g}" if isinstance(row[name], float) else row[name] for name in names]
+                        for row in rows)
     print(f"{options.output}.csv")
     ap.save(draw(rows), options.output)
 

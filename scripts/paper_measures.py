@@ -74,7 +74,7 @@ def draw_strength(argil):
         distances[name] = float(np.sqrt(np.mean(np.log10(ours / ours[-1] / values) ** 2)))
     axes.set_xlabel("water: liquidity index, for argil saturation [–]")
     axes.set_ylabel("strength over that at the liquid limit [–]")
-    axes.legend()
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return figure, distances
 
 

@@ -158,8 +158,9 @@ def rates():
     first = (PAPER / "rates.csv").read_text(encoding="utf-8").splitlines()[0]
     return (prose(f"""The paper: i7-4770K and a GTX Titan, sizes of the meshes not given; sphere and
                 cylinder share its row. Here: one thread, no graphics card, everything in the tick
-                (contact, water, solid, records): {first.lstrip("# ")}. `scripts/reproduce rates page`
-                measures them again.""") + table(head, rows))
+                (contact, water, solid, records): {first.lstrip("# ")} (1 or more: other programs
+                shared it, and the rates are too low). `scripts/reproduce rates page` measures them again.""")
+            + table(head, rows))
 
 
 def measures():

@@ -8,6 +8,7 @@ unless said otherwise.
 import argparse
 import csv
 import json
+import os
 import platform
 import subprocess
 import tempfile
@@ -80,7 +81,8 @@ def main():
     machine = next((line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines()
                     if line.startswith("model name")), platform.machine())
     with open(options.output, "w", newline="", encoding="utf-8") as file, tempfile.TemporaryDirectory() as folder:
-        file.write(f"# {machine}, one thread; ticks in a second, best of {options.repeats}\n")
+        file.write(f"# {machine}, one thread; ticks in a second, best of {options.repeats}; "
+                   f"load before it {os.getloadavg()[0]:.1f}\n")
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["body", "tets", *(f"{mode}_Hz" for mode in DEPTH), "nodes_solved_in_push"])
         for body in BODIES:

@@ -1,9 +1,12 @@
 #!/usr/bin/python3
-"""Types every command of the documentation in a temporary folder, as a newcomer does who reads from top to bottom.
+"""Types every command of the documentation, as a newcomer does who reads from top to bottom.
 
-Usage: test_docs.py BUILD. Blocks of ```sh in the pages below run in order under `bash -euo pipefail`. Only commands that
-build or run for many minutes are left out, by name. The commands see the project through links; what they write stays in
-the folder. Exit code 77 (skipped) where a figure cannot be drawn because matplotlib or VTK is missing.
+Usage: test_docs.py BUILD. Every block of ```sh in every page runs in order under `bash -euo pipefail`, a page in a
+temporary folder of its own, which sees the project through links; what the commands write stays in it. A command that
+takes many minutes is typed in a shorter form, and every such form stands in SHORTENED. A command within the running
+text is held against the program's own help: the program is there and has the options that are named; those of INLINE
+are typed besides, or by the other test that stands there. Exit code 77 (skipped) where a figure cannot be drawn because
+matplotlib or VTK is missing.
 """
 import os
 import re
@@ -13,18 +16,112 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
-PAGES = ("README.md",)
-LONG = ("scripts/run", "scripts/test")  # have tests of their own: the demonstration's figures, this very suite
-LINKED = ("scenarios", "scripts", "src", "traces", "viewer", "examples")
+LINKED = ("scenarios", "scripts", "src", "traces", "viewer", "examples", "tests", "README.md",
+          "CMakePresets.json")
+SHORTENED = {  # as written → as typed
+    "scripts/run": "scripts/run tests/golden/ball.json",  # the least of the scenes, not the demonstration's four runs
+    "scripts/test": "scripts/test -N",  # builds, and names every test without running it: this is one of them
+}
+INLINE = {  # outside of blocks, as written → as typed, or the test that types it
+    "ctest --test-dir build -L quick": "ctest --test-dir build -L quick -N",
+    "cmake --preset release": "cmake --list-presets | grep --quiet release",
+    "scripts/build argil viewer": "scripts/build argil viewer",
+    "scripts/reproduce": "scripts/reproduce limits",  # of its items the one that runs no scene
+    "argil --version": "build/bin/argil --version",
+    "cmake --install build": ("install.find_package",),
+    "man argil": ("install.find_package",),
+    "cpack --config build/CPackConfig.cmake": ("install.package",),
+    "npm install --omit-lockfile-registry-resolved": None,  # changes the lock of the viewer's packages: by hand
+}
+COMMAND = re.compile(r"`((?:scripts/|build/bin/argil |argil |cmake |cpack |ctest |npm |man )[^`]+)`")
 
 
-def blocks_of(page):
+def find_pages():
+    listed = subprocess.run(["git", "-C", ROOT, "ls-files", "*.md"], capture_output=True, text=True)
+    if listed.returncode == 0:
+        return [Path(name) for name in listed.stdout.split()]
+    return [page.relative_to(ROOT) for folder in (".", "src", "results", "viewer", "tests")
+            for page in sorted((ROOT / folder).glob("*.md" if folder == "." else "**/*.md"))]
+
+
+def split_page(page):
+    """Blocks of commands, and the commands within the text between all blocks."""
     text = (ROOT / page).read_text(encoding="utf-8")
-    return re.findall(r"^```sh\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
+    blocks = re.findall(r"^```sh\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
+    rest = re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE)
+    return blocks, COMMAND.findall(" ".join(rest.split()))
 
 
-def without_long_commands(block):
-    return "".join(line for line in block.splitlines(keepends=True) if line.split("#")[0].strip() not in LONG)
+def shortened(block):
+    """A line that is one of the long commands, with or without a word about it, in its shorter form."""
+    lines = block.splitlines(keepends=True)
+    return "".join(SHORTENED.get(line.split("#")[0].strip(), line.rstrip("\n")) + "\n" for line in lines)
+
+
+class Newcomer:
+    def __init__(self, build):
+        self.build = build
+        self.has_viewer = Path(build, "share/argil/viewer.html").exists()
+        self.helps = {}
+        self.failures = []
+        tests = subprocess.run(["ctest", "--test-dir", build, "-N"], capture_output=True, text=True, check=True)
+        self.tests = set(re.findall(r"Test +#\d+: (\S+)", tests.stdout))
+
+    def type(self, page, text, folder):
+        """Runs commands in the folder; a word about what went wrong, if anything did."""
+        if not self.has_viewer:  # built without npm: the page cannot be made, the series can
+            text = re.sub(r"--html \S+ ", "", text)
+        done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=folder, capture_output=True, text=True)
+        if done.returncode != 0:
+            self.failures.append(f"{page}: exit code {done.returncode} of\n{text}\n{done.stdout}\n{done.stderr}")
+
+    def help_of(self, program):
+        """What a program says of its options; a shell script says it in itself."""
+        if program not in self.helps:
+            words = program.split()
+            if words[0] == "argil":
+                words[0] = Path(self.build, "bin/argil")
+            elif not words[0].endswith(".py"):
+                file = ROOT / words[0]
+                self.helps[program] = file.read_text(encoding="utf-8") if file.is_file() else None
+                return self.helps[program]
+            done = subprocess.run([*words, "--help"], cwd=ROOT, capture_output=True, text=True)
+            self.helps[program] = done.stdout if done.returncode == 0 else None
+        return self.helps[program]
+
+    def look_up(self, page, command):
+        """Is there such a program, with such options?"""
+        words = re.sub(r"^build/bin/", "", command).split()
+        program = words[0]
+        if program == "argil":
+            below = [word for word in words[1:3] if re.fullmatch("[a-z]+", word)]
+            program = " ".join(["argil", *(below if words[1:2] == ["sweep"] else below[:1])])
+        text = self.help_of(program)
+        if text is None:
+            self.failures.append(f"{page}: `{command}`: there is no {program}")
+            return
+        for option in (word for word in words[1:] if re.match("--?[a-zA-Z]", word)):
+            if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", text):
+                self.failures.append(f"{page}: `{command}`: {program} has no {option}")
+
+    def read(self, page):
+        """Everything that is said on one page; how many blocks and commands there were."""
+        blocks, commands = split_page(page)
+        with tempfile.TemporaryDirectory(prefix="argil_docs_") as folder:
+            for name in LINKED:
+                os.symlink(ROOT / name, Path(folder, name))
+            os.symlink(self.build, Path(folder, "build"))
+            for block in blocks:
+                self.type(page, shortened(block), folder)
+            for command in dict.fromkeys(commands):
+                way = INLINE.get(command, ())
+                if isinstance(way, str):
+                    self.type(page, way, folder)
+                elif way:
+                    self.failures += [f"{page}: `{command}`: no test {name}" for name in way if name not in self.tests]
+                elif way is not None:
+                    self.look_up(page, command)
+        return len(blocks), len(commands)
 
 
 def main(build):
@@ -34,24 +131,13 @@ def main(build):
     except ImportError as missing:
         print(f"skipped: {missing}")
         return 77
-    viewer = Path(build, "share/argil/viewer.html").exists()
-    with tempfile.TemporaryDirectory(prefix="argil_docs_") as folder:
-        for name in LINKED:
-            os.symlink(ROOT / name, Path(folder, name))
-        os.symlink(build, Path(folder, "build"))
-        count = 0
-        for page in PAGES:
-            for block in blocks_of(page):
-                text = without_long_commands(block)
-                if not viewer:  # built without npm: the page cannot be made, the series can
-                    text = re.sub(r"--html \S+ ", "", text)
-                done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=folder, capture_output=True, text=True)
-                if done.returncode != 0:
-                    print(f"{page}: exit code {done.returncode} of\n{text}\n{done.stdout}\n{done.stderr}")
-                    return 1
-                count += 1
-        print(f"{count} blocks of {', '.join(PAGES)} were typed")
-        return 0 if count > 4 else 1
+    newcomer = Newcomer(build)
+    pages = find_pages()
+    counts = [newcomer.read(page) for page in pages]
+    blocks, commands = (sum(count) for count in zip(*counts))
+    print("\n".join(newcomer.failures))
+    print(f"{len(pages)} pages: {blocks} blocks were typed, {commands} commands in the text held against their help")
+    return 1 if newcomer.failures or blocks < 7 or commands < 50 else 0
 
 
 if __name__ == "__main__":
