@@ -175,15 +175,15 @@ TEST_P(EveryWay, AlsoWhereThePhysicsIsSlow) {
 TEST_P(EveryWay, AndWhereItStalls) {
   const sim::Params params = make_params(GetParam());
   SessionOptions options;
-  options.num_ticks = 700;
+  options.num_ticks = 2000;
   CountedHand hand = make_hand(1.4);
   options.before_step = [&hand, has_stalled = false](Tick) mutable {
     if (has_stalled || hand.polls() < 120) return;
     has_stalled = true;
-    hand.wait_for_ticks(400, 700);
+    hand.wait_for_ticks(400, 2000);
   };
   const Recorded recorded = record(params, options, hand);
-  ASSERT_EQ(recorded.ticks.size(), 700U);
+  ASSERT_EQ(recorded.ticks.size(), 2000U);
   Tick met = 0, longest = 0, since = 0;  // ticks that met the same surface in a row
   int let_go = 0, forceless = 0;
   bool is_taken_again = false;
