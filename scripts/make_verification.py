@@ -12,6 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import argil_plot
 from argil_plot import COLOURS, GREY, MILLIMETRES, plt
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -60,9 +61,7 @@ def make_figure(columns, height=72):
 
 
 def save(figure, name):
-    figure.savefig(FOLDER / f"{name}.png")
-    plt.close(figure)
-    print(FOLDER / f"{name}.png")
+    argil_plot.save(figure, FOLDER / name)
 
 
 def draw_manufactured():
@@ -75,7 +74,7 @@ def draw_manufactured():
             draw_slope(axes, *slope)
         axes.set_xticks([1 / 2, 1 / 4, 1 / 8, 1 / 16], ["1/2", "1/4", "1/8", "1/16"])
         axes.minorticks_off()
-        axes.set(xlabel="cell of the unit cube", ylabel="relative error", title=title)
+        axes.set(xlabel="cell of the unit cube [–]", ylabel="relative error [–]", title=title)
     panels[0].legend()
     save(figure, "manufactured")
 
@@ -97,8 +96,8 @@ def draw_beams():
         ticks = sorted({int(r["cells"]) for r in read(name)})
         axes.set_xticks(ticks, [str(t) for t in ticks])
         axes.minorticks_off()
-        axes.set(xlabel="cells across", title=title)
-    panels[0].set_ylabel("over the reference")
+        axes.set(xlabel="cells across [–]", title=title)
+    panels[0].set_ylabel("over the reference [–]")
     panels[2].legend(*panels[4].get_legend_handles_labels(), loc=(0.02, 0.66), fontsize=7)
     save(figure, "beams")
 
@@ -113,7 +112,7 @@ def draw_locking():
                       label=element if model == "linear" else f"{element}, {model}", **STYLE[element])
     axes.axhline(1.0, color=GREY, linewidth=0.8)
     axes.invert_xaxis()
-    axes.set(xlabel="½ − ν", ylabel="tip deflection over the fine one", ylim=(0, 1.08),
+    axes.set(xlabel="½ − ν [–]", ylabel="tip deflection over the fine one [–]", ylim=(0, 1.08),
              title="bar 5 : 1; p1 four cells across, p2 two")
     axes.legend(loc="lower left")
     save(figure, "locking")
@@ -126,14 +125,14 @@ def draw_time():
                          **STYLE[integrator])
     draw_slope(panels[0], 1e-3, 1.5e-2, 1)
     draw_slope(panels[0], 1e-3, 1.5e-3, 2)
-    panels[0].set(xlabel="step [s]", ylabel="relative error", title="thrown bar")
+    panels[0].set(xlabel="step [s]", ylabel="relative error [–]", title="thrown bar")
     for axes, drift in zip(panels[1:], ("energy_drift", "momentum_drift")):
         for (integrator, iteration), rows in groups(
                 [{**r, "who": (r["integrator"], r["iteration"])} for r in read("spin")], "who"):
             axes.loglog([1.0 / r["steps_a_turn"] for r in rows], [max(r[drift], 1e-16) for r in rows],
                         linestyle="-" if iteration == "newton" else "--", **STYLE[integrator])
-        axes.set(xlabel="step over turn", title={"energy_drift": "free turn: energy change",
-                                                 "momentum_drift": "its angular momentum"}[drift])
+        axes.set(xlabel="step over turn [–]", title={"energy_drift": "free turn: energy change [–]",
+                                                     "momentum_drift": "its angular momentum [–]"}[drift])
     panels[1].plot([], [], color=GREY, label="Newton")
     panels[1].plot([], [], color=GREY, linestyle="--", label="one step")
     panels[1].legend()

@@ -11,9 +11,12 @@ from pathlib import Path
 import argil_plot as ap
 from argil_plot import COLOURS, DASHES, GREY, MILLIMETRES, plt
 
-LABELS = {"force_error": "error of the hand force, relative L²", "peak_force_error": "error of the largest hand force",
-          "displacement_error": "error of the displacement, relative L²", "dissipation_error": "error of the dissipation",
-          "skin_error": "error of the skin, relative L²", "saturation_error": "error of the saturation, relative L²"}
+LABELS = {"force_error": "error of the hand force, relative L² [–]",
+          "peak_force_error": "error of the largest hand force, relative [–]",
+          "displacement_error": "error of the displacement, relative L² [–]",
+          "dissipation_error": "error of the dissipation, relative [–]",
+          "skin_error": "error of the skin, relative L² [–]",
+          "saturation_error": "error of the saturation, relative L² [–]"}
 MARKS = "osD^vP*X"
 STABLE = ("accurate", "wrong")
 JND = (0.07, 0.10)  # just noticeable difference of force
@@ -79,7 +82,7 @@ def draw(rows, error, title):
     axes.plot([], [], linestyle="none", marker="o", markerfacecolor="white", color=GREY, label="hollow: chatters or gains energy")
     if any(row["outcome"] not in STABLE + ("chatter", "growing_energy") and row["cpu_s_per_s"] for row in rest):
         axes.plot([], [], linestyle="none", marker="x", color=GREY, label="ended early")
-    axes.set_xlabel("CPU seconds a simulated second, one thread")
+    axes.set_xlabel("CPU time of a simulated second, one thread [s/s]")
     axes.set_ylabel(LABELS.get(error, error))
     axes.set_title(title)
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7)

@@ -115,7 +115,7 @@ def draw_moduli(argil, nu, output):
                 if scheme in SCHEMES[:5]:
                     mark_ends(ax, data[scheme], values, colour)
             ax.axvline(PHI_REACHED, color=GREY, lw=0.7, ls=":")
-            ax.set_title(f"{water}: " + ("ν" if key == "nu" else f"{key} over dry"), loc="left")
+            ax.set_title(f"{water}: " + ("ν [–]" if key == "nu" else f"{key} over dry [–]"), loc="left")
             ax.set_xlim(0, PHI[-1])
             if key == "nu":
                 ax.set_ylim(min(0.1, nu - 0.1), 0.52)
@@ -128,7 +128,7 @@ def draw_moduli(argil, nu, output):
             table.append((nu, water, scheme, data[scheme]["above_voigt"], data[scheme]["not_positive_definite"],
                           *(at_porosity(data[scheme], k) for k in ("E", "nu"))))
     for ax in rows[1]:
-        ax.set_xlabel("volume fraction of water φ")
+        ax.set_xlabel("volume fraction of water φ [–]")
     handles, labels = rows[0][0].get_legend_handles_labels()
     handles += [plt.Rectangle((0, 0), 1, 1, color="#DDE6EE"),
                 plt.Rectangle((0, 0), 1, 1, color=FAILURE["above_voigt"], alpha=0.3),
@@ -162,7 +162,7 @@ def draw_polar(argil, output):
         ax.set_yticks([0.25, 0.5, 0.75, 1.0])
         ax.set_title(water)
     put_legend(figure, *axes[0].get_legend_handles_labels(), 3, 0.08)
-    figure.suptitle("E over dry along each direction; aligned pores, axis at 0°, φ = 0.2, ν = 0.3\n", fontsize=9)
+    figure.suptitle("E over dry [–] along each direction; aligned pores, axis at 0°, φ = 0.2, ν = 0.3\n", fontsize=9)
     save(figure, output / "anisotropy")
 
 
@@ -187,10 +187,10 @@ def draw_hertz(argil, output):
         ax.plot(PHI[PHI <= 0.4], 35.0**(-PHI[PHI <= 0.4] / 0.4), color="black", lw=1.0, ls=":",
                 label="measured clay, 35-fold")
         ax.set_title(water, loc="left")
-        ax.set_xlabel("volume fraction of water φ")
+        ax.set_xlabel("volume fraction of water φ [–]")
         ax.set_xlim(0, PHI[-1])
         ax.axvline(PHI_REACHED, color=GREY, lw=0.7, ls=":")
-    axes[0].set_ylabel("Hertz force, wet over dry")
+    axes[0].set_ylabel("Hertz force, wet over dry [–]")
     axes[0].set_ylim(0, 1.02)
     handles, labels = axes[0].get_legend_handles_labels()
     handles += [plt.Line2D([], [], color="black", marker=m, mfc="white", ls=s) for m, s in (("o", ":"), ("x", ""))]

@@ -206,9 +206,9 @@ def draw(rows):
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncol=3)
     mesh.set_xticks([2, 4, 8], ["2", "4", "8"])
     mesh.minorticks_off()
-    mesh.set_xlabel("cells per contact radius")
-    penalty.set_xlabel("stiffness of a pair over E* a")
-    mesh.set_ylabel("force at the hand over the closed form")
+    mesh.set_xlabel("cells per contact radius [–]")
+    penalty.set_xlabel("stiffness of a pair over E* a [–]")
+    mesh.set_ylabel("force at the hand over the closed form [–]")
     return figure
 
 

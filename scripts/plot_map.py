@@ -78,7 +78,7 @@ def draw(rows, provenance, title):
         for k, row in enumerate(boundaries):
             axes.axvline(number(row, "x"), color=GREY, linewidth=1.0, label="boundary found" if k == 0 else None)
         axes.set_yscale("log")
-        axes.set_ylabel("error of the hand force, relative L²\n(at the top: none known)")
+        axes.set_ylabel("error of the hand force, relative L² [–]\n(at the top: none known)")
     scales = provenance.get("logarithmic", "")
     if "x" in scales:
         axes.set_xscale("log")

@@ -90,7 +90,7 @@ def draw(measured):
         style = {"color": ap.COLOURS[number], "linestyle": ap.DASHES[number]}
         sizes.plot(path, size, label=name, **style)
         changes.plot(path[1:], change, **style)
-    sizes.set_ylabel("force over its mean")
+    sizes.set_ylabel("force over its mean [–]")
     changes.set_ylabel("change in a tick\n[% of the mean force]")
     changes.set_xlabel("path of the tool [mm]")
     changes.set_ylim(bottom=0)

@@ -10,8 +10,9 @@ from pathlib import Path
 import argil_plot as ap
 from argil_plot import COLOURS, DASHES, MILLIMETRES, plt
 
-LABELS = {"body.initial_saturation": "water: initial saturation", "peak_force_N": "largest force at the hand [N]",
-          "material.youngs_modulus_Pa": "E [Pa]", "material.plasticity.yield": "yield strain"}
+LABELS = {"body.initial_saturation": "water: initial saturation [–]",
+          "peak_force_N": "largest force at the hand [N]", "material.youngs_modulus_Pa": "E [Pa]",
+          "material.plasticity.yield": "yield strain [–]"}
 
 
 def read_table(file):
