@@ -80,13 +80,14 @@ class Newcomer:
         if program not in self.helps:
             words = program.split()
             if words[0] == "argil":
-                words[0] = Path(self.build, "bin/argil")
-            elif not words[0].endswith(".py"):
+                words[0] = f"{self.build}/bin/argil"
+            elif not words[0].endswith(".py") or not os.access(ROOT / words[0], os.X_OK):
                 file = ROOT / words[0]
                 self.helps[program] = file.read_text(encoding="utf-8") if file.is_file() else None
                 return self.helps[program]
             done = subprocess.run([*words, "--help"], cwd=ROOT, capture_output=True, text=True)
-            self.helps[program] = done.stdout if done.returncode == 0 else None
+            is_there = done.returncode == 0 and (words[0].endswith(".py") or f"Usage: {program} " in done.stdout)
+            self.helps[program] = done.stdout if is_there else None
         return self.helps[program]
 
     def look_up(self, page, command):
