@@ -117,9 +117,10 @@ def still_changes(rows):
     for body in dict.fromkeys(row["body"] for row in rows):
         mine = sorted((row for row in rows if row["body"] == body), key=lambda row: int(row["tets"]))
         coarse, fine = mine[-2:]
-        change = 100 * (float(fine["peak_N"]) / float(coarse["peak_N"]) - 1)
-        said.append(f"from {coarse['tets']} to {fine['tets']} tets the {body}'s peak force changes by "
-                    f"{change:+.0f} %")
+        force, dent = (100 * (float(fine[name]) / float(coarse[name]) - 1)
+                       for name in ("peak_N", "largest_displacement_m"))
+        said.append(f"from {coarse['tets']} to {fine['tets']} tets the {body}'s peak force changes by {force:+.0f} % "
+                    f"and its largest displacement by {dent:+.0f} %")
     return "; ".join(said)
 
 

@@ -130,7 +130,7 @@ void add_run_commands(CLI::App& app, int& code) {
   schema->callback(
       [o] { std::cout << (o->reference ? scenario::print_reference() : scenario::print_schema()); });
 
-  CLI::App* info = app.add_subcommand("info", "describe a result file");
+  CLI::App* info = app.add_subcommand("info", "say how a run went, and what it made simpler than it is");
   info->add_option("FILE", o->first, "result file")->required();
   info->callback([o, &code] { code = print_info(o->first); });
 
