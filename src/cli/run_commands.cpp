@@ -50,7 +50,8 @@ int print_info(const std::string& file) {
   const output::ResultReader reader(file);
   std::cout << output::describe_result(reader);
   if (const auto scenario = reader.find_provenance("scenario"))
-    std::cout << scenario::describe_model(*scenario, file + ": /provenance/scenario");
+    std::cout << scenario::describe_model(*scenario, file + ": /provenance/scenario",
+                                          reader.find_session().has_value());
   return ExitCode::kDone;
 }
 

@@ -173,7 +173,7 @@ void describe_hand(Summary& s) {
 
 }  // namespace
 
-std::string describe_model(const std::string& resolved, const std::string& file) {
+std::string describe_model(const std::string& resolved, const std::string& file, bool is_session) {
   const Json scenario = parse_json(resolved, file);
   Summary summary(scenario);
   describe_solid(summary);
@@ -184,7 +184,11 @@ std::string describe_model(const std::string& resolved, const std::string& file)
     describe_flow(summary);
     describe_step(summary);
     describe_contact(summary);
-    describe_hand(summary);
+    if (is_session)
+      summary.simplify(
+          "force: rests on the last surface that the physics had ready, whatever its age (live)");
+    else
+      describe_hand(summary);
   }
   summary.simplify("scene: one body and a rigid tool; the body does not meet itself and cannot be cut");
   return summary.print();

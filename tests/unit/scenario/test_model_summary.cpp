@@ -81,6 +81,14 @@ TEST_F(ModelSummary, AnEquilibriumHasNoStepsAndNoTool) {
     EXPECT_EQ(text.find(words), std::string::npos) << words << "\nin\n" << text;
 }
 
+TEST_F(ModelSummary, ALiveSessionsForceIsAsOldAsItsSurface) {
+  const std::string text = describe_model(print_resolved(load_scenario(file, {})), file, true);
+  EXPECT_NE(text.find("force: rests on the last surface that the physics had ready"), std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("new in every tick"), std::string::npos) << text;
+  EXPECT_EQ(text.find("hand: goes where the trace goes"), std::string::npos) << text;
+}
+
 TEST_F(ModelSummary, AScenarioOfAnotherVersionSaysWhatItDoesNotSay) {
   const std::string text = describe_model(R"({"dynamics": {"model": "linear", "element": 3}})", "old.h5");
   EXPECT_NE(text.find("simplified  strain: linear"), std::string::npos) << text;
