@@ -46,6 +46,7 @@ VARIANTS = {
     "nodal pressure, swelling": ["/dynamics/element=p1_nodal", "/water/swelling=0.02", "/water/adds_mass=true"],
     "skin, rest": ["/contact/surface=skin", "/dynamics/rest_speed_m_per_s=1e-4"],
     "a hand that yields and trembles": ["/hand/kind=simulated", "/hand/tremor_m=2e-5", "/hand/reaction_delay_s=0.05"],
+    "what the hand feels, a full run beside": ["/fidelity/mode=check"],
     "implicit water, D(S)": ["/water/diffusion=implicit", "/water/diffusivity_exponent=2"],
 }
 

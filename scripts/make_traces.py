@@ -128,10 +128,41 @@ LIGHT = [  # come, press, hold and let go
     Stroke("push", 0.10, 1.0, 0.0, 0.0),
 ]
 
+REST = [  # press and stay for two seconds
+    Stroke("push", 0.10, 1.0, 0.0, 0.0),
+    Stroke("push", 0.12, -2.0, 0.0, 0.0),
+    Stroke("push", 2.00, -2.0, 0.0, 0.0),
+    Stroke("push", 0.10, 1.0, 0.0, 0.0),
+    Stroke("push", 0.30, 1.0, 0.0, 0.0),
+]
+
+DEEP = [  # a sixth of the block's height
+    Stroke("push", 0.10, 1.0, 0.0, 0.0),
+    Stroke("push", 0.20, -5.0, 0.0, 0.0),
+    Stroke("push", 0.10, -5.0, 0.0, 0.0),
+    Stroke("push", 0.15, 1.0, 0.0, 0.0),
+    Stroke("push", 0.20, 1.0, 0.0, 0.0),
+]
+
+DRAW = [  # touch, draw outward, let go
+    Stroke("pull", 0.10, 1.0, 0.0, 0.0),
+    Stroke("pull", 0.10, -1.0, 0.0, 0.0),
+    Stroke("pull", 0.20, 0.5, 0.0, 0.0),
+    Stroke("pull", 0.10, 6.0, 0.0, 0.0),
+    Stroke("pull", 0.20, 6.0, 0.0, 0.0),
+]
+
 BEND = [  # push a post over with the middle of a rod of 60 mm held across it
     Stroke("push", 0.10, 1.0, -30.0, 90.0),
     Stroke("push", 0.30, -25.0, -30.0, 90.0),
     Stroke("push", 0.10, -25.0, -30.0, 90.0),
+]
+
+FOLD = [  # push a post over by a quarter of a circle with such a rod; the side along which it goes grows longer
+    Stroke("push", 0.10, 1.0, -30.0, 90.0),
+    Stroke("push", 0.40, -32.0, -24.0, 90.0),
+    Stroke("push", 0.40, -66.0, -29.0, 90.0),
+    Stroke("push", 0.20, -66.0, -29.0, 90.0),
 ]
 
 WET_LIGHT = [  # wet a place, then press it
@@ -171,7 +202,12 @@ TRACES = {  # file: place, strokes before time zero of the tremor, strokes from 
     "block_light.csv": (BLOCK, [], LIGHT),
     "block_wet.csv": (BLOCK, [], WET_LIGHT),
     "block_slide.csv": (BLOCK, [], SLIDE),
+    "block_rest.csv": (BLOCK, [], REST),
+    "block_rest_tremor.csv": (BLOCK._replace(is_smooth=False), [], REST),
+    "block_deep.csv": (BLOCK, [], DEEP),
+    "block_draw.csv": (BLOCK, [], DRAW),
     "post_bend.csv": (POST, [], BEND),
+    "post_fold.csv": (POST, [], FOLD),
     "sculpt.csv": (HAUNCH, SCULPT_WET, PRESS + SCULPT_PULL + SCULPT_DRY + PRESS),
     "long_session.csv": (HAUNCH, [], WET + PRESS + PULL + DRY + PRESS),
 }

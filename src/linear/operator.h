@@ -9,6 +9,7 @@ struct SolveReport {
   int iterations = 0;              ///< 0: solved by a factor
   double relative_residual = 0.0;  ///< ‖b − A x‖₂ over its value at the first guess, by recurrence; of a
                                    ///< factor over ‖b‖₂; infinite: A was seen not to be positive definite
+  double first = 0.0;         ///< ‖b − A x‖₂ of the first guess, of an iteration
   bool wants_stored = false;  ///< not converged, and may with a factor of all of A, were it stored
 };
 

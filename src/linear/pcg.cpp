@@ -58,7 +58,7 @@ double ConjugateGradients::advance(double alpha, double beta, Points& x) {
 }
 
 SolveReport ConjugateGradients::solve(Operator& matrix, Preconditioner& preconditioner, const Points& b,
-                                      double tolerance, int max_iterations, Points& x) {
+                                      double tolerance, int max_iterations, Points& x, double goal) {
   m_r.resize(3, b.cols());
   m_z.resize(3, b.cols());
   m_p.resize(3, b.cols());
@@ -69,7 +69,7 @@ SolveReport ConjugateGradients::solve(Operator& matrix, Preconditioner& precondi
   matrix.multiply(x, m_w);
   const double first = std::sqrt(set_residual(b));
   const double rounding = kRounding * std::sqrt(compute_squares(b));
-  const double goal = std::max(tolerance * first, rounding);
+  goal = std::max({tolerance * first, rounding, goal});
   double residual = first;
   m_p.setZero();
   m_q.setZero();
@@ -89,6 +89,7 @@ SolveReport ConjugateGradients::solve(Operator& matrix, Preconditioner& precondi
     ++report.iterations;
   }
   report.converged = residual <= goal;
+  report.first = first;
   report.relative_residual = first > rounding ? residual / first : 0.0;
   return report;
 }

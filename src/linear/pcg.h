@@ -56,8 +56,9 @@ class ConjugateGradients {
  public:
   explicit ConjugateGradients(int threads) : m_rows(threads) {}
 
+  /// `goal`: a norm of the residual that is small enough as well.
   SolveReport solve(Operator& matrix, Preconditioner& preconditioner, const Points& b, double tolerance,
-                    int max_iterations, Points& x);
+                    int max_iterations, Points& x, double goal = 0.0);
 
  private:
   double set_residual(const Points& b);

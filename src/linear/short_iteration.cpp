@@ -9,7 +9,7 @@
 namespace argil::linear {
 
 SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, const Points& b,
-                                  double tolerance, int max_iterations, Points& x) {
+                                  double tolerance, int max_iterations, Points& x, double goal) {
   constexpr double kRounding = 1e-14;  // of ‖b‖
   const std::ptrdiff_t num_rows = b.cols();
   for (std::vector<float>* vector : {&m_r, &m_z, &m_w, &m_p, &m_q, &m_x})
@@ -31,10 +31,13 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
   });
   const double rounding = kRounding * std::sqrt(squares_of_b);
   if (first <= rounding) return {true, 0, 0.0};
+  if (first <= goal) return {true, 0, 1.0, first};
   if (!std::isfinite(first)) return {false, 0, std::numeric_limits<double>::quiet_NaN()};
 
   m_blocks.update(matrix, whole, m_runs);
-  const SolveReport report = iterate(whole, first, std::max(tolerance, rounding / first), max_iterations);
+  const double share = std::max({tolerance, rounding / first, goal / first});
+  SolveReport report = iterate(whole, first, share, max_iterations);
+  report.first = first;
   m_runs.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row)
       for (std::ptrdiff_t k = 0; k < 3; ++k)

@@ -13,9 +13,10 @@ class ShortIteration {
  public:
   explicit ShortIteration(int threads) : m_threads(threads), m_runs(threads) {}
 
-  /// `matrix` must be what it was in every call but for its values.
+  /// `matrix` must be what it was in every call but for its values. `goal`: a norm of the residual that is
+  /// small enough as well.
   SolveReport solve(const BlockMatrix& matrix, Operator& whole, const Points& b, double tolerance,
-                    int max_iterations, Points& x);
+                    int max_iterations, Points& x, double goal = 0.0);
 
   /// From now on rows of these runs alone, as if there were no others. Null: all.
   void visit(const std::vector<int>* runs) {

@@ -84,10 +84,10 @@ class JacobiIteration {
         m_iteration(threads) {}
 
   SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, int max_iterations,
-                    Points& x) {
-    if (m_is_short) return m_short.solve(matrix, product, b, m_tolerance, max_iterations, x);
+                    double goal, Points& x) {
+    if (m_is_short) return m_short.solve(matrix, product, b, m_tolerance, max_iterations, x, goal);
     m_jacobi.update(matrix, product);
-    return m_iteration.solve(product, m_jacobi, b, m_tolerance, max_iterations, x);
+    return m_iteration.solve(product, m_jacobi, b, m_tolerance, max_iterations, x, goal);
   }
   bool visit(const std::vector<int>* runs) {
     if (m_is_short) m_short.visit(runs);
@@ -107,7 +107,7 @@ class JacobiSolver final : public Solver {
   JacobiSolver(const SolverParams& params, int threads) : m_params(params), m_iteration(params, threads) {}
 
   SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) override {
-    const SolveReport report = m_iteration.solve(matrix, product, b, m_params.max_iterations, x);
+    const SolveReport report = m_iteration.solve(matrix, product, b, m_params.max_iterations, m_goal, x);
     ++m_cost.solves;
     m_cost.iterations += report.iterations;
     m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
@@ -137,11 +137,12 @@ class KeptFactorSolver final : public Solver {
     ++m_cost.solves;
     if (!m_has_factor) {
       const int max_iterations = m_is_part ? m_params.max_iterations : m_params.jacobi_iterations;
-      const SolveReport report = m_jacobi.solve(matrix, product, b, max_iterations, x);
+      const SolveReport report = m_jacobi.solve(matrix, product, b, max_iterations, m_goal, x);
       m_cost.iterations += report.iterations;
       m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
       if (report.converged || m_is_part || std::isinf(report.relative_residual)) return report;
-      if (product.has_unstored()) return {false, report.iterations, report.relative_residual, true};
+      if (product.has_unstored())
+        return {false, report.iterations, report.relative_residual, report.first, true};
       m_has_factor = true;
       x = m_guess;
     }
@@ -195,7 +196,7 @@ class KeptFactorSolver final : public Solver {
   SolveReport iterate(Operator& product, const Points& b, Points& x) {
     StaleCholesky kept(*m_factor, m_rows);
     const SolveReport report =
-        m_iteration.solve(product, kept, b, m_params.tolerance, m_params.max_iterations, x);
+        m_iteration.solve(product, kept, b, m_params.tolerance, m_params.max_iterations, x, m_goal);
     m_last_iterations = report.iterations;
     m_is_fresh = false;
     return report;

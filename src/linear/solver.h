@@ -52,6 +52,10 @@ class Solver {
   /// whole systems only.
   virtual bool visit(const std::vector<int>* /*runs*/) { return false; }
 
+  /// From now on an iteration may also stop where the norm of its residual is at most `goal` [of b], however
+  /// little that is beside the first guess's. 0: never for that.
+  void set_goal(double goal) { m_goal = goal; }
+
   const SolverCost& cost() const { return m_cost; }
 
   /// What the next solve takes from the last ones, under names that begin with `prefix`. `pattern`: any
@@ -63,6 +67,7 @@ class Solver {
   /// was restored and is to be factorised again.
   bool exchange_factor(Archive& archive, const std::string& prefix, Eigen::Matrix3Xd& factorised);
   SolverCost m_cost;
+  double m_goal = 0.0;
 };
 
 /// Bits do not depend on `threads`.

@@ -87,6 +87,11 @@ void write_failure(const Group& root, const Failure& failure) {
   group.write_attribute("bound", failure.bound);
 }
 
+std::span<const schema::Column> list_fidelity_columns(bool is_checked) {
+  if (is_checked) return schema::kFidelityCheckedStep;
+  return schema::kFidelityStep;
+}
+
 std::string dotted(std::string name) {
   std::replace(name.begin(), name.end(), '/', '.');
   return name;
@@ -107,6 +112,8 @@ struct ResultFile::Impl {
   Table haptic;
   Table physics;
   std::uint64_t num_frames = 0;
+  std::optional<Table> fidelity = {};
+  bool is_checked = false;  // fidelity has errors
   std::optional<Table> session = {}, tick_timing = {}, step_timing = {};
   bool is_broken = false;  // a write failed: what follows would have a hole
 
@@ -122,7 +129,7 @@ struct ResultFile::Impl {
     if (root.has(schema::kCheckpoint)) root.remove(schema::kCheckpoint);
   }
   void write_all() {
-    for (std::optional<Table>* table : {&session, &tick_timing, &step_timing})
+    for (std::optional<Table>* table : {&fidelity, &session, &tick_timing, &step_timing})
       if (*table) (*table)->write();
     haptic.write();
     physics.write();
@@ -150,6 +157,11 @@ ResultFile::ResultFile(const std::string& name, const ResultHeader& header) {
   file.flush();
   m_impl = std::make_unique<Impl>(Impl{std::move(file), std::move(root), std::move(frames), std::move(timing),
                                        std::move(haptic), std::move(physics)});
+  if (header.fidelity == sim::FidelityMode::full) return;
+  m_impl->is_checked = header.fidelity == sim::FidelityMode::check;
+  m_impl->fidelity = Table::create(m_impl->root.create_group(schema::kFidelity),
+                                   list_fidelity_columns(m_impl->is_checked), schema::kPhysicsChunk);
+  m_impl->file.flush();
 }
 
 ResultFile::ResultFile(const std::string& name, Tick last_tick, std::uint64_t num_frames) {
@@ -180,6 +192,11 @@ ResultFile::ResultFile(const std::string& name, Tick last_tick, std::uint64_t nu
   file.flush();
   m_impl = std::make_unique<Impl>(Impl{std::move(file), std::move(root), std::move(frames), std::move(timing),
                                        std::move(haptic), std::move(physics), num_frames});
+  if (!m_impl->root.has(schema::kFidelity)) return;
+  const Group group = m_impl->root.open_group(schema::kFidelity);
+  m_impl->is_checked = group.has(schema::kFidelityError.name);
+  m_impl->fidelity = Table::reopen(group, list_fidelity_columns(m_impl->is_checked), schema::kPhysicsChunk,
+                                   count_rows_until(group, last_tick));
 }
 
 ResultFile::~ResultFile() {
@@ -212,6 +229,7 @@ void ResultFile::append(const sim::HapticRecord& record) {
 
 void ResultFile::append(const sim::PhysicsRecord& record) {
   ARGIL_ASSERT(m_impl, "append after finish");
+  if (m_impl->fidelity) append_fidelity(record);
   Table& table = m_impl->physics;
   table.put(record.tick);
   table.put(record.time);
@@ -230,6 +248,17 @@ void ResultFile::append(const sim::PhysicsRecord& record) {
   table.put(record.min_volume_ratio);
   table.put(record.max_plastic_strain);
   if (table.end_row()) m_impl->guarded([&] { table.write(), m_impl->file.flush(); });
+}
+
+void ResultFile::append_fidelity(const sim::PhysicsRecord& record) {
+  Table& table = *m_impl->fidelity;
+  table.put(record.tick);
+  table.put(static_cast<std::uint8_t>(record.fidelity.rung));
+  table.put(record.fidelity.bound);
+  table.put(record.fidelity.estimate);
+  table.put(record.fidelity.large_strain);
+  if (m_impl->is_checked) table.put(record.fidelity.error);
+  m_impl->end_quiet_row(table);
 }
 
 void ResultFile::append(const sim::Frame& frame) {

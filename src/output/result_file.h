@@ -23,6 +23,7 @@ struct ResultHeader {
   Triangles skin_triangles;     ///< 3×0 without a skin
   mesh::TriangleMesh tool;      ///< tool surface in its own frame
   double haptic_period = 0.0;   ///< [s]
+  sim::FidelityMode fidelity = sim::FidelityMode::full;
   std::vector<std::pair<std::string, std::string>>
       provenance;  ///< name → text: resolved scenario, hashes, numerics tag
 };
@@ -111,6 +112,8 @@ class ResultFile {
   void finish(const std::optional<Failure>& failure, bool interrupted = false);
 
  private:
+  void append_fidelity(const sim::PhysicsRecord& record);
+
   struct Impl;
   std::unique_ptr<Impl> m_impl;
 };

@@ -69,6 +69,26 @@ inline constexpr std::array kPhysics = {
         "max_plastic_strain", real64, 1, {"1", "largest Frobenius norm of the plastic strain over the tets"}},
 };
 
+/// A step that may leave out parts of the model, and its error where a full run goes beside.
+inline constexpr const char* kFidelity = "fidelity";
+inline constexpr std::array kFidelityStep = {
+    Column{"tick", int64, 1, {"1", "haptic tick of the physics step"}},
+    Column{"rung",
+           uint8,
+           1,
+           {"1", "what was computed: 0 nothing, the body sleeps; 1 no solve, it coasts; 2 the whole step"}},
+    Column{"bound", real64, 1, {"N", "error that the force at the hand may have"}},
+    Column{"estimate", real64, 1, {"N", "that it has at most, by what was left out"}},
+    Column{"large_strain",
+           real64,
+           1,
+           {"1", "mean strain: of the force, by which other laws of elasticity may differ"}},
+};
+inline constexpr Column kFidelityError{
+    "error", real64, 1, {"N", "that it had since the last step, beside a full run of the same motion"}};
+inline constexpr std::array kFidelityCheckedStep = {kFidelityStep[0], kFidelityStep[1], kFidelityStep[2],
+                                                    kFidelityStep[3], kFidelityStep[4], kFidelityError};
+
 /// A live session's side of each haptic tick: what it took from outside.
 inline constexpr const char* kSession = "session";
 inline constexpr std::array kSessionTick = {

@@ -133,6 +133,11 @@ void describe_step(Summary& s) {
   if (extent == "local")
     s.simplify("extent: only the region that moves; what is slower than " +
                print(s.number("/dynamics/region_tolerance")) + " of the fastest vertex stays");
+  // Files of earlier builds were all made in full and do not say so.
+  if (s.has("/fidelity/mode") && s.word("/fidelity/mode") != "full")
+    s.simplify("fidelity: a step leaves out what moves the force by at most " +
+               print(100.0 * s.number("/fidelity/force_tolerance")) + " % or " +
+               print(s.number("/fidelity/force_floor_N")) + " N, see /fidelity");
   const double rest = s.number("/dynamics/rest_speed_m_per_s");
   if (rest > 0.0)
     s.simplify("rest: a body slower than " + print(rest) + " m/s that nothing touches is stopped");

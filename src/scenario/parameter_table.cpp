@@ -377,6 +377,19 @@ void bind_dynamics(Binder& b, Scenario& s) {
             "Run nearly incompressible 4-node tets although they lock.");
 }
 
+void bind_fidelity(Binder& b, sim::FidelityParams& f) {
+  using sim::FidelityMode;
+  b.choice<FidelityMode>(
+      "/fidelity/mode", f.mode,
+      {{FidelityMode::full, "full"}, {FidelityMode::automatic, "auto"}, {FidelityMode::check, "check"}},
+      "Compute all of the model in every step; or what the force at the hand needs; or that beside "
+      "a full run of the same motion, which shows the true error.");
+  b.number("/fidelity/force_tolerance", f.force_tolerance, inside(0, 1), "",
+           "auto: error of the force at the hand over that force.");
+  b.number("/fidelity/force_floor_N", f.force_floor, positive(), "N",
+           "auto: error of the force at the hand that never counts.");
+}
+
 void bind_hand(Binder& b, HandSpec& hand) {
   b.choice<HandKind>(
       "/hand/kind", hand.kind, {{HandKind::prescribed, "prescribed"}, {HandKind::simulated, "simulated"}},
@@ -476,6 +489,7 @@ std::vector<Parameter> make_parameter_table(Scenario& s, const std::string& file
   bind_material(b, s.params);
   bind_water_and_tool(b, s, folder);
   bind_dynamics(b, s);
+  bind_fidelity(b, s.params.fidelity);
   bind_haptics(b, s, folder);
   std::vector<Parameter> rows = b.take();
   for (Parameter& row : rows)

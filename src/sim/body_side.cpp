@@ -21,11 +21,13 @@ BodySide::BodySide(Body body, const Params& params)
       m_solid(m_body.mesh, m_body.topology, m_body.supports, params.solid, params.threads),
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation),
       m_surface(params.contact_surface, m_body, m_solid.elements()),
-      m_runs(params.threads) {
+      m_runs(params.threads),
+      m_fidelity(params.fidelity) {
   const Eigen::Index n = m_solid.elements().num_nodes();
   m_state.solid = m_solid.make_rest_state();
   m_load_force = solid::compute_load_force(m_solid.elements(), m_body.topology.boundary, m_body.loads);
   m_external_force.setZero(3, n);
+  m_held_back.setZero(3, n);
   m_x_before = m_state.solid.x;
   m_v_before = m_state.solid.v;
   m_yield.setZero(m_solid.elements().num_points());
@@ -44,6 +46,7 @@ BodySide::BodySide(Body body, const Params& params)
   rest = refresh_materials(-1.0);
   ARGIL_ASSERT(rest.is_ok());
   if (m_state.is_at_rest) m_solid.sleep_all();
+  m_fidelity.find_reach(m_state.solid.x, m_solid.elements().rest);
 }
 
 StepStatus BodySide::settle() {
@@ -230,8 +233,9 @@ void BodySide::fall_asleep() {
 /// Is the body left as it is in this physics step? It falls asleep when nothing has touched it and it has
 /// been slower than rest_speed for two steps, and wakes when anything acts. A body that never moved rests
 /// from the start; only rounding would stir it.
-bool BodySide::rests(bool is_touched) {
-  if (is_touched || m_is_moved) {
+bool BodySide::rests(const ContactLoad& load) {
+  if (!m_fidelity.is_full()) return sleeps_on(load);
+  if (load.is_touched || m_is_moved) {
     m_state.is_at_rest = false;
     m_state.slow_steps = 0;
     return false;
@@ -241,6 +245,48 @@ bool BodySide::rests(bool is_touched) {
   m_state.slow_steps = speed <= m_params.rest_speed ? m_state.slow_steps + 1 : 0;
   if (m_state.slow_steps >= 2) fall_asleep();
   return m_state.is_at_rest;
+}
+
+/// fidelity: does the body still sleep under this load?
+bool BodySide::sleeps_on(const ContactLoad& load) {
+  m_fidelity.begin_step(load.hand.felt.force);
+  if (!m_state.is_at_rest) {
+    m_fidelity.find_reach(m_state.solid.x, m_solid.elements().rest);
+    return false;
+  }
+  const double imbalance = std::sqrt(ordered_sum(m_held_back.cols(), [&](std::ptrdiff_t n) {
+    return (m_held_back.col(n) + load.force.col(n)).squaredNorm();
+  }));
+  m_state.is_at_rest = m_fidelity.sleeps_on(imbalance);
+  return m_state.is_at_rest;
+}
+
+/// fidelity: the mean strain of the points, each by its elastic energy. Laws of elasticity agree for small
+/// strain and differ in the next power, so that the force of another one may be off by about as much.
+void BodySide::watch_strain() {
+  constexpr int kSteps = 16;  // between two looks
+  if (m_fidelity.is_full() || m_state.steps % kSteps != 0) return;
+  double energy = 0.0, strained = 0.0;
+  for (int p = 0; p < m_solid.elements().num_points(); ++p) {
+    const Vec6 strain = m_solid.strain().col(p);
+    const Vec6 elastic = strain - m_state.solid.plastic_strain.col(p);
+    const double share = m_solid.material(m_solid.elements().tet_of_point(p)).mu *
+                         m_solid.elements().weight(p) * elastic.squaredNorm();
+    energy += share;
+    strained += share * strain.norm();
+  }
+  m_fidelity.set_large_strain(energy > 0.0 ? strained / energy : 0.0);
+}
+
+/// fidelity: may the body stop where it is, instead of the step that was assembled?
+bool BodySide::falls_asleep(const ContactLoad& load, const solid::StepLoads& loads) {
+  if (m_is_moved || m_params.rates.between_frames == BetweenFrames::compliant) return false;
+  const bool flows = std::any_of(m_is_flowing.begin(), m_is_flowing.end(), [](char c) { return c != 0; });
+  if (!m_fidelity.falls_asleep(m_solid.compute_imbalance(loads), flows)) return false;
+  for (Eigen::Index n = 0; n < m_held_back.cols(); ++n)
+    m_held_back.col(n) = m_solid.find_imbalance(loads, n) - load.force.col(n);
+  fall_asleep();
+  return true;
 }
 
 PhysicsRecord BodySide::make_record() const {
@@ -264,6 +310,7 @@ PhysicsRecord BodySide::make_record() const {
   record.min_volume_ratio = m_solid.min_volume_ratio();
   record.max_plastic_strain =
       is_at_rest ? m_rest_plastic_strain : m_state.solid.plastic_strain.colwise().norm().maxCoeff();
+  record.fidelity = m_fidelity.record();
   return record;
 }
 

@@ -73,7 +73,10 @@ class BodySide {
   StepStatus refresh_materials(double tolerance);
   void refresh_material(int tet, double S);
   void fall_asleep();
-  bool rests(bool is_touched);
+  bool rests(const ContactLoad& load);
+  bool sleeps_on(const ContactLoad& load);
+  void watch_strain();
+  bool falls_asleep(const ContactLoad& load, const solid::StepLoads& loads);
 
   const Params& m_params;
   Body m_body;
@@ -92,7 +95,9 @@ class BodySide {
   Field m_yield;                          // of each point: elastic strain norm [–]
   std::vector<char> m_is_flowing;         // of each run of kLanes points, in the last step
   OrderedRuns m_runs;
-  bool m_is_moved = false;                                  // some support moves
+  bool m_is_moved = false;  // some support moves
+  Fidelity m_fidelity;
+  Points m_held_back;  // 3×n [N] of a body that sleeps: loads less internal forces, where nodes are free
   double m_rest_energy = 0.0, m_rest_plastic_strain = 0.0;  // of the body while it is at rest
   StageObserver* m_observer = nullptr;
 };

@@ -96,13 +96,25 @@ bool HandSide::is_yielding() const {
   return m_params.rates.between_frames == BetweenFrames::compliant && m_state.mode == ToolMode::push;
 }
 
+/// fidelity: contacts of a tool and a surface that both stand still are what they were. The first such
+/// detection may still change which pairs are in touch, and the second what it takes from that.
+bool HandSide::finds_same_contacts() {
+  constexpr int kSettled = 2;
+  const bool is_still = !m_state.has_moved && m_state.tool.position == m_state.contact_tool.position &&
+                        m_state.tool.orientation.coeffs() == m_state.contact_tool.orientation.coeffs();
+  m_still_detections = is_still ? m_still_detections + 1 : 0;
+  return m_params.fidelity.mode != FidelityMode::full && m_still_detections > kSettled &&
+         !m_contacts.with_touched;
+}
+
 /// Detection over `ticks` ticks while the surface goes to where the body has moved it; both paths start where
 /// the last one ended, so none has a gap.
 void HandSide::find_contacts(int ticks) {
   const bool has_moved = m_state.has_moved;
-  m_detector.find_contacts(m_state.contact_x, has_moved ? m_state.surface_x : m_state.contact_x,
-                           m_state.contact_tool, m_state.tool, m_contacts,
-                           has_moved ? std::optional<double>() : 0.0, m_clock.seconds(ticks));
+  if (!finds_same_contacts())
+    m_detector.find_contacts(m_state.contact_x, has_moved ? m_state.surface_x : m_state.contact_x,
+                             m_state.contact_tool, m_state.tool, m_contacts,
+                             has_moved ? std::optional<double>() : 0.0, m_clock.seconds(ticks));
   m_state.num_contacts = static_cast<int>(m_contacts.contacts.size());
   if (has_moved) m_state.contact_x.swap(m_state.surface_x);
   m_state.has_moved = false;

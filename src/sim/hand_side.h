@@ -76,6 +76,7 @@ class HandSide {
     return m_params.rates.water_period_ticks / m_params.rates.physics_period_ticks;
   }
   void find_contacts(int ticks);
+  bool finds_same_contacts();
   void move_surface(const Points& x);
   void act_on_body(const contact::Contact& c, const Vec3& force);
   void spread_contact_force();
@@ -97,6 +98,7 @@ class HandSide {
   contact::ContactDetector m_detector;
   contact::Contacts m_contacts;
   double m_pressed_weight = 0.0;  // Σ|force| of the last detection
+  int m_still_detections = 0;     // in a row, in which neither tool nor surface had moved
   LocalCompliance m_compliance;
   std::vector<ContactSpring> m_springs;       // of the last detection, with their forces
   std::vector<std::size_t> m_spring_contact;  // and their places in m_contacts

@@ -6,6 +6,7 @@
 #include "device/gate.h"
 #include "device/passivity.h"
 #include "material/parameters.h"
+#include "sim/fidelity.h"
 #include "solid/parameters.h"
 #include "water/parameters.h"
 
@@ -44,6 +45,7 @@ struct Params {
   solid::SolidParams solid;
   contact::ContactParams contact;
   SurfaceKind contact_surface = SurfaceKind::cage;
+  FidelityParams fidelity;
   device::DeviceLimits device;
   device::Passivity passivity = device::Passivity::none;
   /// Speed of the fastest node [m/s] at which a body that nothing touches counts as at rest for two steps: it

@@ -4,6 +4,7 @@
 
 #include "base/types.h"
 #include "device/sample.h"
+#include "sim/fidelity.h"
 
 namespace argil::sim {
 
@@ -42,6 +43,7 @@ struct PhysicsRecord {
   int active_nodes = 0;              ///< vertices that were solved for
   double min_volume_ratio = 1.0;     ///< smallest det F
   double max_plastic_strain = 0.0;   ///< largest ‖ε_p‖_F
+  FidelityRecord fidelity;           ///< but in `full`
 };
 
 /// One picture of the body, as written to /frames/NNNNNN.

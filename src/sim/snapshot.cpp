@@ -62,6 +62,10 @@ void BodySide::exchange_state(Archive& archive) {
   if (archive.is_restoring())
     for (int t = 0; t < m_body.mesh.num_tets(); ++t) refresh_material(t, m_water.state().collected(t));
   m_solid.exchange_frames(archive);
+  if (!m_fidelity.is_full()) {
+    archive.array("fidelity/held_back", m_held_back);
+    m_fidelity.exchange_state(archive);
+  }
   if (!archive.is_restoring()) return;
   const StepStatus status = m_solid.update_kinematics(m_state.solid.x, m_hand.ticks);
   ARGIL_ASSERT(status.is_ok());

@@ -119,7 +119,7 @@ StepStatus BodySide::step(ContactLoad& load, BodyAnswer& answer) {
   begin_step(load, answer);
   StepStatus status = StepStatus::ok();
   if (m_state.steps * rates.physics_period_ticks % rates.water_period_ticks == 0) status = water_step(load);
-  if (status.is_ok() && !rests(load.is_touched)) status = physics_step(load, answer);
+  if (status.is_ok() && !rests(load)) status = physics_step(load, answer);
   load.clear();
   return status;
 }
@@ -142,6 +142,8 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
   solid::SolidState& solid = m_state.solid;
   m_external_force = load.force + m_load_force;
   solid::StepLoads loads{m_external_force, load.stiffness};
+  loads.slack = m_fidelity.solve_slack();
+  loads.region_slack = m_fidelity.region_slack();
   if (load.is_pressed)
     loads.mobility = [this, &load](Eigen::Index node) { return clay_factor(node, load, step_seconds()); };
   m_v_before = solid.v;
@@ -151,6 +153,8 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
       const StageScope scope(m_observer, Stage::assemble);
       solved = m_solid.assemble(loads);  // A, b from F, R, ε
     }
+    const bool is_first = m_solid.counters().newton_iterations == 0;
+    if (!m_fidelity.is_full() && is_first && falls_asleep(load, loads)) return StepStatus::ok();
     const StageScope scope(m_observer, Stage::solve);
     if (!solved) ARGIL_TRY(m_solid.solve(loads, tick(), solved));  // A δv = b
   }
@@ -176,6 +180,9 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
   const StageScope scope(m_observer, Stage::plasticity);
   apply_plastic_flow(h);  // trial ε_p of every tet, committed at once
   m_solid.settle_region(solid, m_is_flowing);
+  watch_strain();
+  m_fidelity.set_made(m_solid.counters().linear_iterations,
+                      m_solid.counters().imbalance + m_solid.held_back());
   m_surface.find_positions(solid.x, answer.surface_x);
   answer.has_moved = true;
   return StepStatus::ok();

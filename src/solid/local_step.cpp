@@ -1,6 +1,7 @@
 // Extent::local: which part of the body a step solves for.
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/check.h"
@@ -56,7 +57,7 @@ void Solid::wake_region(const StepLoads& loads) {
 
 /// Rows that awake tets pull at wake where they would move: D⁻¹ r, the speed that they would take on if all
 /// others stayed, with what the step leaves of it.
-void Solid::grow_region(const StepLoads& loads) {
+void Solid::grow_region_by_speed(const StepLoads& loads) {
   const double bound = m_params.region_tolerance * std::max(m_fastest, kStill);
   for (const int run : m_region->fringe()) {
     const auto [begin, end] = find_rows(run, m_node_of_row.size());
@@ -70,6 +71,37 @@ void Solid::grow_region(const StepLoads& loads) {
       break;
     }
   }
+}
+
+/// The runs that are pulled at most wake, until what is left holds back no more than it may.
+void Solid::grow_region_by_force(const StepLoads& loads) {
+  m_pulls.clear();
+  double total = 0.0;
+  for (const int run : m_region->fringe()) {
+    const auto [begin, end] = find_rows(run, m_node_of_row.size());
+    double squares = 0.0;
+    for (std::size_t row = begin; row < end; ++row) {
+      const double mobility = loads.mobility ? loads.mobility(m_node_of_row[row]) : 1.0;
+      squares += (mobility / m_tau * m_rhs.col(static_cast<Eigen::Index>(row))).squaredNorm();
+    }
+    m_pulls.emplace_back(-squares, run);
+    total += squares;
+  }
+  std::sort(m_pulls.begin(), m_pulls.end());
+  for (const auto& [minus_squares, run] : m_pulls) {
+    if (!(total > loads.region_slack * loads.region_slack)) break;
+    m_region->wake(run);
+    total += minus_squares;
+  }
+  m_held_back = std::sqrt(std::max(0.0, total));
+}
+
+void Solid::grow_region(const StepLoads& loads) {
+  m_region_slack = loads.region_slack;
+  if (loads.region_slack > 0.0)
+    grow_region_by_force(loads);
+  else
+    grow_region_by_speed(loads);
   if (!m_region->update()) return;
   visit_region();
   assemble_matrix(loads.contacts);
@@ -88,10 +120,21 @@ void Solid::settle_region(SolidState& state, const std::vector<char>& is_flowing
   }
   m_region->wake_batches(is_flowing);
   const double bound = kSleepShare * m_params.region_tolerance * std::max(m_fastest, kStill);
+  // What is stopped is, with all others that may be, as much as may be held back.
+  const double share =
+      kSleepShare * m_region_slack / std::sqrt(std::max(1.0, static_cast<double>(fastest.size())));
+  const auto is_slow = [&](std::size_t i, int run) {
+    if (m_region_slack == 0.0) return fastest[i] <= bound;
+    const auto [begin, end] = find_rows(run, m_node_of_row.size());
+    double squares = 0.0;
+    for (std::size_t row = begin; row < end; ++row)
+      squares += (m_mass(m_node_of_row[row]) / m_tau * state.v.col(m_node_of_row[row])).squaredNorm();
+    return squares <= share * share;
+  };
   for (std::size_t i = 0; i < fastest.size(); ++i) {
     const int run = m_region->awake()[i];
     int& calm = m_region->calm_steps(run);
-    calm = fastest[i] <= bound && !m_region->has_any(run, is_flowing) ? calm + 1 : 0;
+    calm = is_slow(i, run) && !m_region->has_any(run, is_flowing) ? calm + 1 : 0;
     if (calm < kCalmSteps) continue;
     m_region->make_drowsy(run);
     const auto [begin, end] = find_rows(run, m_node_of_row.size());

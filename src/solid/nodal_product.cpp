@@ -104,7 +104,7 @@ ARGIL_EVERY_PROCESSOR void add_squares(const int* row_begin, const float* factor
 NodalProduct::NodalProduct(const NodalVolume& nodal, const std::vector<int>& node_of_row,
                            const std::vector<int>& row_of_node, const Constraints& constraints, bool is_short,
                            int threads)
-    : m_nodal(nodal), m_runs(threads), m_is_short(is_short) {
+    : m_nodal(nodal), m_runs(threads), m_node_runs(threads), m_row_runs(threads), m_is_short(is_short) {
   const std::vector<int>& begin = nodal.ring_begin();
   const std::vector<int>& neighbour = nodal.ring();
   std::vector<int> entry_of_place(neighbour.size(), -1);
@@ -138,7 +138,6 @@ NodalProduct::NodalProduct(const NodalVolume& nodal, const std::vector<int>& nod
     factors.y.resize(4 * node_of_row.size());
     factors.theta.resize(begin.size() - 1);
   };
-  m_runs.prepare(num_nodes());
   if (is_short)
     make_room(m_short);
   else
@@ -152,9 +151,43 @@ void NodalProduct::update(double scale) {
     update_factors(scale, m_long);
 }
 
+/// Runs without any such stiffness, of clay whose ν is low, would add zeros. True when the others changed.
+bool NodalProduct::find_busy_runs() {
+  const auto collect = [](std::vector<int>& runs, std::ptrdiff_t count, auto is_busy) {
+    std::size_t found = 0;
+    bool has_changed = false;
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const auto run = static_cast<int>(i / OrderedRuns::kLength);
+      if (!is_busy(i) || (found > 0 && runs[found - 1] == run)) continue;
+      if (found == runs.size() || runs[found] != run) {
+        runs.resize(found);
+        runs.push_back(run);
+        has_changed = true;
+      }
+      ++found;
+    }
+    has_changed = has_changed || found < runs.size();
+    runs.resize(found);
+    return has_changed;
+  };
+  const auto is_node_busy = [&](std::ptrdiff_t node) { return m_nodal.stiffness()(node) > 0.0; };
+  const auto is_row_busy = [&](std::ptrdiff_t row) {
+    const auto first = m_node.begin() + m_row_begin[static_cast<std::size_t>(row)];
+    const auto last = m_node.begin() + m_row_begin[static_cast<std::size_t>(row) + 1];
+    return std::any_of(first, last, is_node_busy);
+  };
+  if (!collect(m_busy_nodes, num_nodes(), is_node_busy)) return false;
+  collect(m_busy_rows, num_rows(), is_row_busy);
+  m_node_runs.visit(&m_busy_nodes);
+  m_row_runs.visit(&m_busy_rows);
+  m_node_runs.prepare(num_nodes());
+  return true;
+}
+
 template <class Real>
 void NodalProduct::update_factors(double scale, Factors<Real>& factors) {
-  m_runs.each(num_nodes(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  if (find_busy_runs()) std::fill(factors.theta.begin(), factors.theta.end(), Real{});
+  m_node_runs.each(num_nodes(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (auto a = static_cast<std::size_t>(begin); a < static_cast<std::size_t>(end); ++a) {
       const double stiffness = m_nodal.stiffness()(static_cast<Eigen::Index>(a));
       const double root = stiffness > 0.0 ? std::sqrt(scale / stiffness) : 0.0;
@@ -167,7 +200,7 @@ void NodalProduct::update_factors(double scale, Factors<Real>& factors) {
       }
     }
   });
-  m_runs.each(num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  m_row_runs.each(num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (auto e = static_cast<std::size_t>(m_row_begin[static_cast<std::size_t>(begin)]);
          e < static_cast<std::size_t>(m_row_begin[static_cast<std::size_t>(end)]); ++e)
       std::copy_n(&factors.by_node[4 * static_cast<std::size_t>(m_source[e])], 4, &factors.by_row[4 * e]);
@@ -202,11 +235,11 @@ double NodalProduct::add_product(const Points& x, Factors<Real>& factors, Points
 
 template <class Real>
 double NodalProduct::add_product(const Real* x, Factors<Real>& factors, Real* y) {
-  const double squares = m_runs.sum(num_nodes(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const double squares = m_node_runs.sum(num_nodes(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     return set_volume_changes(m_node_begin.data(), m_row.data(), factors.by_node.data(), x, begin, end,
                               factors.theta.data());
   });
-  m_runs.each(num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  m_row_runs.each(num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     add_volume_changes(m_row_begin.data(), m_node.data(), factors.by_row.data(), factors.theta.data(), begin,
                        end, y);
   });
@@ -214,7 +247,7 @@ double NodalProduct::add_product(const Real* x, Factors<Real>& factors, Real* y)
 }
 
 void NodalProduct::add_diagonal(Eigen::Matrix3Xd& blocks) const {
-  m_runs.each(num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  m_row_runs.each(num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     if (m_is_short)
       add_squares(m_row_begin.data(), m_short.by_row.data(), begin, end, blocks.data());
     else

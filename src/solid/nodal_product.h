@@ -40,6 +40,7 @@ class NodalProduct {
   };
   template <class Real>
   void update_factors(double scale, Factors<Real>& factors);
+  bool find_busy_runs();
   template <class Real>
   double add_product(const Points& x, Factors<Real>& factors, Points& y);
   template <class Real>
@@ -50,6 +51,8 @@ class NodalProduct {
 
   const NodalVolume& m_nodal;
   OrderedRuns m_runs;
+  OrderedRuns m_node_runs, m_row_runs;         // where some node has any such stiffness:
+  std::vector<int> m_busy_nodes, m_busy_rows;  // these runs, increasing
   bool m_is_short;
   Factors<float> m_short;
   Factors<double> m_long;

@@ -134,6 +134,7 @@ ARGIL_EVERY_PROCESSOR void add_corner_gradients(const int* corners, int begin, i
 void NodalVolume::collect_gradients(const Eigen::Matrix3Xd& gradient) {
   m_runs.each(num_nodes(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
+      if (m_stiffness(static_cast<Eigen::Index>(n)) == 0.0) continue;  // no one asks for it
       m_ring_gradient.middleCols(m_begin[n], m_begin[n + 1] - m_begin[n]).setZero();
       add_corner_gradients(m_node_corners.data(), m_node_begin[n], m_node_begin[n + 1], m_place.data(),
                            m_weight.data(), gradient.data(), m_ring_gradient.data());

@@ -239,7 +239,8 @@ double Solid::frame_tolerance() const {
   using linear::SolverKind;
   const SolverKind kind = m_params.solver.kind;
   const bool is_direct = kind == SolverKind::cholesky || kind == SolverKind::supernodal;
-  return is_newton() || is_direct ? 0.0 : std::min(kLargest, m_params.solver.tolerance);
+  if (is_newton() || is_direct) return 0.0;
+  return std::min(kLargest, std::max(m_params.solver.tolerance, m_frame_slack));
 }
 
 void Solid::set_tet_motion(const Points& x, bool keeps_frame) {

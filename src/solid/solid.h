@@ -54,6 +54,7 @@ struct StepCounters {
   int newton_iterations = 0;
   int linear_iterations = 0;
   double residual = 0.0;   ///< relative, of the last linear solve
+  double imbalance = 0.0;  ///< [N] that an iteration left: norm of force over all nodes
   int assembled_rows = 0;  ///< rows of the matrix that were gathered anew; the others stayed as they were
 };
 
@@ -63,6 +64,10 @@ struct StepLoads {
   std::span<const PointStiffness> contacts = {};  ///< and how those of contacts grow as the body moves on
   /// Extent::local: share of a node's speed that the step will leave it; empty: all of it.
   std::function<double(Eigen::Index)> mobility = {};
+  /// Forces [N] without balance, Euclidean norm over all nodes, that a step may leave: in its solve, and
+  /// (Extent::local) where the body is left as it is; 0: the tolerances of the parameters decide.
+  double slack = 0.0;
+  double region_slack = 0.0;
 };
 
 /// Finite elements in time. A step in the order in which sim/step.cpp calls its stages: begin_step, then
@@ -97,6 +102,10 @@ class Solid {
                         Tick tick);
   /// Residual and matrix at the present iterate. True when Newton's residual is small enough.
   bool assemble(const StepLoads& loads);
+  /// After the first assembly of a step: the force [N] that would act on a node if the body were stopped
+  /// where it is; and the norm over all nodes of these and the forces that stop it within the step.
+  Vec3 find_imbalance(const StepLoads& loads, Eigen::Index node) const;
+  double compute_imbalance(const StepLoads& loads) const;
   /// One linear solve and, for Newton's method, its line search. Sets `solved` when no other is wanted.
   StepStatus solve(const StepLoads& loads, Tick tick, bool& solved);
   void finish_step(SolidState& state);  ///< v ← v', and what bdf2 must remember
@@ -109,6 +118,8 @@ class Solid {
   void sleep_all();  ///< none of it until something acts; it has no speed
   /// May the tets of this run of kLanes move?
   bool moves(std::ptrdiff_t batch) const { return !m_region || m_region->moves(static_cast<int>(batch)); }
+  /// By what the last step left as it is: norm of force over its nodes [N].
+  double held_back() const { return m_held_back; }
   int num_active() const { return m_region ? m_region->num_awake_rows() : num_free(); }
 
   /// How the force of contact i, of which a step was told, changed while the body moved: what to add [N] for
@@ -184,6 +195,8 @@ class Solid {
   }
   void wake_region(const StepLoads& loads);
   void grow_region(const StepLoads& loads);
+  void grow_region_by_speed(const StepLoads& loads);
+  void grow_region_by_force(const StepLoads& loads);
   void visit_region();
   double frame_tolerance() const;
   void set_tet_motion(const Points& x, bool keeps_frame);
@@ -304,8 +317,12 @@ class Solid {
   std::unique_ptr<ActiveSet> m_region;  // Extent::local
   bool m_has_old_forces = true;         // of tets that do not move: not found yet
   double m_fastest = 0.0;               // speed of the last step [m/s]
-  Points m_last_load;                   // forces of the last step
-  std::vector<double> m_run_speed;      // of the fastest node of each run that is awake
+  double m_frame_slack = 0.0;           // by how much frames may lag where the force at the hand allows it
+  double m_region_slack = 0.0;          // of the present step [N]
+  double m_held_back = 0.0;
+  std::vector<std::pair<double, int>> m_pulls;  // on runs that sleep [N], and their numbers
+  Points m_last_load;                           // forces of the last step
+  std::vector<double> m_run_speed;              // of the fastest node of each run that is awake
   std::unique_ptr<linear::Solver> m_solver;
   std::unique_ptr<linear::Solver> m_static_solver;    // made at first use, as is the next:
   std::unique_ptr<linear::Solver> m_response_solver;  // each keeps a factor of its own

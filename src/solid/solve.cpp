@@ -126,6 +126,7 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
   if (m_is_static && !m_static_solver)
     m_static_solver = linear::make_solver(make_exact(m_params.solver), m_threads);
   linear::Solver& solver = m_is_static ? *m_static_solver : *m_solver;
+  solver.set_goal(is_newton() ? 0.0 : m_tau * loads.slack);
   linear::SolveReport report = solver.solve(m_matrix, product, m_rhs, m_delta);
   if (report.wants_stored) {
     store_nodal_stiffness();
@@ -135,6 +136,9 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
   }
   m_counters.linear_iterations += report.iterations;
   m_counters.residual = report.relative_residual;
+  m_counters.imbalance = report.relative_residual * report.first / m_tau;
+  m_frame_slack =
+      loads.slack == 0.0 ? 0.0 : m_tau * loads.slack / std::max(report.first, m_tau * loads.slack);
   return report;
 }
 
@@ -201,6 +205,7 @@ void Solid::exchange_frames(Archive& archive) {
     archive.number("region/fastest", m_fastest);
     archive.any_size("region/last_load", m_last_load);
   }
+  archive.number("solid/frame_slack", m_frame_slack);
   if (m_frame.size() == 0 || frame_tolerance() == 0.0) return;
   archive.array("solid/frame", m_frame);
   archive.array("solid/turned_gradient", m_turned_gradient);

@@ -236,6 +236,18 @@ bool Solid::assemble(const StepLoads& loads) {
   return false;
 }
 
+/// Without a force where the node is held.
+Vec3 Solid::find_imbalance(const StepLoads& loads, Eigen::Index node) const {
+  const Vec3 force = applied_force(loads, node) - m_internal_force.col(node);
+  return (m_constraints.support.col(node).array() >= 0).select(Vec3::Zero(), force);
+}
+
+double Solid::compute_imbalance(const StepLoads& loads) const {
+  return std::sqrt(ordered_sum(m_elements.num_nodes(), [&](std::ptrdiff_t n) {
+    return (find_imbalance(loads, n) + m_mass(n) / m_tau * m_v_start.col(n)).squaredNorm();
+  }));
+}
+
 /// Φ with ∂Φ/∂v = −r: ½(v−v̂)M(v−v̂) + ½τ vDv + W(x) − (f_ext + M g)·(x − X) and the contacts'.
 double Solid::compute_potential(const StepLoads& loads) {
   const double elastic = compute_elastic_energy(*m_plastic_strain);

@@ -51,16 +51,21 @@ class StageClock final : public sim::StageObserver {
 };
 
 /// Appends what a tick gave.
-void append_records(const sim::Simulation& simulation, output::ResultFile& file) {
+void append_records(const sim::Simulation& simulation, FullModel* full, output::ResultFile& file) {
   file.append(simulation.haptic_record());
-  if (simulation.physics_due_last_tick()) file.append(simulation.physics_record());
+  if (full) full->compare(simulation);
+  if (simulation.physics_due_last_tick()) {
+    sim::PhysicsRecord record = simulation.physics_record();
+    if (full) record.fidelity.error = full->take_error();
+    file.append(record);
+  }
   if (simulation.frame_due_last_tick()) file.append(simulation.make_frame());
 }
 
 /// The ticks themselves. Returns the failure, if any.
 std::optional<Failure> run_ticks(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand,
-                                 sim::Simulation& simulation, output::ResultFile& file, CostMeter& cost,
-                                 Progress& progress) {
+                                 sim::Simulation& simulation, FullModel* full, output::ResultFile& file,
+                                 CostMeter& cost, Progress& progress) {
   Tick last_checkpoint = simulation.clock().tick;
   for (Tick k = simulation.clock().tick + 1; k <= num_ticks; ++k) {
     const device::DeviceSample sample = hand.advance(k, simulation.hand().gated().force);
@@ -68,7 +73,9 @@ std::optional<Failure> run_ticks(const scenario::Scenario& s, Tick num_ticks, Ha
     const StepStatus status = simulation.tick(sample);
     cost.end();
     if (!status.is_ok()) return status.failure();
-    append_records(simulation, file);
+    if (full)
+      if (const StepStatus beside = full->tick(sample); !beside.is_ok()) return beside.failure();
+    append_records(simulation, full, file);
     progress.update(k);
     if (!simulation.physics_due_last_tick()) continue;
     const bool is_due = s.checkpoint_period_ticks > 0 && k - last_checkpoint >= s.checkpoint_period_ticks;
@@ -76,6 +83,7 @@ std::optional<Failure> run_ticks(const scenario::Scenario& s, Tick num_ticks, Ha
       Snapshot snapshot = simulation.take_snapshot();
       Archive archive = Archive::make_saving(snapshot);
       hand.exchange_state(archive);
+      if (full) full->save(snapshot);
       file.write_checkpoint(snapshot);
       last_checkpoint = k;
       if (g_interrupted) break;
@@ -122,7 +130,7 @@ std::uint64_t count_frames(const scenario::Scenario& s, Tick tick) {
 }
 
 LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, sim::Simulation& simulation,
-                 output::ResultFile& file, bool shows_progress) {
+                 FullModel* full, output::ResultFile& file, bool shows_progress) {
   watch_signals();
   Progress progress(num_ticks, shows_progress);
   StageClock clock;
@@ -132,7 +140,7 @@ LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, 
   if (first == 0) file.append(simulation.make_frame());
   LoopEnd end;
   CostMeter cost;
-  end.failure = run_ticks(s, num_ticks, hand, simulation, file, cost, progress);
+  end.failure = run_ticks(s, num_ticks, hand, simulation, full, file, cost, progress);
   const Tick last = simulation.clock().tick;
   end.is_interrupted = !end.failure && last < num_ticks;
   if (!simulation.frame_due_last_tick()) file.append(simulation.make_frame());  // the last good state

@@ -6,6 +6,7 @@
 #include "output/result_file.h"
 #include "scenario/scenario.h"
 #include "sim/simulation.h"
+#include "study/full_model.h"
 #include "study/hand_motion.h"
 
 namespace argil::study {
@@ -31,8 +32,8 @@ struct LoopEnd {
 
 /// Feeds the simulation the hand's motion from its present tick to `num_ticks` and appends records, frames,
 /// checkpoints and timing as they come. A signal ends it after the next physics step, with a checkpoint
-/// there.
+/// there. `full`, if any, goes beside.
 LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, sim::Simulation& simulation,
-                 output::ResultFile& file, bool shows_progress);
+                 FullModel* full, output::ResultFile& file, bool shows_progress);
 
 }  // namespace argil::study

@@ -151,7 +151,10 @@ int run(const RunOptions& options) {
   if (!note.empty()) scene.notes.push_back(note);
   if (s.mode == scenario::Mode::equilibrium) return run_static(s, scene, options);
   const mesh::TriangleMesh tool = scene.tool;
-  sim::Simulation simulation(std::move(scene.body), tool, s.params, sample_at(s, scene.trace, 0));
+  const device::DeviceSample start = sample_at(s, scene.trace, 0);
+  std::optional<FullModel> full;
+  if (s.params.fidelity.mode == sim::FidelityMode::check) full.emplace(scene.body, tool, s.params, start);
+  sim::Simulation simulation(std::move(scene.body), tool, s.params, start);
   const bool is_given = !options.trace.empty();
   require_free_start(simulation, tool, is_given ? options.trace : s.file, is_given ? "" : "/trace",
                      "start the motion outside it");
@@ -164,19 +167,24 @@ int run(const RunOptions& options) {
   if (from.kind == ResumePoint::Kind::done) return print_done_before(result, options);
   if (from.kind == ResumePoint::Kind::checkpoint) {
     simulation.restore(from.state, result);
+    if (full) full->restore(from.state, result);
     Archive archive = Archive::make_restoring(from.state, result);
     hand.exchange_state(archive);
     from.state.clear();
   }
   const Tick first = simulation.clock().tick;
   std::optional<output::ResultFile> file;
-  if (from.kind == ResumePoint::Kind::checkpoint)
+  if (from.kind == ResumePoint::Kind::checkpoint) {
     file.emplace(result, first, count_frames(s, first));
-  else
-    file.emplace(result, make_header(s, simulation, scene, tool, identity));
+  } else {
+    output::ResultHeader header = make_header(s, simulation, scene, tool, identity);
+    header.fidelity = s.params.fidelity.mode;  // here a full run may go beside
+    file.emplace(result, header);
+  }
   LoopEnd end;
   try {
-    end = run_loop(s, count_ticks(s, scene.trace), hand, simulation, *file, !options.quiet);
+    end = run_loop(s, count_ticks(s, scene.trace), hand, simulation, full ? &*full : nullptr, *file,
+                   !options.quiet);
     file->finish(end.failure, end.is_interrupted);
   } catch (const IoError&) {
     std::fprintf(stderr,

@@ -21,6 +21,7 @@ output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulat
   header.skin_triangles = simulation.body().skin.triangles;
   header.tool = tool;
   header.haptic_period = s.params.rates.haptic_period;
+  if (s.params.fidelity.mode != sim::FidelityMode::full) header.fidelity = sim::FidelityMode::automatic;
   std::string notes;
   for (const std::string& note : scene.notes) notes += note + "\n";
   header.provenance = {{"about", s.about},

@@ -268,6 +268,43 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EverySolver,
                          testing::Values(SolverKind::pcg, SolverKind::pcg_cholesky, SolverKind::pcg_jacobi,
                                          SolverKind::cholesky, SolverKind::supernodal));
 
+/// A goal ends an iteration early, at a residual that is no larger; a first guess that has reached it stays.
+TEST(IterativeSolver, StopsAtAGoalBeforeItsTolerance) {
+  for (const double tolerance : {1e-3, 1e-8}) {  // in floats, in double
+    for (const SolverKind kind : {SolverKind::pcg_jacobi, SolverKind::pcg_cholesky}) {
+      SolverParams params;
+      params.kind = kind;
+      params.tolerance = tolerance;
+      const auto solver = make_solver(params);
+      BlockMatrix a = make_random_spd(300, 41);
+      MatrixOperator product(a, 1);
+      Points x = Points::Zero(3, 300);
+      solver->solve(a, product, make_random_vector(300, 42), x);  // pcg_cholesky: a factor of this matrix
+      for (int r = 0; r < 300; ++r) {
+        a.block(a.diagonal[static_cast<std::size_t>(r)]) *= 1.0 + 0.5 * (r % 3);
+        ++a.revision[static_cast<std::size_t>(r)];
+      }
+      const Points b = make_random_vector(300, 43);
+      const auto solve = [&](double goal) {
+        solver->set_goal(goal * b.norm());
+        x.setZero();
+        return solver->solve(a, product, b, x);
+      };
+      const SolveReport early = solve(0.1);
+      EXPECT_TRUE(early.converged);
+      EXPECT_LE((to_dense(a) * x.reshaped() - b.reshaped()).norm(), 0.1001 * b.norm());
+      EXPECT_NEAR(early.first, b.norm(), 1e-12 * b.norm());
+      const SolveReport whole = solve(0.0);
+      EXPECT_LT(early.iterations, whole.iterations);
+      EXPECT_LE(whole.relative_residual, tolerance);
+      const SolveReport none = solve(1.0001);
+      EXPECT_TRUE(none.converged);
+      EXPECT_EQ(none.iterations, 0);
+      EXPECT_TRUE(x.isZero(0.0));
+    }
+  }
+}
+
 TEST(IterativeSolver, TakesWhatTheMatrixDoesNotStore) {
   const BlockMatrix a = make_random_spd(60, 28);
   const Points u = 2.0 * make_random_vector(60, 29);

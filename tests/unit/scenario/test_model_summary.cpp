@@ -55,6 +55,12 @@ TEST_F(ModelSummary, NamesTheExtentWithItsTolerance) {
               "simplified  extent: only the region that moves; what is slower than 0.004 of the fastest");
 }
 
+TEST_F(ModelSummary, SaysHowMuchOfTheForceMayBeLeftOut) {
+  EXPECT_EQ(describe({}).find("fidelity"), std::string::npos);
+  expect_line({"/fidelity/mode=auto", "/fidelity/force_tolerance=0.05", "/fidelity/force_floor_N=0.1"},
+              "simplified  fidelity: a step leaves out what moves the force by at most 5 % or 0.1 N");
+}
+
 TEST_F(ModelSummary, NamesDrainedAndUndrainedWater) {
   expect_line({}, "simplified  pore water: drained");
   const std::vector<std::string> undrained = {"/material/effective_medium/fluid_bulk_modulus_Pa=2.2e9",

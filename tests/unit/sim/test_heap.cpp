@@ -128,6 +128,12 @@ const Case kCases[] = {
      }},
     {"newton", [](Params& p) { p.solid.iteration = solid::Iteration::newton; }},
     {"local", [](Params& p) { p.solid.extent = solid::Extent::local; }},
+    {"fidelity", [](Params& p) { p.fidelity.mode = FidelityMode::automatic; }},
+    {"fidelity_local",
+     [](Params& p) {
+       p.fidelity.mode = FidelityMode::automatic;
+       p.solid.extent = solid::Extent::local;
+     }},
 };
 
 INSTANTIATE_TEST_SUITE_P(Heap, Tick, testing::ValuesIn(kCases),

@@ -1,0 +1,79 @@
+#include "sim/fidelity.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace argil::sim {
+namespace {
+
+// Shares of the bound.
+constexpr double kSolve = 0.25;
+constexpr double kRegion = 0.25;
+constexpr double kSleep = 0.8;       // for a body that sleeps; alone, as nothing else is left out then
+constexpr double kFallAsleep = 0.4;  // for one that falls asleep: far from waking
+constexpr int kCalmSteps = 8;        // that it must have been so
+constexpr double kSafety = 2.0;      // of the reach
+
+}  // namespace
+
+void Fidelity::begin_step(const Vec3& felt_force) {
+  m_record.bound = std::max(m_params.force_floor, m_params.force_tolerance * felt_force.norm());
+  m_force_change = (felt_force - m_felt_force).norm();
+  m_felt_force = felt_force;
+}
+
+void Fidelity::find_reach(const Points& x, const Points& rest) {
+  double largest = 0.0;
+  double squares = 0.0;
+  for (Eigen::Index n = 0; n < x.cols(); ++n) {
+    const double way = (x.col(n) - rest.col(n)).squaredNorm();
+    squares += way;
+    largest = std::max(largest, way);
+  }
+  // As long as the hand has moved nothing, all nodes may go with it.
+  const auto count = static_cast<double>(x.cols());
+  m_reach = kSafety * std::sqrt(largest > 0.0 ? squares / largest : count);
+}
+
+double Fidelity::lasting_share() const {
+  const double floor = m_params.force_floor;
+  return floor * floor / (floor + m_force_change) / m_reach;
+}
+
+double Fidelity::solve_slack() const {
+  return is_full() ? 0.0 : kSolve * lasting_share();
+}
+
+double Fidelity::region_slack() const {
+  return is_full() ? 0.0 : kRegion * lasting_share();
+}
+
+bool Fidelity::falls_asleep(double imbalance, bool flows) {
+  const bool is_calm = !flows && m_reach * imbalance <= kFallAsleep * m_record.bound;
+  m_calm_steps = is_calm ? m_calm_steps + 1 : 0;
+  if (m_calm_steps < kCalmSteps) return false;
+  m_calm_steps = 0;
+  m_record.rung = Rung::asleep;
+  m_record.estimate = m_reach * imbalance;
+  return true;
+}
+
+bool Fidelity::sleeps_on(double imbalance) {
+  m_record.rung = Rung::asleep;
+  m_record.estimate = m_reach * imbalance;
+  return m_record.estimate <= kSleep * m_record.bound;
+}
+
+void Fidelity::set_made(int iterations, double imbalance) {
+  m_record.rung = iterations > 0 ? Rung::solved : Rung::coasting;
+  m_record.estimate = m_reach * imbalance;
+}
+
+void Fidelity::exchange_state(Archive& archive) {
+  archive.array("fidelity/felt_force", m_felt_force);
+  archive.number("fidelity/reach", m_reach);
+  archive.number("fidelity/large_strain", m_record.large_strain);
+  archive.number("fidelity/calm_steps", m_calm_steps);
+}
+
+}  // namespace argil::sim

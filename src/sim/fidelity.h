@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/archive.h"
+#include "base/types.h"
+
+namespace argil::sim {
+
+/// How much of the model a run computes.
+enum class FidelityMode {
+  full,       ///< all of it, always
+  automatic,  ///< what the force at the hand needs
+  check,      ///< the same, beside a full run of the same motion (study/fidelity_check.h)
+};
+
+struct FidelityParams {
+  FidelityMode mode = FidelityMode::full;
+  double force_tolerance = 0.01;  ///< of the force at the hand
+  double force_floor = 0.02;      ///< [N] below which no error counts
+};
+
+/// What a step computes.
+enum class Rung : std::uint8_t {
+  asleep,    ///< nothing: the body stays where it is
+  coasting,  ///< no solve: the body goes on as before
+  solved,    ///< the step's equation
+};
+
+/// A step under `automatic`, as recorded.
+struct FidelityRecord {
+  Rung rung = Rung::solved;
+  double bound = 0.0;     ///< [N] error that the force at the hand may have
+  double estimate = 0.0;  ///< [N] that it has, at most
+  double error = 0.0;     ///< check: [N] that it had since the last step
+  double large_strain =
+      0.0;  ///< of the force, by which another law of elasticity may differ: the mean strain [–]
+};
+
+/// Chooses what a step may leave out. Whatever it is, it leaves forces r in the body without balance. By the
+/// reciprocity of Maxwell and Betti such a force changes that at the hand by g·r, where g is how far its node
+/// goes when the place of contact is moved by a unit, so that the error is at most ‖g‖‖r‖. The reach ‖g‖
+/// is read off the body: what the hand has done to it so far, over the largest displacement.
+class Fidelity {
+ public:
+  explicit Fidelity(const FidelityParams& params) : m_params(params) {}
+
+  bool is_full() const { return m_params.mode == FidelityMode::full; }
+  /// A step begins while the hand feels a force [N].
+  void begin_step(const Vec3& felt_force);
+  /// The body has gone from `rest` to `x`: how far a force in it reaches.
+  void find_reach(const Points& x, const Points& rest);
+  /// [N] without balance that a step's solve may leave, and a region that is held where it is. What these
+  /// leave stays in the body and is felt later, maybe at a small force and, where contacts come and go, much
+  /// enlarged: so they have shares of the floor, and less while the force changes fast.
+  double solve_slack() const;
+  double region_slack() const;
+  /// May a body that would hold `imbalance` [N] back, were it stopped, stop now? It must have been so for
+  /// some steps in a row, and not flow.
+  bool falls_asleep(double imbalance, bool flows);
+  /// May a body that sleeps and holds back `imbalance` [N] go on so?
+  bool sleeps_on(double imbalance);
+  /// The step was made, with so many iterations, and left so much without balance [N].
+  void set_made(int iterations, double imbalance);
+
+  void set_large_strain(double mean_strain) { m_record.large_strain = mean_strain; }
+  const FidelityRecord& record() const { return m_record; }
+  void exchange_state(Archive& archive);
+
+ private:
+  double lasting_share() const;
+
+  FidelityParams m_params;
+  FidelityRecord m_record;
+  double m_reach = 1.0;
+  Vec3 m_felt_force = Vec3::Zero();
+  double m_force_change = 0.0;  // since the last step [N]
+  int m_calm_steps = 0;
+};
+
+}  // namespace argil::sim

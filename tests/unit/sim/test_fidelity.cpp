@@ -1,0 +1,250 @@
+// What `fidelity: auto` leaves out, beside the full model of the same motion: the force at the hand stays
+// within its bound, nothing is left out where the estimate says that it matters, switches neither chatter nor
+// kick.
+#include "sim/fidelity.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "contact/tool_shape.h"
+#include "sim/simulation.h"
+#include "support/block_mesh.h"
+
+namespace argil::sim {
+namespace {
+
+constexpr double kToolRadius = 0.012;
+constexpr double kHeight = 0.02;  // of the block [m]
+
+// ---- The indicators alone
+// ------------------------------------------------------------------------------------
+
+Fidelity make_fidelity() {
+  FidelityParams params;
+  params.mode = FidelityMode::automatic;
+  params.force_tolerance = 0.01;
+  params.force_floor = 0.02;
+  return Fidelity(params);
+}
+
+/// ‖g‖ of Betti's theorem, with the factor 2 of the safety: √n where all nodes go with the hand, 1 where one
+/// does.
+TEST(Fidelity, ForceReachesAsFarAsNodesGoWithTheHand) {
+  const Points rest = Points::Zero(3, 100);
+  Points all = rest, one = rest;
+  all.row(2).setConstant(1e-3);
+  one(2, 7) = 1e-3;
+  Fidelity fidelity = make_fidelity();
+  fidelity.begin_step(Vec3::Zero());
+  fidelity.find_reach(one, rest);
+  const double of_one = fidelity.solve_slack();
+  fidelity.find_reach(all, rest);
+  EXPECT_DOUBLE_EQ(fidelity.solve_slack(), of_one / 10.0);
+  fidelity.find_reach(rest, rest);  // nothing has moved: any of them may
+  EXPECT_DOUBLE_EQ(fidelity.solve_slack(), of_one / 10.0);
+}
+
+TEST(Fidelity, ErrorMayBeAShareOfTheForceOrTheFloor) {
+  Fidelity fidelity = make_fidelity();
+  fidelity.begin_step(Vec3(0, 0, 1.0));
+  EXPECT_DOUBLE_EQ(fidelity.record().bound, 0.02);
+  fidelity.begin_step(Vec3(0, 3.0, 4.0));
+  EXPECT_DOUBLE_EQ(fidelity.record().bound, 0.05);
+}
+
+TEST(Fidelity, SolvesMoreExactlyWhileTheForceChanges) {
+  Fidelity fidelity = make_fidelity();
+  fidelity.begin_step(Vec3(0, 0, 1.0));
+  const double changing = fidelity.solve_slack();
+  fidelity.begin_step(Vec3(0, 0, 1.0));
+  EXPECT_DOUBLE_EQ(fidelity.solve_slack(), changing * (0.02 + 1.0) / 0.02);
+}
+
+/// One mode that relaxes: its imbalance falls by e^{−h/τ} a step. It may stop when what is left of it is
+/// below the bound's share, after the steps that the estimate must have held for, and never while clay flows.
+TEST(Fidelity, ARelaxingModeFallsAsleepWhenLittleIsLeft) {
+  constexpr double kDecay = 0.9;
+  Fidelity fidelity = make_fidelity();
+  const Points rest = Points::Zero(3, 1);
+  double imbalance = 1.0;
+  int steps = 0;
+  for (bool sleeps = false; !sleeps; imbalance *= kDecay, ++steps) {
+    fidelity.begin_step(Vec3::Zero());
+    fidelity.find_reach(rest, rest);
+    sleeps = fidelity.falls_asleep(imbalance, false);
+  }
+  const int first_calm = static_cast<int>(std::ceil(std::log(0.4 * 0.02 / 2.0) / std::log(kDecay)));
+  EXPECT_EQ(steps, first_calm + 8);
+  EXPECT_EQ(fidelity.record().rung, Rung::asleep);
+  EXPECT_LT(fidelity.record().estimate, 0.4 * 0.02);
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.0, true));
+}
+
+/// What falls asleep at an imbalance sleeps on at twice that.
+TEST(Fidelity, WakesFarFromWhereItFellAsleep) {
+  Fidelity fidelity = make_fidelity();
+  fidelity.begin_step(Vec3::Zero());
+  fidelity.find_reach(Points::Zero(3, 1), Points::Zero(3, 1));
+  const double falls = 0.4 * 0.02 / 2.0;
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(fidelity.falls_asleep(1.01 * falls, false));
+  for (int i = 0; i < 7; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.99 * falls, false));
+  EXPECT_TRUE(fidelity.falls_asleep(0.99 * falls, false));
+  EXPECT_TRUE(fidelity.sleeps_on(1.99 * falls));
+  EXPECT_FALSE(fidelity.sleeps_on(2.01 * falls));
+}
+
+// ---- Beside the full model
+// ---------------------------------------------------------------------------------------
+
+Params make_params(FidelityMode mode, int threads = 1) {
+  Params p;
+  p.elastic = {1e5, 0.3};
+  p.plasticity.yield = 0.02;
+  p.kernel.form = material::KernelForm::rate;
+  p.kernel.radius = 0.02;
+  p.contact = {300.0, 300.0};
+  p.solid.rayleigh_stiffness = 1e-3;
+  p.fidelity.mode = mode;
+  p.threads = threads;
+  return p;
+}
+
+Body make_body() {
+  Body body;
+  body.mesh = test::make_block(6, 6, 4, Vec3(0.03, 0.03, kHeight));
+  body.topology = mesh::make_topology(body.mesh);
+  solid::Support bottom;
+  bottom.region.kind = solid::Region::Kind::half_space;
+  bottom.region.offset = 1e-9;
+  body.supports.push_back(bottom);
+  body.initial_saturation = Field::Zero(body.mesh.num_tets());
+  return body;
+}
+
+/// The tool's lowest point over the block [m].
+device::DeviceSample hand_over(double height) {
+  device::DeviceSample sample;
+  sample.position = {0.0153, 0.0148, kHeight + kToolRadius + height};
+  sample.mode = device::ToolMode::push;
+  return sample;
+}
+
+/// Down 1.5 mm in 80 ticks, at rest for 300, up in 80, away.
+device::DeviceSample press_at(Tick tick) {
+  const auto t = static_cast<double>(tick);
+  const double way = std::clamp(std::min(t, 460.0 - t) / 80.0, 0.0, 1.0);
+  return hand_over(3e-4 - 1.8e-3 * way);
+}
+
+constexpr Tick kPressTicks = 600;
+
+Simulation make_simulation(const Params& params) {
+  return {make_body(), contact::make_sphere_tool(kToolRadius, 2), params, hand_over(3e-4)};
+}
+
+struct Comparison {
+  double error = 0.0;     ///< largest, over its bound
+  double estimate = 0.0;  ///< smallest over the true error where that counts
+  double kick = 0.0;      ///< largest change of the force's error at a switch, over the bound
+  int switches = 0;
+  int asleep = 0;     ///< steps
+  double peak = 0.0;  ///< [N]
+};
+
+template <class Hand>
+Comparison compare(Hand hand, Tick num_ticks) {
+  Simulation full = make_simulation(make_params(FidelityMode::full));
+  Simulation lean = make_simulation(make_params(FidelityMode::automatic));
+  Comparison result;
+  result.estimate = 1e300;
+  Rung last = Rung::asleep;
+  Vec3 last_error = Vec3::Zero();
+  for (Tick k = 1; k <= num_ticks; ++k) {
+    EXPECT_TRUE(full.tick(hand(k)).is_ok() && lean.tick(hand(k)).is_ok()) << k;
+    const FidelityRecord record = lean.physics_record().fidelity;
+    const Vec3 error = lean.hand_state().hand_force - full.hand_state().hand_force;
+    result.error = std::max(result.error, error.norm() / record.bound);
+    if (error.norm() > 0.02 * record.bound)
+      result.estimate = std::min(result.estimate, record.estimate / error.norm());
+    if ((record.rung == Rung::asleep) != (last == Rung::asleep)) {
+      ++result.switches;
+      result.kick = std::max(result.kick, (error - last_error).norm() / record.bound);
+    }
+    result.asleep += record.rung == Rung::asleep;
+    result.peak = std::max(result.peak, full.hand_state().hand_force.norm());
+    last = record.rung;
+    last_error = error;
+  }
+  return result;
+}
+
+/// The body sleeps under the resting tool and after it has left, and the hand does not feel it.
+TEST(FidelityAuto, KeepsTheForceOfAPressWithARest) {
+  const Comparison press = compare(press_at, kPressTicks);
+  EXPECT_GT(press.peak, 0.5);
+  EXPECT_LT(press.error, 1.0);
+  EXPECT_GT(press.estimate, 1.0);
+  EXPECT_LT(press.kick, 0.5);
+  EXPECT_GT(press.asleep, 120);
+  EXPECT_LE(press.switches, 4);
+}
+
+/// A tool that rests but for a slow to and fro, a period a second, at whose ends the force has changed by
+/// about as much as a sleeping body may hold back.
+TEST(FidelityAuto, DoesNotChatterAtTheEdgeOfSleep) {
+  for (const double amplitude : {1e-6, 3e-6, 1e-5}) {
+    const auto hand = [amplitude](Tick tick) {
+      const auto t = static_cast<double>(tick);
+      const double way = std::min(t / 80.0, 1.0);
+      const double sway = t < 400.0 ? 0.0 : amplitude * std::sin(2.0 * M_PI * 1e-3 * (t - 400.0));
+      return hand_over(3e-4 - 1.3e-3 * way + sway);
+    };
+    const Comparison rest = compare(hand, 2400);
+    EXPECT_LE(rest.switches, 2 + 4 * 2) << amplitude;  // at most twice a half period
+    EXPECT_LT(rest.error, 1.0) << amplitude;
+    EXPECT_LT(rest.kick, 1.0) << amplitude;
+  }
+}
+
+/// A body without supports falls by backward Euler's ½ g h² k (k + 1), but for the force that may be left
+/// without balance: it coasts, and does not sleep.
+TEST(FidelityAuto, AFreeBodyFallsAndIsNotPutToSleep) {
+  Params params = make_params(FidelityMode::automatic);
+  params.solid.gravity = Vec3(0, 0, -9.81);
+  Body body = make_body();
+  body.supports.clear();
+  Simulation simulation(std::move(body), contact::make_sphere_tool(kToolRadius, 2), params, hand_over(0.05));
+  const Points start = simulation.body_state().solid.x;
+  constexpr int kSteps = 50;
+  for (Tick k = 1; k <= kSteps; ++k) {
+    ASSERT_TRUE(simulation.tick(hand_over(0.05)).is_ok());
+    EXPECT_NE(simulation.physics_record().fidelity.rung, Rung::asleep) << k;
+  }
+  const double mass = simulation.solid().mass().sum();
+  const double ways = 0.5 * 1e-6 * kSteps * (kSteps + 1);  // h² k (k + 1)/2
+  const double fall = (start - simulation.body_state().solid.x).row(2).mean();
+  EXPECT_NEAR(fall, 9.81 * ways, 0.02 / mass * ways);
+}
+
+TEST(FidelityAuto, GivesTheSameBitsAtAnyThreadCountAndOnReturn) {
+  Simulation one = make_simulation(make_params(FidelityMode::automatic, 1));
+  Simulation two = make_simulation(make_params(FidelityMode::automatic, 2));
+  Snapshot asleep, pressing;
+  for (Tick k = 1; k <= kPressTicks; ++k) {
+    ASSERT_TRUE(one.tick(press_at(k)).is_ok() && two.tick(press_at(k)).is_ok());
+    ASSERT_EQ(one.state_hash(), two.state_hash()) << k;
+    if (k == 50) pressing = one.take_snapshot();
+    if (k == 360) asleep = one.take_snapshot();
+  }
+  for (const auto& [tick, snapshot] : {std::pair(Tick{50}, pressing), std::pair(Tick{360}, asleep)}) {
+    Simulation again = make_simulation(make_params(FidelityMode::automatic, 1));
+    again.restore(snapshot, "snapshot");
+    for (Tick k = tick + 1; k <= kPressTicks; ++k) ASSERT_TRUE(again.tick(press_at(k)).is_ok());
+    EXPECT_EQ(again.state_hash(), one.state_hash()) << tick;
+    EXPECT_EQ(again.physics_record().fidelity.estimate, one.physics_record().fidelity.estimate);
+  }
+}
+
+}  // namespace
+}  // namespace argil::sim
