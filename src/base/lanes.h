@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 // A function that stands before this is compiled for each kind of processor and chosen when the program
 // starts. Contraction into fused operations is off, so all versions give the same bits. What such a function
@@ -24,20 +25,19 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 /// Three numbers of a 3-vector; the fourth is whatever follows.
 using Quad = double __attribute__((vector_size(32)));
 
-/// The numbers from any address on.
-ARGIL_INLINE const auto& lanes_at(const double* from) {
-  using Anywhere = double __attribute__((vector_size(kLanes * sizeof(double)), aligned(8), may_alias));
-  return *reinterpret_cast<const Anywhere*>(from);
+/// The numbers from any address on, and all of them to any address. Through memcpy: Clang forgets a vector
+/// type's alignment where a reference to it is returned.
+ARGIL_INLINE void read(const double* from, Lanes& to) {
+  std::memcpy(&to, from, sizeof to);
 }
-ARGIL_INLINE const auto& quad_at(const double* from) {
-  using Anywhere = double __attribute__((vector_size(32), aligned(8), may_alias));
-  return *reinterpret_cast<const Anywhere*>(from);
+ARGIL_INLINE void read(const double* from, Quad& to) {
+  std::memcpy(&to, from, sizeof to);
 }
-
-/// All four of them to any address.
+ARGIL_INLINE void write(const Lanes& from, double* to) {
+  std::memcpy(to, &from, sizeof from);
+}
 ARGIL_INLINE void write(const Quad& from, double* to) {
-  using Anywhere = double __attribute__((vector_size(32), aligned(8), may_alias));
-  *reinterpret_cast<Anywhere*>(to) = from;
+  std::memcpy(to, &from, sizeof from);
 }
 
 /// Turns eight rows of eight numbers into eight columns.
@@ -85,8 +85,7 @@ template <int Count>
 ARGIL_INLINE void read_eight(const double* from, std::ptrdiff_t begin, std::ptrdiff_t last,
                              Lanes (&rows)[8]) {
 #pragma GCC unroll 8
-  for (int lane = 0; lane < kLanes; ++lane)
-    rows[lane] = lanes_at(from + Count * std::min(begin + lane, last));
+  for (int lane = 0; lane < kLanes; ++lane) read(from + Count * std::min(begin + lane, last), rows[lane]);
   transpose(rows);
 }
 
@@ -105,10 +104,11 @@ ARGIL_INLINE void read_lanes(const double* from, std::ptrdiff_t begin, std::ptrd
   } else if constexpr (Count == 6) {
     // Eight are read that end with the item's six; of the first item, eight that begin with them.
     if (begin < last) {
-      const Lanes first = lanes_at(from + Count * begin);
+      Lanes first;
+      read(from + Count * begin, first);
       rows[0] = __builtin_shufflevector(first, first, 6, 7, 0, 1, 2, 3, 4, 5);
       for (int lane = 1; lane < kLanes; ++lane)
-        rows[lane] = lanes_at(from + Count * std::min(begin + lane, last) - 2);
+        read(from + Count * std::min(begin + lane, last) - 2, rows[lane]);
       transpose(rows);
       for (int k = 0; k < Count; ++k) to[k] = rows[k + 2];
       return;
@@ -124,8 +124,6 @@ ARGIL_INLINE void read_lanes(const double* from, std::ptrdiff_t begin, std::ptrd
 /// Turns `from` into rows and stores the first `Width` numbers of each at `to`, `stride` apart.
 template <int Width>
 ARGIL_INLINE void write_rows(const Lanes (&from)[8], std::ptrdiff_t stride, double* to) {
-  using LanesAt = double __attribute__((vector_size(sizeof(Lanes)), aligned(8), may_alias));
-  using QuadAt = double __attribute__((vector_size(sizeof(Quad)), aligned(8), may_alias));
   static_assert(Width == kLanes || Width == 6);
   Lanes rows[8] = {from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]};
   transpose(rows);
@@ -133,9 +131,10 @@ ARGIL_INLINE void write_rows(const Lanes (&from)[8], std::ptrdiff_t stride, doub
   for (int lane = 0; lane < kLanes; ++lane) {
     double* row = to + stride * lane;
     if constexpr (Width == kLanes) {
-      *reinterpret_cast<LanesAt*>(row) = rows[lane];
+      write(rows[lane], row);
     } else {
-      *reinterpret_cast<QuadAt*>(row) = __builtin_shufflevector(rows[lane], rows[lane], 0, 1, 2, 3);
+      const Quad first = __builtin_shufflevector(rows[lane], rows[lane], 0, 1, 2, 3);
+      write(first, row);
       row[4] = rows[lane][4];
       row[5] = rows[lane][5];
     }

@@ -53,7 +53,11 @@ ARGIL_EVERY_PROCESSOR double multiply_rows(const BlockMatrix& matrix, const doub
     Quad even[3] = {}, odd[3] = {};
     const auto add = [&](Quad * sum) __attribute__((always_inline)) {
       const double* p = x + 3 * static_cast<std::ptrdiff_t>(column[b]);
-      for (int k = 0; k < 3; ++k) sum[k] += quad_at(a + 3 * k) * p[k];
+      Quad block_column;
+      for (int k = 0; k < 3; ++k) {
+        read(a + 3 * k, block_column);
+        sum[k] += block_column * p[k];
+      }
       a += 9;
       ++b;
     };

@@ -8,14 +8,15 @@ namespace {
 
 using Floats4 = float __attribute__((vector_size(16)));
 using Floats8 = float __attribute__((vector_size(32)));
-using Floats4At = float __attribute__((vector_size(16), aligned(4), may_alias));
-using Floats8At = float __attribute__((vector_size(32), aligned(4), may_alias));
+// At any address. Pointers to them, for Clang forgets the alignment of what a function returns by reference.
+using Floats4At __attribute__((aligned(4), may_alias)) = Floats4;
+using Floats8At __attribute__((aligned(4), may_alias)) = Floats8;
 
-ARGIL_INLINE auto& four_at(float* at) {
-  return *reinterpret_cast<Floats4At*>(at);
+ARGIL_INLINE Floats4At* four_at(float* at) {
+  return reinterpret_cast<Floats4At*>(at);
 }
-ARGIL_INLINE const auto& four_at(const float* at) {
-  return *reinterpret_cast<const Floats4At*>(at);
+ARGIL_INLINE const Floats4At* four_at(const float* at) {
+  return reinterpret_cast<const Floats4At*>(at);
 }
 
 /// Sums of one row: the first eight numbers of a block meet those of x at once, its last one alone.
@@ -25,7 +26,7 @@ struct RowSum {
 };
 
 ARGIL_INLINE void add_block(const float* block, const float* x, RowSum& sum) {
-  const Floats4 p = four_at(x);
+  const Floats4 p = *four_at(x);
   sum.eight +=
       *reinterpret_cast<const Floats8At*>(block) * __builtin_shufflevector(p, p, 0, 0, 0, 1, 1, 1, 2, 2);
   sum.last += block[8] * p[2];
@@ -50,8 +51,8 @@ ARGIL_EVERY_PROCESSOR double multiply_rows(const BlockMatrix& pattern, const flo
     const Floats8 sum = even.eight + odd.eight;
     const Floats4 out = {sum[0] + sum[3] + sum[6], sum[1] + sum[4] + sum[7],
                          sum[2] + sum[5] + (even.last + odd.last), 0.0F};
-    four_at(y + 4 * row) = out;
-    dot += out * four_at(x + 4 * row);
+    *four_at(y + 4 * row) = out;
+    dot += out * *four_at(x + 4 * row);
   }
   return static_cast<double>(dot[0] + dot[1] + dot[2]);
 }
@@ -61,16 +62,16 @@ ARGIL_EVERY_PROCESSOR void advance_rows(const float* inverse, float alpha, float
                                         const ShortBlocks::Iterate& to, ShortBlocks::Sums& sums) {
   Floats4 rr = {}, rz = {};
   for (std::ptrdiff_t i = 4 * begin; i < 4 * end; i += 4) {
-    const Floats4 p = four_at(to.z + i) + beta * four_at(to.p + i);
-    const Floats4 q = four_at(w + i) + beta * four_at(to.q + i);
-    const Floats4 r = four_at(to.r + i) - alpha * q;
-    four_at(to.p + i) = p;
-    four_at(to.q + i) = q;
-    four_at(to.x + i) += alpha * p;
-    four_at(to.r + i) = r;
+    const Floats4 p = *four_at(to.z + i) + beta * *four_at(to.p + i);
+    const Floats4 q = *four_at(w + i) + beta * *four_at(to.q + i);
+    const Floats4 r = *four_at(to.r + i) - alpha * q;
+    *four_at(to.p + i) = p;
+    *four_at(to.q + i) = q;
+    *four_at(to.x + i) += alpha * p;
+    *four_at(to.r + i) = r;
     const float* a = inverse + 3 * i;
-    const Floats4 z = four_at(a) * r[0] + four_at(a + 4) * r[1] + four_at(a + 8) * r[2];
-    four_at(to.z + i) = z;
+    const Floats4 z = *four_at(a) * r[0] + *four_at(a + 4) * r[1] + *four_at(a + 8) * r[2];
+    *four_at(to.z + i) = z;
     rr += r * r;
     rz += r * z;
   }

@@ -7,11 +7,15 @@ namespace {
 
 /// a·b of `count` numbers, in an order of addition that `count` alone decides.
 ARGIL_INLINE double dot(const double* a, const double* b, std::ptrdiff_t count) {
-  Lanes even = {}, odd = {};
+  Lanes even = {}, odd = {}, x, y;
   std::ptrdiff_t i = 0;
   for (; i + 2 * kLanes <= count; i += 2 * kLanes) {
-    even += lanes_at(a + i) * lanes_at(b + i);
-    odd += lanes_at(a + i + kLanes) * lanes_at(b + i + kLanes);
+    read(a + i, x);
+    read(b + i, y);
+    even += x * y;
+    read(a + i + kLanes, x);
+    read(b + i + kLanes, y);
+    odd += x * y;
   }
   double rest = 0.0;
   for (; i < count; ++i) rest += a[i] * b[i];
@@ -38,9 +42,10 @@ ARGIL_EVERY_PROCESSOR double advance(double alpha, double beta, const double* z,
 ARGIL_EVERY_PROCESSOR double apply_blocks(const double* inverse, const double* r, std::ptrdiff_t begin,
                                           std::ptrdiff_t end, double* z) {
   for (std::ptrdiff_t row = begin; row < end; ++row) {
-    const double* a = inverse + 9 * row;
     const double* in = r + 3 * row;
-    const Quad out = quad_at(a) * in[0] + quad_at(a + 3) * in[1] + quad_at(a + 6) * in[2];
+    Quad column[3];
+    for (int k = 0; k < 3; ++k) read(inverse + 9 * row + 3 * k, column[k]);
+    const Quad out = column[0] * in[0] + column[1] * in[1] + column[2] * in[2];
     for (int k = 0; k < 3; ++k) z[3 * row + k] = out[k];
   }
   return dot(r + 3 * begin, z + 3 * begin, 3 * (end - begin));

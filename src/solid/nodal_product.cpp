@@ -10,24 +10,25 @@
 namespace argil::solid {
 namespace {
 
-/// Four numbers at any address.
+/// Four numbers at any address. Pointers to them, for Clang forgets the alignment of what a function returns
+/// by reference.
 template <class Real>
 struct Four;
 template <>
 struct Four<float> {
-  using At = float __attribute__((vector_size(16), aligned(4), may_alias));
+  using At __attribute__((vector_size(16), aligned(4), may_alias)) = float;
 };
 template <>
 struct Four<double> {
-  using At = double __attribute__((vector_size(32), aligned(8), may_alias));
+  using At __attribute__((vector_size(32), aligned(8), may_alias)) = double;
 };
 template <class Real>
-ARGIL_INLINE const auto& four_at(const Real* at) {
-  return *reinterpret_cast<const typename Four<Real>::At*>(at);
+ARGIL_INLINE const typename Four<Real>::At* four_at(const Real* at) {
+  return reinterpret_cast<const typename Four<Real>::At*>(at);
 }
 template <class Real>
-ARGIL_INLINE auto& four_at(Real* at) {
-  return *reinterpret_cast<typename Four<Real>::At*>(at);
+ARGIL_INLINE typename Four<Real>::At* four_at(Real* at) {
+  return reinterpret_cast<typename Four<Real>::At*>(at);
 }
 
 // Templates for floats and double; in floats, which are there for speed, compiled for every processor below.
@@ -41,7 +42,7 @@ ARGIL_INLINE double set_volume_changes(const int* node_begin, const int* row, co
   for (std::ptrdiff_t a = begin; a < end; ++a) {
     typename Four<Real>::At even = {}, odd = {};
     const auto product = [&](std::ptrdiff_t e, auto& sum) __attribute__((always_inline)) {
-      sum += four_at(factor + 4 * e) * four_at(x + 4 * static_cast<std::ptrdiff_t>(row[e]));
+      sum += *four_at(factor + 4 * e) * *four_at(x + 4 * static_cast<std::ptrdiff_t>(row[e]));
     };
     std::ptrdiff_t e = node_begin[a];
     for (; e + 1 < node_begin[a + 1]; e += 2) {
@@ -64,11 +65,11 @@ ARGIL_INLINE void add_volume_changes(const int* row_begin, const int* node, cons
     typename Four<Real>::At even = {}, odd = {};
     std::ptrdiff_t e = row_begin[row];
     for (; e + 1 < row_begin[row + 1]; e += 2) {
-      even += four_at(factor + 4 * e) * theta[node[e]];
-      odd += four_at(factor + 4 * e + 4) * theta[node[e + 1]];
+      even += *four_at(factor + 4 * e) * theta[node[e]];
+      odd += *four_at(factor + 4 * e + 4) * theta[node[e + 1]];
     }
-    if (e < row_begin[row + 1]) even += four_at(factor + 4 * e) * theta[node[e]];
-    four_at(y + 4 * row) += even + odd;
+    if (e < row_begin[row + 1]) even += *four_at(factor + 4 * e) * theta[node[e]];
+    *four_at(y + 4 * row) += even + odd;
   }
 }
 
@@ -79,7 +80,7 @@ ARGIL_INLINE void add_squares(const int* row_begin, const Real* factor, std::ptr
   for (std::ptrdiff_t row = begin; row < end; ++row) {
     typename Four<Real>::At column[3] = {};
     for (std::ptrdiff_t e = row_begin[row]; e < row_begin[row + 1]; ++e)
-      for (int k = 0; k < 3; ++k) column[k] += four_at(factor + 4 * e) * factor[4 * e + k];
+      for (int k = 0; k < 3; ++k) column[k] += *four_at(factor + 4 * e) * factor[4 * e + k];
     for (int k = 0; k < 9; ++k) blocks[9 * row + k] += static_cast<double>(column[k / 3][k % 3]);
   }
 }

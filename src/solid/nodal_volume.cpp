@@ -124,7 +124,10 @@ ARGIL_EVERY_PROCESSOR void add_corner_gradients(const int* corners, int begin, i
     for (int j = 0; j < 4; ++j) {
       const double* g = gradient + 12 * tet + 3 * j;
       double* sum = ring + 4 * static_cast<std::ptrdiff_t>(places[4 * corner + j]);
-      write(quad_at(sum) + weight[tet] * Quad{g[0], g[1], g[2], 0.0}, sum);
+      Quad entry;
+      read(sum, entry);
+      entry += weight[tet] * Quad{g[0], g[1], g[2], 0.0};
+      write(entry, sum);
     }
   }
 }

@@ -216,13 +216,18 @@ ARGIL_EVERY_PROCESSOR void set_isotropic_row(const RowArrays& rows, int begin, i
 
 ARGIL_EVERY_PROCESSOR void sum_corner_forces(const double* corner_force, const int* corners, int begin,
                                              int end, double* force) {
-  Quad even = {}, odd = {};  // apart, so that no sum waits for the one before it
+  Quad even = {}, odd = {}, of_corner;  // even and odd apart, so that no sum waits for the one before it
   int c = begin;
   for (; c + 1 < end; c += 2) {
-    even += quad_at(corner_force + 3 * static_cast<std::ptrdiff_t>(corners[c]));
-    odd += quad_at(corner_force + 3 * static_cast<std::ptrdiff_t>(corners[c + 1]));
+    read(corner_force + 3 * static_cast<std::ptrdiff_t>(corners[c]), of_corner);
+    even += of_corner;
+    read(corner_force + 3 * static_cast<std::ptrdiff_t>(corners[c + 1]), of_corner);
+    odd += of_corner;
   }
-  if (c < end) even += quad_at(corner_force + 3 * static_cast<std::ptrdiff_t>(corners[c]));
+  if (c < end) {
+    read(corner_force + 3 * static_cast<std::ptrdiff_t>(corners[c]), of_corner);
+    even += of_corner;
+  }
   even += odd;
   for (int k = 0; k < 3; ++k) force[k] = even[k];
 }
