@@ -158,7 +158,7 @@ BEND = [  # push a post over with the middle of a rod of 60 mm held across it
     Stroke("push", 0.10, -25.0, -30.0, 90.0),
 ]
 
-FOLD = [  # push a post over by a quarter of a circle with such a rod; the side along which it goes grows longer
+FOLD = [  # push a post over by as far as such a rod takes it; farther on it slips off the top
     Stroke("push", 0.10, 1.0, -30.0, 90.0),
     Stroke("push", 0.40, -32.0, -24.0, 90.0),
     Stroke("push", 0.40, -66.0, -29.0, 90.0),
