@@ -94,8 +94,9 @@ class Traces(unittest.TestCase):
             longest = max(math.dist(a, b) for a, b in zip(x, x[1:]))
             # 20 mm in 37.5 ms peaks at 15/8·20/37.5 mm per ms; grid and tremor add at most a step each way. The short
             # motions of studies come down 24 mm, block_slide.csv 7 mm aside with it, in 100 ms.
-            way, time = {"poke.csv": (20.0, 37.5), "block_light.csv": (24.0, 100.0), "block_wet.csv": (24.0, 100.0),
-                         "post_bend.csv": (math.hypot(24.0, 30.0), 100.0), "block_slide.csv": (25.0, 100.0)}.get(name, (23.0, 500.0))
+            way, time = (24.0, 100.0) if name.startswith("block_") else (23.0, 500.0)
+            way, time = {"poke.csv": (20.0, 37.5), "post_bend.csv": (math.hypot(24.0, 30.0), 100.0),
+                         "post_fold.csv": (math.hypot(24.0, 30.0), 100.0), "block_slide.csv": (25.0, 100.0)}.get(name, (way, time))
             fastest = 15.0 / 8.0 * way / time
             self.assertLess(longest, fastest + 2 * math.sqrt(3) * 0.06)
             if name == "poke.csv":
