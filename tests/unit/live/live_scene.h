@@ -2,7 +2,7 @@
 
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
-#include "support/block_mesh.h"
+#include "support/block_body.h"
 
 namespace argil::live::test {
 
@@ -34,15 +34,8 @@ inline device::DeviceSample over(double gap) {
 }
 
 inline sim::Simulation make_simulation(const sim::Params& params, const device::DeviceSample& start) {
-  sim::Body body;
-  body.mesh = argil::test::make_block(6, 6, 3, Vec3(0.04, 0.04, 0.02));
-  body.topology = mesh::make_topology(body.mesh);
-  solid::Support bottom;
-  bottom.region.kind = solid::Region::Kind::half_space;
-  bottom.region.offset = 1e-9;
-  body.supports.push_back(bottom);
-  body.initial_saturation = Field::Zero(body.mesh.num_tets());
-  return {std::move(body), contact::make_sphere_tool(kToolRadius, 2), params, start};
+  return {argil::test::make_block_body(6, 6, 3, Vec3(0.04, 0.04, 0.02)),
+          contact::make_sphere_tool(kToolRadius, 2), params, start};
 }
 
 /// A device whose motion a function of the sample's number gives. Keeps what it was sent last.

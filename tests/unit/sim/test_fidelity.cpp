@@ -9,7 +9,7 @@
 
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
-#include "support/block_mesh.h"
+#include "support/block_body.h"
 
 namespace argil::sim {
 namespace {
@@ -17,8 +17,7 @@ namespace {
 constexpr double kToolRadius = 0.012;
 constexpr double kHeight = 0.02;  // of the block [m]
 
-// ---- The indicators alone
-// ------------------------------------------------------------------------------------
+// The indicators alone.
 
 Fidelity make_fidelity() {
   FidelityParams params;
@@ -94,8 +93,7 @@ TEST(Fidelity, WakesFarFromWhereItFellAsleep) {
   EXPECT_FALSE(fidelity.sleeps_on(2.01 * falls));
 }
 
-// ---- Beside the full model
-// ---------------------------------------------------------------------------------------
+// Beside the full model.
 
 Params make_params(FidelityMode mode, int threads = 1) {
   Params p;
@@ -111,15 +109,7 @@ Params make_params(FidelityMode mode, int threads = 1) {
 }
 
 Body make_body() {
-  Body body;
-  body.mesh = test::make_block(6, 6, 4, Vec3(0.03, 0.03, kHeight));
-  body.topology = mesh::make_topology(body.mesh);
-  solid::Support bottom;
-  bottom.region.kind = solid::Region::Kind::half_space;
-  bottom.region.offset = 1e-9;
-  body.supports.push_back(bottom);
-  body.initial_saturation = Field::Zero(body.mesh.num_tets());
-  return body;
+  return test::make_block_body(6, 6, 4, Vec3(0.03, 0.03, kHeight));
 }
 
 /// The tool's lowest point over the block [m].

@@ -5,7 +5,7 @@
 
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
-#include "support/block_mesh.h"
+#include "support/block_body.h"
 #include "support/heap_count.h"
 
 #ifdef ARGIL_COUNTS_HEAP
@@ -36,15 +36,7 @@ Params make_params() {
 }
 
 Body make_block_body() {
-  Body body;
-  body.mesh = test::make_block(6, 6, 4, Vec3(0.03, 0.03, 0.02));
-  body.topology = mesh::make_topology(body.mesh);
-  solid::Support bottom;
-  bottom.region.kind = solid::Region::Kind::half_space;
-  bottom.region.offset = 1e-9;
-  body.supports.push_back(bottom);
-  body.initial_saturation = Field::Constant(body.mesh.num_tets(), 0.2);
-  return body;
+  return test::make_block_body(6, 6, 4, Vec3(0.03, 0.03, 0.02), 0.2);
 }
 
 /// A small round on the top, pressed in.

@@ -4,7 +4,7 @@
 
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
-#include "support/block_mesh.h"
+#include "support/block_body.h"
 
 namespace argil::sim {
 namespace {
@@ -27,15 +27,7 @@ Params make_params(solid::Extent extent, double tolerance) {
 
 /// A bar of 0.4 m that lies on its long side.
 Body make_bar() {
-  Body body;
-  body.mesh = test::make_block(80, 4, 3, Vec3(0.4, 0.02, 0.015));
-  body.topology = mesh::make_topology(body.mesh);
-  solid::Support bottom;
-  bottom.region.kind = solid::Region::Kind::half_space;
-  bottom.region.offset = 1e-9;
-  body.supports.push_back(bottom);
-  body.initial_saturation = Field::Zero(body.mesh.num_tets());
-  return body;
+  return test::make_block_body(80, 4, 3, Vec3(0.4, 0.02, 0.015));
 }
 
 /// Down on one end of it, up again.

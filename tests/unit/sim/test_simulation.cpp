@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "contact/tool_shape.h"
-#include "support/block_mesh.h"
+#include "support/block_body.h"
 
 namespace argil::sim {
 namespace {
@@ -30,17 +30,7 @@ Params make_params() {
 
 /// Block of 4 × 4 × 2 cm; its bottom may be fixed.
 Body make_body(bool fixed) {
-  Body body;
-  body.mesh = test::make_block(6, 6, 3, Vec3(0.04, 0.04, 0.02));
-  body.topology = mesh::make_topology(body.mesh);
-  if (fixed) {
-    solid::Support bottom;
-    bottom.region.kind = solid::Region::Kind::half_space;
-    bottom.region.offset = 1e-9;
-    body.supports.push_back(bottom);
-  }
-  body.initial_saturation = Field::Zero(body.mesh.num_tets());
-  return body;
+  return test::make_block_body(6, 6, 3, Vec3(0.04, 0.04, 0.02), 0.0, fixed);
 }
 
 /// Hand over the middle of the block, the tool's lowest point `gap` above it.

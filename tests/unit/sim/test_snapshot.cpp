@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
-#include "support/block_mesh.h"
+#include "support/block_body.h"
 #include "support/temp_folder.h"
 
 namespace argil::sim {
@@ -31,15 +31,7 @@ Params make_params() {
 }
 
 Body make_body(int cells) {
-  Body body;
-  body.mesh = test::make_block(cells, cells, 2, Vec3(0.04, 0.04, 0.02));
-  body.topology = mesh::make_topology(body.mesh);
-  solid::Support bottom;
-  bottom.region.kind = solid::Region::Kind::half_space;
-  bottom.region.offset = 1e-9;
-  body.supports.push_back(bottom);
-  body.initial_saturation = Field::Constant(body.mesh.num_tets(), 0.2);
-  return body;
+  return test::make_block_body(cells, cells, 2, Vec3(0.04, 0.04, 0.02), 0.2);
 }
 
 /// The hand presses and slides; it wets while it does so, then dries.
