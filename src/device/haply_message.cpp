@@ -30,7 +30,8 @@ const Json& find_device(const Json& list, std::string_view wanted_id) {
   if (!list.is_array()) return kNull;
   for (const Json& device : list) {
     const Json& id = member(device, "device_id");
-    if (id.is_string() && (wanted_id.empty() || id.get_ref<const std::string&>() == wanted_id)) return device;
+    const std::string_view text = id.is_string() ? id.get_ref<const std::string&>() : std::string_view();
+    if (!text.empty() && (wanted_id.empty() || text == wanted_id)) return device;
   }
   return kNull;
 }

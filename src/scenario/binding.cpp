@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <system_error>
 
 #include "base/error.h"
 
@@ -119,9 +120,12 @@ Parameter& Binder::path(const std::string& pointer, std::string& value, const st
     value = text.empty()
                 ? text
                 : std::filesystem::absolute(std::filesystem::path(folder) / text).lexically_normal().string();
-    if (!value.empty() && !std::filesystem::exists(value))
-      throw InputError(file, place, "file \"" + value + "\" does not exist",
-                       "give a path relative to the scenario's folder or an absolute one");
+    std::error_code problem;  // too long a name, a folder that is closed; none where nothing has the name
+    if (value.empty() || std::filesystem::exists(value, problem)) return;
+    throw InputError(file, place,
+                     "file \"" + value + "\" " +
+                         (problem ? "cannot be looked up: " + problem.message() : "does not exist"),
+                     "give a path relative to the scenario's folder or an absolute one");
   };
   row.write = [&value]() -> Json { return value; };
   return row;

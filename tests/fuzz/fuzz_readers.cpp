@@ -21,6 +21,7 @@
 #include "device/haply_message.h"
 #include "device/trace.h"
 #include "hdf5_input.h"
+#include "json_mutation.h"
 #include "mesh/readers.h"
 #include "scenario/scenario.h"
 #include "scenario/study_file.h"
@@ -31,9 +32,12 @@ namespace {
 
 using namespace argil;
 
+enum class Form { other, json, scenario };
+
 struct Reader {
   std::vector<std::string> endings;  ///< of its files' names, by which it tells formats apart
   std::function<void(const std::string& file)> read;
+  Form form = Form::other;
 };
 
 /// What is accepted is printed with all defaults, and that must be accepted again and print the same.
@@ -69,18 +73,19 @@ const std::map<std::string, Reader, std::less<>>& readers() {
        {{".obj", ".stl", ".ply"}, [](const std::string& file) { mesh::read_triangle_mesh(file); }}},
       {"traces", {{".csv"}, [](const std::string& file) { device::read_trace(file, {}); }}},
       {"hdf5", {{".h5"}, [](const std::string& file) { device::read_trace(file, {}); }}},
-      {"messages", {{".json"}, read_haply}},
+      {"messages", {{".json"}, read_haply, Form::json}},
       {"queries", {{".csv"}, [](const std::string& file) { contact::read_queries(file); }}},
-      {"scenarios", {{".json"}, read_scenario}},
+      {"scenarios", {{".json"}, read_scenario, Form::scenario}},
       {"points", {{".jsonl"}, read_points}},
-      {"sweeps", {{".json"}, [](const std::string& file) { scenario::load_sweep(file); }}},
+      {"sweeps", {{".json"}, [](const std::string& file) { scenario::load_sweep(file); }, Form::json}},
       {"studies",
        {{".chart", ".stability", ".tolerances"},
         [](const std::string& file) {
           if (file.ends_with("chart")) scenario::read_chart_study(file);
           if (file.ends_with("stability")) scenario::read_stability_study(file);
           if (file.ends_with("tolerances")) scenario::load_tolerances(file);
-        }}},
+        },
+        Form::json}},
   };
   return kReaders;
 }
@@ -153,4 +158,25 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const IoError&) {
   }
   return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+
+/// Half of the changes of JSON are such as keep it JSON.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned seed) {
+  static const nlohmann::json kAnything;
+  static const nlohmann::json scenario_schema = nlohmann::json::parse(scenario::print_schema());
+  const Reader& reader = chosen_reader();
+  const std::size_t begin = reader.endings.size() > 1 ? 1 : 0;  // after the byte that chooses the format
+  if (reader.form != Form::other && seed % 2 == 0 && size > begin) {
+    const std::string text(reinterpret_cast<const char*>(data) + begin, size - begin);
+    const nlohmann::json& schema = reader.form == Form::scenario ? scenario_schema : kAnything;
+    const auto changed = change_json(text, schema, seed / 2);
+    if (changed && begin + changed->size() <= max_size) {
+      std::copy(changed->begin(), changed->end(), data + begin);
+      return begin + changed->size();
+    }
+  }
+  return LLVMFuzzerMutate(data, size, max_size);
 }

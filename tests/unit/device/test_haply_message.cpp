@@ -68,8 +68,8 @@ TEST(HaplyMessage, SaysWhatIsWrong) {
   for (const char* text : {"", "}{", "[1, 2]", "7", "{\"a\": NaN}", "{\"a\": 1e999}", "\xff\xfe", "{\"a\": "})
     EXPECT_EQ(problem(text), "no JSON object") << text;
   EXPECT_EQ(problem(std::string(100000, '[')), "no JSON object");
-  for (const char* text :
-       {"{}", "{\"inverse3\": 3}", "{\"inverse3\": []}", "{\"inverse3\": [{\"device_id\": 5}]}"})
+  for (const char* text : {"{}", "{\"inverse3\": 3}", "{\"inverse3\": []}",
+                           "{\"inverse3\": [{\"device_id\": 5}]}", "{\"inverse3\": [{\"device_id\": \"\"}]}"})
     EXPECT_EQ(problem(text), "no Inverse3 is connected to the service") << text;
   for (const char* position : {"null", "[0, 0, 0]", R"({"x": 0, "y": 0})", R"({"x": 0, "y": "0", "z": 0})",
                                R"({"x": 0, "y": null, "z": 0})"})

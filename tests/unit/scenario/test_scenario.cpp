@@ -147,6 +147,12 @@ TEST_F(ScenarioFile, ValuesOutsideTheirRangeNamePointerValueRangeAndUnit) {
   expect_refused("/haptics/water_period_ticks=1e30", {"/haptics/water_period_ticks", "whole number"});
 }
 
+TEST_F(ScenarioFile, FilesThatCannotBeLookedUpAreNamedWithTheirKeyAndTheReason) {
+  expect_refused("/trace/file=gone.csv", {"/trace/file", "gone.csv\" does not exist; give a path relative"});
+  expect_refused("/trace/file=" + std::string(300, 'x') + ".csv",
+                 {"scene.json: /trace/file", "cannot be looked up: File name too long; give a path"});
+}
+
 TEST_F(ScenarioFile, DuplicateKeyInAListIsNamedWithItsElement) {
   ARGIL_EXPECT_THROW_WITH(parse_json(R"({"a": [1, {"b": 2}, {"c/d": [], "c/d": 3}]})", "f"), InputError,
                           "f: /a/2/c~1d: stands twice");
