@@ -98,6 +98,7 @@ void AttachedDevice::release() noexcept {
 Wrench AttachedDevice::take_wrench() {
   m_orders.take(m_last_order);
   const double oldest = std::min(m_last_order.time, m_last_time.load());
+  // After a new start m_last_time is still that of a sample from before it.
   const bool is_alive = m_samples > 0 && steady_seconds() - oldest <= kForceLifetime;
   if (!is_alive || m_is_released || m_is_stopping) return {};
   return m_last_order.wrench;

@@ -47,6 +47,11 @@ std::string make_frame(unsigned char opcode, const std::string& payload) {
   return frame + std::string(4, '\0') + payload;
 }
 
+std::string explain(const ErrorCode& error) {
+  if (error != websocket::error::buffer_overflow) return error.message();
+  return "a message of more than " + std::to_string(kMaxMessage >> 20) + " MiB";
+}
+
 class HaplyDevice final : public AttachedDevice {
  public:
   HaplyDevice(const DeviceOptions& options, std::string host, std::string port)
@@ -82,7 +87,7 @@ class HaplyDevice final : public AttachedDevice {
   std::optional<asio::ip::tcp::resolver> m_resolver;
   std::optional<Socket> m_socket;
   std::optional<asio::steady_timer> m_timer;
-  beast::flat_buffer m_received;
+  beast::flat_buffer m_received{kMaxMessage};
   std::string m_sent;
   std::string m_id;           ///< of the Inverse3; empty before the inventory
   bool m_is_waiting = false;  ///< a command has not been answered yet
@@ -108,7 +113,7 @@ auto HaplyDevice::or_lose(const char* what, Next next) {
     if (is_stopping()) return m_io.stop();
     if (error)
       throw std::runtime_error("Haply Inverse Service at " + m_host + ":" + m_port + ": " + what + ": " +
-                               error.message() + "; see that the service runs, or name haply:HOST:PORT");
+                               explain(error) + "; see that the service runs, or name haply:HOST:PORT");
     next(results...);
   };
 }
@@ -143,7 +148,7 @@ void HaplyDevice::interrupt() noexcept {
 void HaplyDevice::connect() {
   const auto shake_hands = [this](const auto&...) {
     m_socket->next_layer().socket().set_option(asio::ip::tcp::no_delay(true));
-    m_socket->read_message_max(kMaxMessage);
+    m_socket->read_message_max(0);  // m_received has the limit, which leaves the channel for the farewell
     m_socket->async_handshake(m_host + ":" + m_port, "/", or_lose("no WebSocket", [this] { read(); }));
   };
   const auto reach = [this, shake_hands](const asio::ip::tcp::resolver::results_type& found) {

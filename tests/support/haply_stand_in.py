@@ -9,6 +9,7 @@ Usage: haply_stand_in.py [--mode MODE] [--good STATES] [--port PORT]
 """
 import argparse
 import base64
+import contextlib
 import hashlib
 import json
 import math
@@ -21,7 +22,8 @@ import time
 
 MASS, STIFFNESS, DAMPING = 0.15, 300.0, 6.0
 MODES = ("normal", "no_device", "garbage", "not_websocket", "half", "late", "slow", "surplus", "zero_quaternion", "nan",
-         "null", "huge", "unplugged", "vanish", "silent")
+         "null", "huge", "unplugged", "vanish", "silent", "oversized", "endless")
+OVERSIZE = 24 << 20  # bytes; more than WebSocket libraries take unless told, and than any real state
 
 
 class Gone(Exception):
@@ -105,6 +107,24 @@ class Connection:
     def send(self, text):
         self.stream.sendall(self.frame(text))
 
+    def send_oversized(self, text):
+        """The text after so many blanks, which JSON ignores, in one frame."""
+        self.stream.sendall(struct.pack(">BBQ", 0x81, 127, OVERSIZE + len(text)) + b" " * OVERSIZE + text.encode())
+
+    def send_endless(self, _):
+        """A message whose every fragment is small and the last never comes."""
+        fragment = struct.pack(">BBH", 0, 126, 0xffff) + b" " * 0xffff
+        self.stream.sendall(b"\x01" + fragment[1:])
+        while True:
+            self.stream.sendall(fragment)
+
+    def send_beside(self, send, text):
+        """In a thread, so that what the client says meanwhile is read."""
+        def run():
+            with contextlib.suppress(OSError):  # the client has closed
+                send(text)
+        threading.Thread(target=run, daemon=True).start()
+
     def state(self):
         x, y, z = self.hand.x
         grip = {"orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}, "buttons": {"a": False, "b": False, "c": False}}
@@ -160,6 +180,10 @@ class Connection:
         elif mode == "surplus":
             self.send(json.dumps(state))
             self.send(json.dumps(state))
+        elif mode == "oversized":
+            self.send_beside(self.send_oversized, json.dumps(state))
+        elif mode == "endless":
+            self.send_beside(self.send_endless, "")
         elif mode == "unplugged":
             state["inverse3"] = []
             self.send(json.dumps(state))

@@ -2,6 +2,7 @@
 // (tests/support/haply_stand_in.py) well, or in one of many bad ways. Deadlines are generous: what is
 // asserted are states and counts.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -48,10 +49,11 @@ class Session {
   bool gets_samples(std::int64_t count) {
     return tick_until([&](const DevicePoll& poll) { return poll.number >= count; });
   }
-  /// What the server saw, once the device is stopped.
+  /// What the server saw of the next of the connections that have ended.
+  nlohmann::json report() { return nlohmann::json::parse(m_server.read_line(), nullptr, false); }
   nlohmann::json stop() {
     m_device->stop();
-    return nlohmann::json::parse(m_server.read_line(), nullptr, false);
+    return report();
   }
 
  private:
@@ -102,13 +104,16 @@ TEST(Haply, TurnsForcesIntoItsOwnAxesAndPositionsIntoTheWorlds) {
   session.stop();
 }
 
-TEST(Haply, StartsAgainAfterItWasStopped) {
+TEST(Haply, StartsAgainAndSendsNoForceBeforeItsNewFirstSample) {
   Session session("normal");
-  for (int round = 0; round < 2; ++round) {
-    session.device().start();
+  constexpr int kStarts = 5;
+  for (int start = 0; start < kStarts; ++start) {
     ASSERT_TRUE(session.gets_samples(5));
-    session.stop();
+    session.device().start();  // the hand's thread goes on at once, while the last sample is young
   }
+  ASSERT_TRUE(session.gets_samples(5));
+  for (int start = 0; start < kStarts; ++start) EXPECT_EQ(session.report().at("forced_too_early"), 0);
+  EXPECT_EQ(session.stop().at("forced_too_early"), 0);
 }
 
 TEST(Haply, SendsNoForceOnceItIsReleased) {
@@ -142,14 +147,24 @@ void PrintTo(const Fault& fault, std::ostream* out) {
   *out << fault.mode;
 }  // NOLINT: GoogleTest's name
 
+/// The most that this process has ever held [bytes].
+std::int64_t peak_memory() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{1024} * usage.ru_maxrss;
+}
+
 class HaplyFault : public testing::TestWithParam<Fault> {};
 
 TEST_P(HaplyFault, IsStaleThenLostAndSaysWhy) {
   Session session(GetParam().mode);
   ASSERT_TRUE(session.comes_to(DeviceState::ready));
+  const std::int64_t memory = peak_memory();
   ASSERT_TRUE(session.comes_to(DeviceState::lost));
   EXPECT_NE(session.device().problem().find(GetParam().words), std::string::npos)
       << session.device().problem();
+  // Half of the oversized message; a sanitizer's shadow of what a client may hold is less.
+  EXPECT_LT(peak_memory() - memory, std::int64_t{12} << 20);
   EXPECT_TRUE(session.last().sample.position.allFinite());
   EXPECT_NEAR(session.last().sample.orientation.norm(), 1.0, 1e-12);
   const nlohmann::json report = session.stop();
@@ -170,7 +185,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"half", "no usable sample"}, Fault{"silent", "no usable sample"},
                     Fault{"zero_quaternion", "quaternion"}, Fault{"nan", "no JSON object"},
                     Fault{"null", "cursor_position"}, Fault{"huge", "position"},
-                    Fault{"unplugged", "not connected any more"}, Fault{"vanish", "connection lost"}),
+                    Fault{"unplugged", "not connected any more"}, Fault{"vanish", "connection lost"},
+                    Fault{"oversized", "message of more than 1 MiB"},
+                    Fault{"endless", "message of more than 1 MiB"}),
     [](const auto& fault) { return fault.param.mode; });
 
 TEST(Haply, BecomesReadyAgainAfterALateAnswer) {
