@@ -18,7 +18,8 @@ class OrderedRuns {
   /// first call of one size.
   template <class Body>
   double sum(std::ptrdiff_t count, Body body) {
-    prepare(count);
+    const auto runs = static_cast<std::size_t>(count_runs(count));
+    if (m_sums.size() != runs) m_sums.resize(runs);
     double* sums = m_sums.data();
     each_run(count, [sums, &body](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
       sums[i] = body(begin, end);
@@ -47,12 +48,6 @@ class OrderedRuns {
   /// From now on only these runs, increasing; the list must outlive them. Null: all.
   void visit(const std::vector<int>* runs) { m_visited = runs; }
   static constexpr std::ptrdiff_t kLength = 32;
-
-  /// Before a first sum of this many items in a team.
-  void prepare(std::ptrdiff_t count) {
-    const auto runs = static_cast<std::size_t>(count_runs(count));
-    if (m_sums.size() != runs) m_sums.resize(runs);
-  }
 
  private:
   int m_threads;

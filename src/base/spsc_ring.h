@@ -14,13 +14,17 @@ class SpscRing {
  public:
   explicit SpscRing(std::size_t capacity) : m_places(capacity + 1) {}
 
+  /// The writing thread. Is there a place? Then there is one until it is filled.
+  bool has_room() const {
+    const std::size_t end = m_end.load(std::memory_order_relaxed);
+    return (end + 1 == m_places.size() ? 0 : end + 1) != m_begin.load(std::memory_order_acquire);
+  }
   /// The writing thread. False when the ring is full; `value` is as it was then.
   bool push(T&& value) {
+    if (!has_room()) return false;
     const std::size_t end = m_end.load(std::memory_order_relaxed);
-    const std::size_t next = end + 1 == m_places.size() ? 0 : end + 1;
-    if (next == m_begin.load(std::memory_order_acquire)) return false;
     m_places[end] = std::move(value);
-    m_end.store(next, std::memory_order_release);
+    m_end.store(end + 1 == m_places.size() ? 0 : end + 1, std::memory_order_release);
     return true;
   }
   /// The reading thread. False when there is nothing.

@@ -22,8 +22,8 @@ class Operator {
 
   // Where A is a stored matrix and something that is not stored:
   virtual bool has_unstored() const { return false; }
-  /// y += the latter times x; returns x · what was added. Called by all threads of a team (base/parallel.h),
-  /// with four floats a row, the last of them 0.
+  /// y += the latter times x; returns x · what was added. Rows of four floats, the last of
+  /// them 0.
   virtual double add_unstored(const float* x, float* y);
   /// Adds its diagonal blocks, 3×3 side by side.
   virtual void add_unstored_diagonal(Eigen::Matrix3Xd&) {}

@@ -50,55 +50,50 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
 SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, int max_iterations) {
   const std::ptrdiff_t num_rows = m_product.cols();
   const ShortBlocks::Iterate to{m_p.data(), m_q.data(), m_x.data(), m_r.data(), m_z.data()};
-  SolveReport report;
-  in_team(m_threads, [&] {
-    ShortBlocks::Sums sums;
-    const auto advance = [&](double alpha, double beta) {
-      m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
-        m_sums[static_cast<std::size_t>(i)] =
-            m_blocks.advance(begin, end, static_cast<float>(alpha), static_cast<float>(beta), m_w.data(), to);
-      });
-      sums = {};
-      for (const ShortBlocks::Sums& run : m_sums) {
-        sums.rr += run.rr;
-        sums.rz += run.rz;
-      }
-    };
-    m_runs.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      for (std::ptrdiff_t row = begin; row < end; ++row)
-        for (std::ptrdiff_t k = 0; k < 4; ++k) {
-          const std::ptrdiff_t i = 4 * row + k;
-          m_p.data()[i] = m_q.data()[i] = m_w.data()[i] = m_z.data()[i] = m_x.data()[i] = 0.0F;
-          m_r.data()[i] = k < 3 ? static_cast<float>(m_product.data()[3 * row + k] / first) : 0.0F;
-        }
+  ShortBlocks::Sums sums;
+  const auto advance = [&](double alpha, double beta) {
+    m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
+      m_sums[static_cast<std::size_t>(i)] =
+          m_blocks.advance(begin, end, static_cast<float>(alpha), static_cast<float>(beta), m_w.data(), to);
     });
-    advance(0.0, 0.0);  // z = D⁻¹ r
-    double residual = std::sqrt(sums.rr);
-    double last_rz = 1.0;
-    double curvature = 0.0;  // p·A p, by the recurrence that holds while directions are conjugate
-    int iterations = 0;
-    bool is_positive = true;
-    // Written so that a NaN residual leaves the loop as not converged.
-    while (residual > goal && iterations < max_iterations) {
-      m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
-        m_products[static_cast<std::size_t>(i)] = m_blocks.multiply(begin, end, m_z.data(), m_w.data());
-      });
-      double product = whole.add_unstored(m_z.data(), m_w.data());
-      for (const double run : m_products) product += run;
-      const double beta = sums.rz / last_rz;
-      last_rz = sums.rz;
-      curvature = product - beta * beta * curvature;
-      is_positive = curvature > 0.0;
-      if (!is_positive) break;
-      advance(last_rz / curvature, beta);
-      residual = std::sqrt(sums.rr);
-      ++iterations;
+    sums = {};
+    for (const ShortBlocks::Sums& run : m_sums) {
+      sums.rr += run.rr;
+      sums.rz += run.rz;
     }
-    if (is_first_of_team())
-      report = {is_positive && residual <= goal, iterations,
-                is_positive ? residual : std::numeric_limits<double>::infinity()};
+  };
+  m_runs.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t row = begin; row < end; ++row)
+      for (std::ptrdiff_t k = 0; k < 4; ++k) {
+        const std::ptrdiff_t i = 4 * row + k;
+        m_p.data()[i] = m_q.data()[i] = m_w.data()[i] = m_z.data()[i] = m_x.data()[i] = 0.0F;
+        m_r.data()[i] = k < 3 ? static_cast<float>(m_product.data()[3 * row + k] / first) : 0.0F;
+      }
   });
-  return report;
+  advance(0.0, 0.0);  // z = D⁻¹ r
+  double residual = std::sqrt(sums.rr);
+  double last_rz = 1.0;
+  double curvature = 0.0;  // p·A p, by the recurrence that holds while directions are conjugate
+  int iterations = 0;
+  bool is_positive = true;
+  // Written so that a NaN residual leaves the loop as not converged.
+  while (residual > goal && iterations < max_iterations) {
+    m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
+      m_products[static_cast<std::size_t>(i)] = m_blocks.multiply(begin, end, m_z.data(), m_w.data());
+    });
+    double product = whole.add_unstored(m_z.data(), m_w.data());
+    for (const double run : m_products) product += run;
+    const double beta = sums.rz / last_rz;
+    last_rz = sums.rz;
+    curvature = product - beta * beta * curvature;
+    is_positive = curvature > 0.0;
+    if (!is_positive) break;
+    advance(last_rz / curvature, beta);
+    residual = std::sqrt(sums.rr);
+    ++iterations;
+  }
+  return {is_positive && residual <= goal, iterations,
+          is_positive ? residual : std::numeric_limits<double>::infinity()};
 }
 
 }  // namespace argil::linear

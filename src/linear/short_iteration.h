@@ -11,7 +11,7 @@ namespace argil::linear {
 /// tolerances above kRoomForFloats. Each iteration goes over the rows twice. Bits do not depend on `threads`.
 class ShortIteration {
  public:
-  explicit ShortIteration(int threads) : m_threads(threads), m_runs(threads) {}
+  explicit ShortIteration(int threads) : m_runs(threads) {}
 
   /// `matrix` must be what it was in every call but for its values. `goal`: a norm of the residual that is
   /// small enough as well.
@@ -27,7 +27,6 @@ class ShortIteration {
  private:
   SolveReport iterate(Operator& whole, double first, double goal, int max_iterations);
 
-  int m_threads;
   OrderedRuns m_runs;
   bool m_is_changed = true;
   ShortBlocks m_blocks;

@@ -181,7 +181,6 @@ bool NodalProduct::find_busy_runs() {
   collect(m_busy_rows, num_rows(), is_row_busy);
   m_node_runs.visit(&m_busy_nodes);
   m_row_runs.visit(&m_busy_rows);
-  m_node_runs.prepare(num_nodes());
   return true;
 }
 

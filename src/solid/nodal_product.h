@@ -24,7 +24,7 @@ class NodalProduct {
 
   /// y += s Σ g_a (g_a·x) / D_a; returns x · what was added. A column a row of the matrix.
   double add(const Points& x, Points& y);
-  /// The same in a team, with factors in floats; four numbers a row.
+  /// The same with factors in floats; four numbers a row.
   double add(const float* x, float* y);
   /// The same matrix's 3×3 diagonal blocks, side by side.
   void add_diagonal(Eigen::Matrix3Xd& blocks) const;
