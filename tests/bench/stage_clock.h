@@ -1,0 +1,55 @@
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "sim/stage.h"
+
+namespace argil::bench {
+
+inline constexpr auto kNumStages = static_cast<std::size_t>(sim::Stage::count);
+inline constexpr std::array<const char*, kNumStages> kStages = {"contact", "water",      "assemble",
+                                                                "solve",   "kinematics", "plasticity"};
+
+/// Counters `name` and `name`_p99 of a sample of times; none when it is empty.
+inline void report_times(benchmark::State& state, const std::string& name, std::vector<double>& times) {
+  if (times.empty()) return;
+  std::sort(times.begin(), times.end());
+  const std::size_t last = times.size() - 1;
+  state.counters[name] = times[last / 2];
+  state.counters[name + "_p99"] = times[(99 * last) / 100];
+}
+
+/// Microseconds of every stage in every step in which it ran.
+class StageClock final : public sim::StageObserver {
+ public:
+  void begin(sim::Stage) override { m_begin = std::chrono::steady_clock::now(); }
+  void end(sim::Stage stage) override {
+    m_step[static_cast<std::size_t>(stage)] +=
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - m_begin).count();
+  }
+  void next_step() {
+    for (std::size_t s = 0; s < kNumStages; ++s)
+      if (m_step[s] > 0.0) m_samples[s].push_back(m_step[s]);
+    m_sums.push_back(std::accumulate(m_step.begin(), m_step.end(), 0.0));
+    m_step = {};
+  }
+  void report(benchmark::State& state) {
+    for (std::size_t s = 0; s < kNumStages; ++s) report_times(state, kStages[s], m_samples[s]);
+    report_times(state, "step", m_sums);
+  }
+
+ private:
+  std::chrono::steady_clock::time_point m_begin;
+  std::array<double, kNumStages> m_step = {};
+  std::array<std::vector<double>, kNumStages> m_samples;
+  std::vector<double> m_sums;
+};
+
+}  // namespace argil::bench
