@@ -42,7 +42,7 @@ SCENES = {
                                                   "/contact/edge_edge_stiffness_N_per_m=8")),
     "wet half": Scene("study_wet_undrained", with_trace("block_wet.csv", "/body/initial_saturation=0", *UNDRAINED)),
     "wet undrained": Scene("study_wet_undrained", UNDRAINED),
-    "bend by 55°": Scene("study_deep_bend", with_trace("post_fold.csv")),
+    "bend by 90°": Scene("study_deep_bend", with_trace("post_fold.csv")),
     "two-second rest": Scene("study_light_press", with_trace("block_rest.csv")),
     "dinosaur": Scene("demo_dino_dry", []),
     "rest with tremor": Scene("study_light_press", with_trace("block_rest_tremor.csv"), "sleep"),

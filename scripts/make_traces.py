@@ -158,12 +158,23 @@ BEND = [  # push a post over with the middle of a rod of 60 mm held across it
     Stroke("push", 0.10, -25.0, -30.0, 90.0),
 ]
 
-FOLD = [  # push a post over by as far as such a rod takes it; farther on it slips off the top
-    Stroke("push", 0.10, 1.0, -30.0, 90.0),
-    Stroke("push", 0.40, -32.0, -24.0, 90.0),
-    Stroke("push", 0.40, -66.0, -29.0, 90.0),
-    Stroke("push", 0.20, -66.0, -29.0, 90.0),
-]
+
+def follow_bend(place, half_width, foot, degrees, steps):
+    """Strokes of 0.1 s with which such a rod stays at one place of a post's side and square to it, 1.5 mm deep, as if all of
+    the post from its foot [mm] below the place on bent to an arc; so that it does not slip off the top. A post that is
+    stiffer than that lags behind: 130 degrees of the way turn its top by a little over 90."""
+    radius = place.tool_radius
+    yield Stroke("push", 0.10, 1.0, -30.0, 90.0)
+    for step in range(1, steps + 1):
+        angle = math.radians(degrees) * step / steps
+        over = half_width + radius - 1.5  # from the post's middle to the rod's
+        along = foot * (1.0 - math.cos(angle)) / angle - over * math.cos(angle)
+        up = foot * math.sin(angle) / angle + over * math.sin(angle)
+        yield Stroke("push", 0.10, -along - half_width - radius, -30.0, 90.0, foot - up)
+    yield Stroke("push", 0.20, -along - half_width - radius, -30.0, 90.0, foot - up)
+
+
+FOLD = list(follow_bend(POST, 50.0 / 3.0, 85.0, 130.0, 12))  # until the top lies on its side
 
 WET_LIGHT = [  # wet a place, then press it
     Stroke("wet", 0.10, 1.0, 0.0, 0.0),
