@@ -28,7 +28,9 @@ STAND_INS = {"haply": ("haply_stand_in.py", (-0.006, 0.074, -0.088)),
              "spacenav": ("spacenav_stand_in.py", (-0.006, -0.2364, 0.062))}
 FIGURES = ["wake_late_p50", "wake_late_p99", "wake_late_p999", "wake_late_max", "tick_work_p50", "tick_work_p99",
            "tick_work_max", "step_work_p50", "step_work_p99", "step_work_max", "num_surface_age_ticks_p50",
-           "num_surface_age_ticks_p99", "num_surface_age_ticks_max", "num_ticks", "num_missed_ticks", "num_steps",
+           "num_surface_age_ticks_p99", "num_surface_age_ticks_max", "sample_age_p50", "sample_age_p99", "sample_age_max",
+           "num_force_age_ticks_p50", "num_force_age_ticks_p99", "num_force_age_ticks_max", "picture_delay_p50",
+           "picture_delay_p99", "picture_delay_max", "num_ticks", "num_missed_ticks", "num_repeated_samples", "num_steps",
            "num_late_steps"]
 
 
@@ -36,6 +38,10 @@ def call(argil, *arguments, environment=None):
     done = subprocess.run([argil, *map(str, arguments)], capture_output=True, text=True, check=False,
                           env={**os.environ, **(environment or {})})
     return done.returncode, done.stdout + done.stderr
+
+
+def quantiles(row, name, scale, digits):
+    return " / ".join(f"{scale * row[f'{name}_{q}']:.{digits}f}" for q in ("p50", "p99", "max"))
 
 
 def write_intent(file, seconds):
@@ -84,17 +90,20 @@ def record(argil, folder, devices, placed, rate, seconds):
                 f"/trace/file={folder / 'intent.csv'}"]
     sets = [word for setting in settings + placed for word in ("--set", setting)]
     live, again = folder / "live.h5", folder / "again.h5"
-    code, said = call(argil, "live", SCENARIO, "--device", name, "--duration", seconds, "-o", live, "-q", *sets,
-                      environment=environment)
+    code, said = call(argil, "live", SCENARIO, "--device", name, "--duration", seconds, "-o", live, "-q",
+                      "--watch", folder / "watch.h5", *sets, environment=environment)
     if code != 0:
         raise SystemExit(f"{device} at {rate} Hz: code {code}: {said}")
+    granted = "no: " + said.strip().split("warning: ")[-1] if "warning" in said else "yes"
     sets = [word for setting in settings[:-1] for word in ("--set", setting)]
     code, said = call(argil, "run", SCENARIO, "--trace", live, "-o", again, "-q", *sets)
     if code != 0:
         raise SystemExit(f"replay of {device} at {rate} Hz: code {code}: {said}")
     code, said = call(argil, "compare", live, again)
-    row = {"device": device, "physics_Hz": rate, "replay": "equal" if code == 0 else said.splitlines()[0]}
+    row = {"device": device, "physics_Hz": rate, "replay": "equal" if code == 0 else said.splitlines()[0],
+           "granted": granted}
     with h5py.File(live) as file:
+        row["commit"] = file["provenance/build"][()].decode().splitlines()[1].removeprefix("commit ")
         row["end_hash"] = bytes(file["session"].attrs["end_hash"]).decode()[:16]
         for name in FIGURES:
             row[name] = float(file["timing"][name][-1])
@@ -117,7 +126,9 @@ def write_readme(file, rows, options):
         "# How well a live session keeps its times", "",
         f"The dinosaur of `demo_dino_dry`, {options.seconds:g} s a session, hand at 1 kHz, `re_evaluate`; {os.cpu_count()} processors,",
         f"{platform.machine()}, Linux {platform.release()}. Each session is replayed in one thread; \"equal\": `argil compare` finds",
-        f"no difference, forces and hashes included. `scripts/live_table.py` writes this. {options.note}".rstrip(), "",
+        f"no difference, forces and hashes included. `scripts/live_table.py` writes this. {options.note}".rstrip(),
+        f"Real-time priority of the hand's thread and locked memory were granted: {', '.join(sorted({r['granted'] for r in rows}))}."
+        f" Commit {', '.join(sorted({r['commit'] for r in rows}))}.", "",
         "\"Woken late\": by the system, after the time that the hand asked for. A tick is missed when that is more than a period.",
         "\"Late steps\": those for which the body was not ready when the hand had the next load for it; the hand went on against the",
         "last surface, whose age is in the column before.", "",
@@ -132,6 +143,15 @@ def write_readme(file, rows, options):
         lines.append(f"| {r['device']} | {r['physics_Hz']} Hz | {late} | {work} | {step} | {age} |"
                      f" {r['num_missed_ticks']:.0f} of {r['num_ticks']:.0f} | {r['num_late_steps']:.0f} of {r['num_steps']:.0f}"
                      f" | {r['replay']} |")
+    lines += [
+        "", "**What the hand's force rests on.** The sample's age by the device's clock when the hand takes it; ticks for which there was no",
+        "newer one; ticks since the force was last found anew from contacts; and how long after the force its picture was in the",
+        "file that others watch (`--watch`, a picture each 40 or 42 ticks).", "",
+        "| device | physics | age of the sample, p50 / p99 / max [ms] | ticks without a new sample |"
+        " age of the force, p50 / p99 / max [ticks] | force to picture, p50 / p99 / max [ms] |", "|---|---|---|---|---|---|"]
+    for r in rows:
+        lines.append(f"| {r['device']} | {r['physics_Hz']} Hz | {quantiles(r, 'sample_age', ms, 2)} | {r['num_repeated_samples']:.0f}"
+                     f" | {quantiles(r, 'num_force_age_ticks', 1, 0)} | {quantiles(r, 'picture_delay', ms, 1)} |")
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

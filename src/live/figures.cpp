@@ -24,6 +24,8 @@ void Figures::add(const HandTick& tick) {
   m_wake_late.add(std::max(0.0, tick.timing.wake_late));
   m_work.add(tick.timing.work);
   m_missed += tick.timing.missed;
+  m_sample_age.add(tick.timing.sample_age);
+  if (tick.session.sample == m_last.session.sample) ++m_repeated;
   if (tick.session.seen_step != m_seen_step) m_seen_begun_at = m_begun_at;
   m_seen_step = tick.session.seen_step;
   if (tick.session.begun_step != 0) m_begun_at = tick.record.tick;
@@ -51,10 +53,12 @@ std::vector<std::pair<std::string, double>> Figures::list() const {
   add_quantiles("tick_work", m_work);
   add_quantiles("step_work", m_step_work);
   add_quantiles("picture_delay", m_picture_delay);
+  add_quantiles("sample_age", m_sample_age);
   add_quantiles("num_force_age_ticks", m_force_age);
   add_quantiles("num_surface_age_ticks", m_surface_age);
   list.emplace_back("num_ticks", static_cast<double>(m_wake_late.total()));
   list.emplace_back("num_missed_ticks", static_cast<double>(m_missed));
+  list.emplace_back("num_repeated_samples", static_cast<double>(m_repeated));
   list.emplace_back("num_steps", static_cast<double>(m_step_work.total()));
   list.emplace_back("num_late_steps", static_cast<double>(m_late_steps));
   list.emplace_back("num_late_ticks", static_cast<double>(m_late_ticks));
@@ -71,13 +75,17 @@ std::string Figures::print() const {
   text += row("woken late", m_wake_late, 1e-6, "us");
   text += row("a tick's work", m_work, 1e-6, "us");
   text += row("a step's work", m_step_work, 1e-3, "ms");
+  text += row("age of the sample", m_sample_age, 1e-3, "ms");
   text += row("age of the force", m_force_age, 1.0, "ticks");
   text += row("age of the surface", m_surface_age, 1.0, "ticks");
   if (m_picture_delay.total() > 0) text += row("from force to picture", m_picture_delay, 1e-3, "ms");
-  text += format("  %lld ticks, %lld missed; %lld steps, %lld late by %lld ticks in all; %lld ticks gated\n",
-                 static_cast<long long>(m_wake_late.total()), static_cast<long long>(m_missed),
-                 static_cast<long long>(m_step_work.total()), static_cast<long long>(m_late_steps),
-                 static_cast<long long>(m_late_ticks), static_cast<long long>(m_gated));
+  text += format(
+      "  %lld ticks, %lld missed, %lld without a new sample; %lld steps, %lld late by %lld ticks in all; "
+      "%lld ticks gated\n",
+      static_cast<long long>(m_wake_late.total()), static_cast<long long>(m_missed),
+      static_cast<long long>(m_repeated), static_cast<long long>(m_step_work.total()),
+      static_cast<long long>(m_late_steps), static_cast<long long>(m_late_ticks),
+      static_cast<long long>(m_gated));
   return text;
 }
 

@@ -26,10 +26,12 @@ class Figures {
 
  private:
   Distribution m_wake_late{1e-6}, m_work{1e-6}, m_step_work{1e-5}, m_picture_delay{1e-4};  // [s]
+  Distribution m_sample_age{1e-4};                                                         // [s]
   Distribution m_force_age{1.0}, m_surface_age{1.0};                                       // [ticks]
   std::int64_t m_missed = 0;                                                               // periods
   std::int64_t m_late_steps = 0, m_late_ticks = 0;
-  std::int64_t m_gated = 0;  // ticks in which the gate had to do something
+  std::int64_t m_repeated = 0;  // ticks without a new sample
+  std::int64_t m_gated = 0;     // ticks in which the gate had to do something
   Tick m_seen_step = 0, m_seen_begun_at = 0, m_begun_at = 0;
   HandTick m_last;
   double m_water = 0.0;  // [kg]

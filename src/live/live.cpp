@@ -1,10 +1,13 @@
 #include "live/live.h"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <sstream>
 
 #include "base/error.h"
 #include "device/devices.h"
@@ -53,6 +56,14 @@ void require_live(const scenario::Scenario& s) {
         s.file, "/haptics/between_frames",
         "\"compliant\" looks into the body between its steps, which a hand that does not wait cannot",
         "set re_evaluate or hold");
+  const double step = s.params.rates.physics_period_ticks * s.params.rates.haptic_period;
+  const double oldest = s.params.device.watchdog.max_physics_age;
+  std::ostringstream problem;
+  problem << s.params.rates.physics_period_ticks << " ticks between steps are " << step
+          << " s, longer than the " << oldest << " s after which the watchdog lets the hand go";
+  if (step > oldest)
+    throw InputError(s.file, "/haptics/physics_period_ticks", problem.str(),
+                     "make it shorter, or raise /haptics/device/watchdog/max_physics_age_s");
 }
 
 device::DeviceOptions make_device_options(const scenario::Scenario& s, const device::Trace& trace) {
@@ -86,6 +97,13 @@ output::SessionHead make_head(const scenario::Scenario& s, const device::DeviceI
   return head;
 }
 
+void check_watch_name(const scenario::Scenario& s, const std::string& watch, const std::string& result) {
+  study::check_result_name(s, watch, "--watch");
+  for (const std::string& written : {result, study::name_xdmf(result)})
+    if (std::filesystem::weakly_canonical(watch) == std::filesystem::weakly_canonical(written))
+      throw InputError(watch, "", "is what the result is written to", "give another name to --watch");
+}
+
 double find_water_capacity(const sim::Simulation& simulation) {
   double capacity = 0.0;  // [kg]
   for (int t = 0; t < simulation.body().mesh.num_tets(); ++t) capacity += simulation.pore_water().capacity(t);
@@ -93,8 +111,23 @@ double find_water_capacity(const sim::Simulation& simulation) {
 }
 
 Tick find_num_ticks(const scenario::Scenario& s, const LiveOptions& options, const device::Trace& trace) {
-  if (options.duration > 0.0) return static_cast<Tick>(options.duration / s.params.rates.haptic_period);
+  if (options.duration != 0.0) {
+    const double period = s.params.rates.haptic_period;
+    const double ticks = options.duration / period;
+    constexpr double kRounding = 1e-6, kMost = 1e15;
+    std::ostringstream problem;
+    problem << options.duration << " s is not from one tick (" << period << " s) to 1e15 ticks";
+    if (!(ticks + kRounding >= 1.0 && ticks <= kMost))
+      throw InputError("--duration", "", problem.str(), "give a duration in that range");
+    return static_cast<Tick>(ticks + kRounding);
+  }
   return options.device == "simulated" ? study::count_ticks(s, trace) : 0;
+}
+
+/// Would a few words be written at once? Not to a terminal that a user has stopped.
+bool takes_text(int descriptor) {
+  pollfd look = {descriptor, POLLOUT, 0};
+  return poll(&look, 1, 0) == 1 && (look.revents & POLLOUT) != 0;
 }
 
 /// Drains until both threads have ended, and shows how it goes.
@@ -107,7 +140,7 @@ void attend(Session& session, Recorder& recorder, const Figures& figures, double
   while (session.is_running()) {
     recorder.drain(session);
     const double now = monotonic_now();
-    if (draws && now - drawn >= kRedraw) {
+    if (draws && now - drawn >= kRedraw && takes_text(STDERR_FILENO)) {
       std::fprintf(stderr, "\r%s ", figures.print_now(now - start, water_capacity).c_str());
       drawn = now;
     }
@@ -142,11 +175,9 @@ int print_end(const Session& session, const device::HapticDevice& device, const 
 
 /// The session from its first tick to the end of its file.
 int conduct(sim::Simulation& simulation, device::HapticDevice& device, const SessionOptions& session_options,
-            output::ResultFile& file, const std::string& result, const LiveOptions& options) {
-  std::unique_ptr<Watch> watch;
-  if (!options.watch.empty()) watch = std::make_unique<Watch>(options.watch, simulation);
+            output::ResultFile& file, Watch* watch, const std::string& result, const LiveOptions& options) {
   Figures figures;
-  Recorder recorder(file, figures, watch.get());
+  Recorder recorder(file, figures, watch);
   Session session(simulation, device, session_options);
   const SignalScope signals(session);
   const double water_capacity = find_water_capacity(simulation);
@@ -169,27 +200,36 @@ int run_live(const LiveOptions& options) {
   require_live(s);
   const std::string result = study::name_result(s, options.run);
   study::check_result_name(s, result);
-  if (!options.watch.empty()) study::check_result_name(s, options.watch);
+  if (!options.watch.empty()) check_watch_name(s, options.watch, result);
   scenario::Scene scene = scenario::build_scene(s);
   const auto device = attach(options.device, make_device_options(s, scene.trace));
   const device::ReleaseGuard guard(*device);
-  const device::DevicePoll first = device->poll();
-  const output::SessionHead head = make_head(s, device->info(), first.sample);
-  const SessionOptions session_options{.num_ticks = find_num_ticks(s, options, scene.trace),
-                                       .mode = study::find_fixed_mode(s),
-                                       .first_sample = first.number};
+  const Tick num_ticks = find_num_ticks(s, options, scene.trace);
   scene.trace = {};
   const mesh::TriangleMesh tool = scene.tool;
+  const auto head_now = [&](const device::DevicePoll& poll) {
+    return make_head(s, device->info(), poll.sample);
+  };
+  device::DevicePoll first = device->poll();
+  output::SessionHead head = head_now(first);
   sim::Simulation simulation(std::move(scene.body), tool, study::session_params(head, s.params), head.start);
+  study::print_notes(scene, options.run);
+  std::unique_ptr<Watch> watch;
+  if (!options.watch.empty()) watch = std::make_unique<Watch>(options.watch, simulation);
+  // To make all this took a while, in which the hand may have moved.
+  if (const device::DevicePoll now = device->poll(); now.is_valid()) first = now;
+  head = head_now(first);
+  simulation.hand().begin_at(head.start);
   study::require_free_start(simulation, tool, "--device " + options.device, "",
                             "move the device away from it");
-  study::print_notes(scene, options.run);
   const scenario::Scenario bare = study::without_trace(s);
   output::ResultFile file(result,
                           study::make_header(bare, simulation, scene, tool, study::find_identity(bare)));
   file.begin_session(head, true);
   file.append(simulation.make_frame());
-  return conduct(simulation, *device, session_options, file, result, options);
+  const SessionOptions session_options{
+      .num_ticks = num_ticks, .mode = study::find_fixed_mode(s), .first_sample = first.number};
+  return conduct(simulation, *device, session_options, file, watch.get(), result, options);
 }
 
 }  // namespace argil::live

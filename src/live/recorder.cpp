@@ -1,20 +1,23 @@
 #include "live/recorder.h"
 
+#include <algorithm>
+
 namespace argil::live {
 
-/// Ticks go before the step that they led to, which may have come after they were looked for.
+/// A quick body may answer before the hand has given away the tick.
 void Recorder::drain(Session& session) {
-  BodyStep step;
-  bool has_step = false;
-  do {
-    has_step = session.pop(step);
+  for (;;) {
+    if (!m_has_step) m_has_step = session.pop(m_step);
     for (HandTick tick; session.pop(tick);) write(tick);
-    if (has_step) write(step);
-  } while (has_step);
+    if (!m_has_step || m_steps_written == m_steps_begun) return;
+    write(m_step);
+    m_has_step = false;
+  }
 }
 
 /// The record last: its flush takes the other rows of the tick along.
 void Recorder::write(const HandTick& tick) {
+  m_steps_begun = std::max(m_steps_begun, tick.session.begun_step);
   m_figures.add(tick);
   m_file.append(tick.session);
   m_file.append(tick.timing);
@@ -23,6 +26,7 @@ void Recorder::write(const HandTick& tick) {
 }
 
 void Recorder::write(const BodyStep& step) {
+  ++m_steps_written;
   m_figures.add(step);
   m_file.append(step.timing);
   m_file.append(step.record);

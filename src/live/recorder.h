@@ -14,7 +14,7 @@ class Recorder {
   Recorder(output::ResultFile& file, Figures& figures, Watch* watch)
       : m_file(file), m_figures(figures), m_watch(watch) {}
 
-  /// All that came since the last call. Throws IoError.
+  /// All that came since the last call, each step after the tick that began it. Throws IoError.
   void drain(Session& session);
 
  private:
@@ -24,6 +24,9 @@ class Recorder {
   output::ResultFile& m_file;
   Figures& m_figures;
   Watch* m_watch;
+  BodyStep m_step;  // that waits for the tick that began it
+  bool m_has_step = false;
+  Tick m_steps_begun = 0, m_steps_written = 0;
 };
 
 }  // namespace argil::live

@@ -10,7 +10,6 @@
 namespace argil::live {
 namespace {
 
-constexpr double kRecordBuffer = 8.0;  // [s] of ticks that wait for the writing thread at most
 constexpr std::size_t kWaitingSteps = 64;
 constexpr double kLook = 2e-4;  // [s] between two looks of a thread that has nothing to do, at most
 
@@ -28,7 +27,7 @@ Session::Session(sim::Simulation& simulation, device::HapticDevice& device, Sess
       m_options(std::move(options)),
       m_period(simulation.params().rates.haptic_period),
       m_mailbox(simulation.solid().elements().num_nodes()),
-      m_ticks(static_cast<std::size_t>(kRecordBuffer / m_period) + 1),
+      m_ticks(static_cast<std::size_t>(m_options.record_buffer_s / m_period) + 1),
       m_steps(kWaitingSteps),
       m_sample_number(m_options.first_sample) {
   const sim::HandState& hand = simulation.hand_state();
@@ -59,6 +58,7 @@ void Session::join() {
 }
 
 std::optional<Failure> Session::failure() const {
+  if (m_tick_failure) return m_tick_failure;
   if (m_mailbox.status().is_ok()) return std::nullopt;
   return m_mailbox.status().failure();
 }
@@ -91,6 +91,7 @@ SessionEnd Session::make_ticks() {
 
 SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
   if (m_is_asked.load(std::memory_order_relaxed)) return SessionEnd::asked;
+  if (!m_ticks.has_room()) return SessionEnd::overflow;  // before the hand feels what no record would have
   sim::HandSide& hand = m_simulation.hand();
   const device::DevicePoll poll = m_device.poll();
   if (poll.state == device::DeviceState::lost) return SessionEnd::lost;
@@ -109,7 +110,10 @@ SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
   const int late = m_ticks_since_step - m_simulation.params().rates.physics_period_ticks;
   const bool begins_step = late >= 0 && m_mailbox.is_free();
   hand.move(m_sample);
-  if (!hand.touch(begins_step, nullptr).is_ok()) return SessionEnd::failed;
+  if (const StepStatus status = hand.touch(begins_step, nullptr); !status.is_ok()) {
+    m_tick_failure = status.failure();
+    return SessionEnd::failed;
+  }
   HandTick tick;
   if (begins_step) {
     m_mailbox.give(hand, late, monotonic_now());
@@ -127,7 +131,8 @@ SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
   tick.session.sample = m_sample_number;
   tick.session.seen_step = m_mailbox.seen();
   tick.session.device_state = poll.state;
-  return m_ticks.push(std::move(tick)) ? SessionEnd::none : SessionEnd::overflow;
+  m_ticks.push(std::move(tick));
+  return SessionEnd::none;
 }
 
 /// The hand wakes no one, which would be a call of the system: the physics thread looks often instead.

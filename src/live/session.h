@@ -19,6 +19,7 @@ struct SessionOptions {
   Tick num_ticks = 0;                                   ///< after which it ends; 0: when it is asked to
   std::optional<device::ToolMode> mode = std::nullopt;  ///< of the tool; nothing: the device's buttons decide
   std::int64_t first_sample = 0;  ///< number of the sample at which the simulation starts
+  double record_buffer_s = 8.0;   ///< ticks of so long may wait for who drains them
   bool is_realtime = true;        ///< asks the system for it; tests do without
   std::function<void(Tick)> before_step =
       nullptr;  ///< in the physics thread, with the step's number: tests make it late
@@ -74,7 +75,7 @@ class Session {
 
   // After join().
   SessionEnd end() const { return m_end; }
-  /// Of the step that failed.
+  /// Of the step or the tick that failed.
   std::optional<Failure> failure() const;
   /// What the system did not grant, in words for the user; empty when all was.
   const std::string& warning() const { return m_warning; }
@@ -99,6 +100,7 @@ class Session {
   int m_ticks_since_step = 0;
   Tick m_steps_given = 0;
   SessionEnd m_end = SessionEnd::none;
+  std::optional<Failure> m_tick_failure;
   std::string m_warning;
   std::atomic<bool> m_is_asked = false;
   std::atomic<bool> m_is_abandoned = false;  // no one drains any more

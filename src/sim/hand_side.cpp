@@ -42,6 +42,10 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
       m_load(elements.num_nodes()),
       m_gate(params.device, params.rates.haptic_period) {
   m_clock.period = params.rates.haptic_period;
+  begin_at(start);
+}
+
+void HandSide::begin_at(const device::DeviceSample& start) {
   m_state.tool = {start.position, start.orientation};
   m_state.mode = start.mode;
   m_state.contact_tool = m_state.tool;

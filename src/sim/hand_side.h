@@ -28,6 +28,8 @@ class HandSide {
   HandSide(const HandSide&) = delete;
   HandSide& operator=(const HandSide&) = delete;
 
+  /// Before the first tick: the hand is here.
+  void begin_at(const device::DeviceSample& start);
   /// Does beforehand what the first ticks would take long for.
   void prepare();
 

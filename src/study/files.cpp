@@ -41,16 +41,16 @@ std::string name_xdmf(const std::string& result) {
   return std::filesystem::path(result).replace_extension(".xdmf").string();
 }
 
-void check_result_name(const scenario::Scenario& s, const std::string& result) {
+void check_result_name(const scenario::Scenario& s, const std::string& result, const std::string& option) {
   if (has_ending(result, ".xdmf"))
     throw InputError(result, "", "is the name of the XDMF that is written beside a result",
-                     "give -o a name such as " +
+                     "give " + option + " a name such as " +
                          std::filesystem::path(result).replace_extension(".h5").filename().string());
   for (const scenario::InputFile& input : scenario::list_input_files(s)) {
     const std::string what =
         input.pointer.empty() ? "the scenario" : "a file that the run reads (" + input.pointer + ")";
-    require_other_file(result, input.file, what);
-    require_other_file(name_xdmf(result), input.file, what);
+    require_other_file(result, input.file, what, option);
+    require_other_file(name_xdmf(result), input.file, what, option);
   }
 }
 

@@ -22,8 +22,9 @@ std::string hash_file(const std::string& file);
 std::string name_xdmf(const std::string& result);
 
 /// Refuses a result name under which, or under whose XDMF's, a file lies that the run reads, and a name that
-/// ends in .xdmf itself. Links count as what they lead to. Throws InputError.
-void check_result_name(const scenario::Scenario& s, const std::string& result);
+/// ends in .xdmf itself. Links count as what they lead to. `option` gave the name. Throws InputError.
+void check_result_name(const scenario::Scenario& s, const std::string& result,
+                       const std::string& option = "-o");
 
 /// The same for the cage of a surface; its name must end in .msh. Throws InputError.
 void check_cage_name(const std::string& surface, const std::string& cage);

@@ -203,24 +203,44 @@ class Live(unittest.TestCase):
         with h5py.File(self.folder / "live.h5") as file:
             self.assertEqual(file["haptic/tick"].shape[0], 4000)
 
-    def test_a_terminal_sees_force_water_rate_and_lateness(self):
+    def start_in_terminal(self, seconds):
         terminal, end = pty.openpty()
-        words = [ARGIL, "live", "scene.json", "--device", "simulated", "-o", "live.h5", "--duration", "2"]
+        words = [ARGIL, "live", "scene.json", "--device", "simulated", "-o", "live.h5", "--duration", seconds]
         process = subprocess.Popen(words, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=end)
         os.close(end)
+        self.addCleanup(os.close, terminal)
+        self.addCleanup(process.kill)
+        return process, terminal
+
+    def read_to_end(self, terminal):
         seen = b""
         try:
             while piece := os.read(terminal, 4096):
                 seen += piece
         except OSError:  # the other end is closed
             pass
-        os.close(terminal)
+        return seen
+
+    def test_a_terminal_sees_force_water_rate_and_lateness(self):
+        process, terminal = self.start_in_terminal("2")
+        seen = self.read_to_end(terminal)
         self.assertEqual(process.wait(), 0, seen)
         lines = re.findall(r"(\d+\.\d) s +(\d+) ticks/s +force +(\d+\.\d+) N +S +(\d+\.\d) % +late +(\d+) us p99",
                            seen.decode())
         self.assertGreater(len(lines), 3, seen)
         self.assertGreater(max(float(line[2]) for line in lines), 0.01)  # the hand is at its deepest after half a second
         self.assertEqual({line[3] for line in lines}, {"0.0"})  # dry
+
+    def test_a_terminal_that_its_user_has_stopped_does_not_hold_up_the_record(self):
+        process, terminal = self.start_in_terminal("4")
+        os.read(terminal, 4096)  # it draws
+        os.write(terminal, b"\x13")  # Ctrl-S
+        self.wait_for_ticks(process, 2048)
+        os.write(terminal, b"\x11")  # Ctrl-Q
+        seen = self.read_to_end(terminal)
+        self.assertEqual(process.wait(), 0, seen)
+        self.replay()
+        self.assert_equal()
 
     def test_a_service_that_vanishes_ends_it_with_a_complete_file(self):
         done = self.call("live", "scene.json", "-o", "live.h5", "--duration", "60", *self.start_stand_in("vanish"))
@@ -244,7 +264,24 @@ class Live(unittest.TestCase):
             self.assertEqual(done.returncode, 2)
             for word in words:
                 self.assertIn(word, done.stderr)
+        self.write_scene("scene.json", {"physics_period_ticks": 400, "water_period_ticks": 400, "frame_period_ticks": 400})
+        done = self.call("live", "scene.json", "-o", "live.h5", "--device", "simulated")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("/haptics/physics_period_ticks: 400 ticks", done.stderr)
+        self.assertIn("/haptics/device/watchdog/max_physics_age_s", done.stderr)
         self.write_scene("scene.json", {})
+        for duration in ("0.0005", "1e300", "-1", "nan"):
+            done = self.call("live", "scene.json", "-o", "live.h5", "--device", "simulated", "--duration", duration)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("--duration", done.stderr)
+        for watch, words in (("live.h5", "is what the result is written to; give another name to --watch"),
+                             ("live.xdmf", "--watch"), ("press.csv", "give another name to --watch"),
+                             ("no/such/folder/w.h5", "no/such/folder/w.h5")):
+            done = self.call("live", "scene.json", "-o", "live.h5", "--device", "simulated", "--watch", watch,
+                             "--duration", "0.1")
+            self.assertIn(done.returncode, (2, 4))
+            self.assertIn(words, done.stderr)
+            self.assertFalse((self.folder / "live.h5").exists())
         done = self.call("live", "scene.json", "-o", "live.h5", "--device", "teapot")
         self.assertEqual(done.returncode, 2)
         self.assertIn("teapot", done.stderr)

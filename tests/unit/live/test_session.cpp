@@ -77,7 +77,9 @@ class CountedHand final : public device::HapticDevice {
   std::atomic<Tick> m_polls = 0;
 };
 
-Recorded record(const sim::Params& params, SessionOptions options, device::HapticDevice& device) {
+/// `late`: what the session gives away is taken when it has ended.
+Recorded record(const sim::Params& params, SessionOptions options, device::HapticDevice& device,
+                bool late = false) {
   Recorded recorded;
   device.start();
   const device::DevicePoll first = device.poll();
@@ -90,9 +92,9 @@ Recorded record(const sim::Params& params, SessionOptions options, device::Hapti
   for (bool is_running = true; is_running;) {
     is_running = session.is_running();
     HandTick tick;
-    while (session.pop(tick)) recorded.ticks.push_back(tick);
+    while (!(late && is_running) && session.pop(tick)) recorded.ticks.push_back(tick);
     BodyStep step;
-    while (session.pop(step)) recorded.steps.push_back(std::move(step));
+    while (!(late && is_running) && session.pop(step)) recorded.steps.push_back(std::move(step));
     std::this_thread::sleep_for(milliseconds(1));
   }
   session.join();
@@ -268,6 +270,16 @@ TEST(Session, ADeviceThatVanishesEndsItWithZeroForceAndAWholeRecord) {
   EXPECT_EQ(recorded.ticks.size(), 99U);  // one sample was before the start
   EXPECT_GT(recorded.ticks.back().record.device_force.norm(), 0.01);
   EXPECT_EQ(device.last().force.norm(), 0.0);
+  expect_replays(params, recorded);
+}
+
+TEST(Session, OneWhoseRecordIsFullEndsBeforeTheHandFeelsATickMore) {
+  const sim::Params params = make_params(sim::BetweenFrames::re_evaluate);
+  CountedHand hand = make_hand(0.3);
+  const Recorded recorded = record(params, {.num_ticks = 300, .record_buffer_s = 0.1}, hand, true);
+  EXPECT_EQ(recorded.end, SessionEnd::overflow);
+  EXPECT_EQ(recorded.ticks.size(), 101U);  // of a tenth of a second, and one
+  EXPECT_GT(find_largest_force(recorded), 0.01);
   expect_replays(params, recorded);
 }
 
