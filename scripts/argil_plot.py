@@ -23,6 +23,8 @@ DASHES = ("-", "-", (0, (5, 1.5)), (0, (1.5, 1.5)), (0, (5, 1.5, 1.5, 1.5)), (0,
 GREY = "#5A5F66"
 WATER_BAND = "#56B4E9"
 MILLIMETRES = 1.0 / 25.4
+UNITS = {"N": "N", "Pa": "Pa", "J": "J", "Hz": "Hz", "kg": "kg", "m": "m", "m2": "m²", "m3": "m³", "s": "s",
+         "ticks": "ticks", "per": "per"}  # the last words of a key, as argil spells them
 
 plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 9, "axes.labelsize": 9,
@@ -84,6 +86,17 @@ def labels_for(files, given):
     return given or [Path(file).stem for file in files]
 
 
+def quantity_label(name, has_unit=True):
+    """Words and unit of a key or column: "material.youngs_modulus_Pa" → "youngs modulus [Pa]". The keys of argil end
+    in their unit; those that end in none are numbers [–], unless `has_unit` is false (text)."""
+    words, unit = name.rsplit(".", 1)[-1].replace("youngs", "Young's").replace("poissons", "Poisson's").split("_"), []
+    while len(words) > 1 and words[-1] in UNITS:
+        unit.insert(0, UNITS[words.pop()])
+    above, _, below = " ".join(unit).partition("per ")
+    below = f"/({below})" if " " in below else below and "/" + below
+    return " ".join(words) + (f" [{(above.strip() or below and '1') + below or '–'}]" if has_unit else "")
+
+
 def save(figure, stem):
     """Writes STEM.png and STEM.pdf; a suffix of one of these is dropped first. No date inside, so that the same
     data give the same bytes."""
@@ -92,6 +105,7 @@ def save(figure, stem):
     stem.parent.mkdir(parents=True, exist_ok=True)
     for suffix, metadata in ((".png", {"Software": None}), (".pdf", {"CreationDate": None})):
         file = stem.with_name(stem.name + suffix)
-        figure.savefig(file, metadata=metadata)
+        # Cut to what is there: words that the layout has no room for would be cut off.
+        figure.savefig(file, metadata=metadata, bbox_inches="tight", pad_inches=0.03)
         print(file)
     plt.close(figure)
