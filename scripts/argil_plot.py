@@ -103,6 +103,8 @@ def save(figure, stem):
     stem = Path(stem)
     stem = stem.with_suffix("") if stem.suffix in (".png", ".pdf") else stem
     stem.parent.mkdir(parents=True, exist_ok=True)
+    # Once more than by savefig: the first layout does not know the ticks yet, and a label grew out of the picture.
+    figure.draw_without_rendering()
     for suffix, metadata in ((".png", {"Software": None}), (".pdf", {"CreationDate": None})):
         file = stem.with_name(stem.name + suffix)
         # Cut to what is there: words that the layout has no room for would be cut off.

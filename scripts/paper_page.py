@@ -82,7 +82,8 @@ def dry_wet():
                 motion the order can be compared, not the size: dry is above wet.""")
              + pictures(("../demo/dinosaur.png", "dry and wet, before, during, after"),
                         ("../demo/force.png", "force dry and wet"),
-                        ("../demo/force_split.png", "elasticity alone, yield alone")))
+                        ("../demo/force_split.png", "elasticity alone, yield alone"),
+                        ("../demo/energy.png", "where the energy goes, dry and wet")))
     if demo:
         runs = demo["runs"]
         dry = runs["dry"]

@@ -80,8 +80,8 @@ def draw_error(axes, ledger):
     rounding = np.finfo(float).eps
     axes.semilogy(ledger.time, np.maximum(error, 0.1 * rounding), color=ap.COLOURS[0], linewidth=0.9)
     axes.axhline(rounding, color=ap.GREY, linewidth=0.8, linestyle=":")
-    axes.text(ledger.time[-1], 1.2 * rounding, "rounding of one number", color=ap.GREY, ha="right", va="bottom",
-              fontsize=8)
+    axes.text(0.98, 1.2 * rounding, "rounding of one number", color=ap.GREY, ha="right", va="bottom", fontsize=8,
+              transform=axes.get_yaxis_transform())
     axes.set_ylim(0.1 * rounding, max(1e-12, 3.0 * error.max()))
     axes.set_ylabel("ledger error, relative [–]")
     axes.set_title(f"at most {error.max():.1e}", loc="right", color=ap.GREY, fontsize=8)
@@ -94,7 +94,7 @@ def draw(saturation, ledger):
     draw_error(panels[2], ledger)
     for axes in panels:
         axes.margins(x=0)
-        axes.set_xlim(left=0)
+        axes.set_xlim(0, ledger.time[-1] or 1.0)  # a static result has one moment, at 0
         axes.set_xlabel("time [s]")
     for axes in panels[:2]:
         axes.legend(loc="lower left", bbox_to_anchor=(-0.05, 1.0), borderaxespad=0.3)

@@ -18,6 +18,7 @@ if not MISSING:
     import h5py
     import matplotlib.image
     import numpy as np
+    import plot_energy
     import plot_force
     import plot_water
     import render_shots
@@ -45,7 +46,9 @@ def write_result(file, saturation, leak=0.0, touch=True):
                 "haptic/tool_orientation": np.tile([0.0, 0.0, 0.0, 1.0], (200, 1)), "haptic/force": force,
                 "haptic/mode": np.where(tick < 50, WET, PUSH).astype("u1"), "physics/time": 1e-3 * tick,
                 "physics/water_mass": 1e-3 + 1e-5 * tick - np.linspace(0, leak, 200),
-                "physics/water_added": 2e-5 * tick, "physics/water_removed": 1e-5 * tick,
+                "physics/contact_work": 5e-4 * tick, "physics/elastic_energy": 1e-4 + 2e-4 * tick,
+                "physics/plastic_dissipation": 1.5e-4 * tick, "physics/kinetic_energy": 0.5e-4 * tick,
+                "haptic/port_energy": -3e-4 * (tick + 1), "physics/water_added": 2e-5 * tick, "physics/water_removed": 1e-5 * tick,
                 "mesh/rest_position": 0.1 * corner, "mesh/tets": tets, "mesh/surface_triangles": sides,
                 "mesh/skin_triangles": np.zeros((0, 3), int), "mesh/tool_vertices": 0.01 * corner,
                 "mesh/tool_triangles": sides}.items():
@@ -104,6 +107,19 @@ class Figures(unittest.TestCase):
             self.assertAlmostEqual(plot_water.read_ledger(leaking).error()[-1], 1e-6 / largest_number, places=12)
             self.assertLess(plot_water.read_ledger(tight).error().max(), 1e-15)
 
+    def test_the_rest_of_the_energy_is_what_is_neither_held_nor_dissipated_by_flow(self):
+        run = plot_energy.read_energies(self.file("wet.h5"), "wet")
+        np.testing.assert_allclose(run.rest(), (5e-4 - 2e-4 - 1.5e-4 - 0.5e-4) * np.arange(200), atol=1e-15)
+
+    def test_the_hand_works_only_while_it_presses(self):
+        run = plot_energy.read_energies(self.file("wet.h5"), "wet")
+        self.assertAlmostEqual(run.hand[49], 0.0)
+        self.assertAlmostEqual(run.hand[-1], 150 * 3e-4)  # the 50 ticks that wet do not count
+
+    def test_sizes_of_energies_have_a_prefix(self):
+        for energy, words in {0.0: "0 J", 2.0: "2 J", 3.4e-4: "340 µJ", 5e-14: "0.05 pJ"}.items():
+            self.assertEqual(plot_energy.with_prefix(energy), words)
+
     def test_the_summary_holds_the_forces_and_the_water_that_were_put_in(self):
         figures = summarise.summarise(self.file("wet.h5"))
         for name, value in {"peak_N": 2.0, "impulse_N_s": 0.031, "peak_of_wetting_N": 3.0, "peak_at_s": 0.07,
@@ -161,7 +177,8 @@ class Figures(unittest.TestCase):
             self.assertGreater(side * camera.direction[0], 0.5)
 
     def test_figures_are_written_and_equal_when_drawn_again(self):
-        for script, files in (("plot_force.py", ["dry.h5", "wet.h5"]), ("plot_water.py", ["wet.h5"])):
+        for script, files in (("plot_force.py", ["dry.h5", "wet.h5"]), ("plot_water.py", ["wet.h5"]),
+                              ("plot_energy.py", ["dry.h5", "wet.h5"])):
             for stem in ("one", "two"):
                 run = self.draw(script, *files, "-o", stem)
                 self.assertEqual((run.returncode, run.stderr), (0, ""))
@@ -169,6 +186,14 @@ class Figures(unittest.TestCase):
             for suffix in (".png", ".pdf"):
                 one, two = ((self.folder / f"{stem}{suffix}").read_bytes() for stem in ("one", "two"))
                 self.assertEqual(one, two)
+
+    def test_no_word_is_cut_off_at_the_edge(self):
+        for script, files in (("plot_force.py", ["dry.h5", "wet.h5", "--align-press"]), ("plot_water.py", ["wet.h5"]),
+                              ("plot_energy.py", ["dry.h5"])):
+            self.assertEqual(self.draw(script, *files, "-o", "whole").returncode, 0)
+            pixels = matplotlib.image.imread(self.file("whole.png"))
+            edge = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
+            self.assertEqual(edge[:, :3].min(), 1.0, script)  # white all around
 
     def test_what_is_no_result_is_refused(self):
         self.folder.joinpath("text.h5").write_text("no HDF5")
