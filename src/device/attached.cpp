@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <exception>
 
+#include "base/realtime.h"
+#include "base/signal_stack.h"
 #include "device/backends.h"
 
 namespace argil::device::internal {
@@ -13,6 +16,15 @@ namespace {
 constexpr double kReach = 10.0;  // [m]; no hand at a desk is further from its device
 // Devices round quaternions to a few digits; what is further from unit length is another quantity.
 constexpr double kMaxUnitError = 0.05;
+constexpr double kLook = 0.02;        // [s] between two looks of the watching thread
+constexpr double kEndPatience = 1.0;  // [s] for work() to come to its end
+constexpr int kRenderPatience = 100;  // [ms] for a command under way to reach the device
+
+/// Allowed in a signal handler.
+void pause_1_ms() noexcept {
+  constexpr timespec kPause = {0, 1000000};
+  nanosleep(&kPause, nullptr);
+}
 
 }  // namespace
 
@@ -24,42 +36,79 @@ AttachedDevice::AttachedDevice(const DeviceOptions& options) : m_options(options
 
 void AttachedDevice::start() {
   stop();
+  if (!has_ended()) return lose("the device has not come to its end: start the program again");
   m_mode = ModeSwitch(m_options.mode);
   m_last_arrival = {};
   m_last_order = {};
   for (Arrival old; m_arrivals.take(old);) continue;
   for (Order old; m_orders.take(old);) continue;
   m_samples = m_repeated = m_refused = 0;
-  m_is_stopping = m_is_released = false;
+  m_is_stopping = m_is_released = m_is_pushing = m_is_rendering = m_work_has_ended = false;
+  m_alive_at = 0.0;
   {
     const std::lock_guard<std::mutex> lock(m_mutex);
     m_problem.clear();
   }
   m_state = DeviceState::connecting;
+  m_is_watched = true;
   m_thread = std::thread([this] { run(); });
+  m_watch_thread = std::thread([this] { watch(); });
 }
 
 void AttachedDevice::stop() noexcept {
   m_is_stopping = true;
   if (!m_thread.joinable()) return;
   interrupt();
-  m_thread.join();
+  const double patience = m_is_watched ? kEndPatience : 0.0;  // it was left before
+  for (const double end = steady_seconds() + patience; !m_work_has_ended && steady_seconds() < end;)
+    pause_1_ms();
+  if (!m_work_has_ended) release_counted();
+  m_is_watched = false;
+  if (m_watch_thread.joinable()) m_watch_thread.join();
+  if (m_work_has_ended) m_thread.join();
   m_state = DeviceState::stopped;
 }
 
 void AttachedDevice::run() {
+  const SignalStack stack;
+  wake_without_slack();
+  make_realtime(pthread_self(), kDevicePriority);  // where the hand's is refused, its warning says so
   std::string problem = "the device went away";
   try {
     work();
   } catch (const std::exception& error) {
     problem = error.what();
+  } catch (...) {
+    problem = "the device's library threw what is no std::exception";
   }
-  if (m_is_stopping) return;
-  {
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    m_problem = problem;
-  }
+  if (!m_is_stopping) lose(problem);
+  m_work_has_ended = true;
+}
+
+/// The first problem is the one that is told.
+void AttachedDevice::lose(const std::string& problem) {
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  if (m_state == DeviceState::lost) return;
+  m_problem = problem;
   m_state = DeviceState::lost;
+}
+
+void AttachedDevice::watch() {
+  const SignalStack stack;
+  make_realtime(pthread_self(), kHandPriority);  // before a device's thread that does not wait
+  double last = steady_seconds();
+  while (m_is_watched && !m_work_has_ended) {
+    sleep_until(last + kLook);
+    const double now = steady_seconds();
+    // Cleared first: a command that is on its way meanwhile sets it again.
+    if (m_is_pushing && now - m_rendered_at > kForceLifetime && m_is_pushing.exchange(false))
+      release_counted();
+    const bool was_held_up = now - last > kForceLifetime;  // with the whole process, perhaps
+    const double alive_at = m_alive_at;
+    if (!was_held_up && alive_at > 0.0 && now - alive_at > kPatience && !m_is_stopping)
+      lose(info().name + ": does not come back from its library: see that the device is connected");
+    last = now;
+  }
 }
 
 DeviceState AttachedDevice::state_at(double now, double sample_time) const noexcept {
@@ -90,17 +139,48 @@ void AttachedDevice::send(const Wrench& on_hand) noexcept {
   m_orders.put({wrench, steady_seconds()});
 }
 
+/// A command under way may reach the device after the first zero: then there is a second. The flags are set
+/// and read in opposite order by begin_rendering, so one of both sides sees the other.
 void AttachedDevice::release() noexcept {
   m_is_released = true;
-  release_device();
+  const bool is_under_way = m_is_rendering;
+  release_counted();
+  for (int look = 0; look < kRenderPatience && m_is_rendering; ++look) pause_1_ms();
+  if (is_under_way) release_counted();
 }
 
-Wrench AttachedDevice::take_wrench() {
+void AttachedDevice::release_counted() noexcept {
+  ++m_releasing;
+  release_device();
+  --m_releasing;
+}
+
+void AttachedDevice::wait_for_releases() const {
+  while (m_releasing > 0) pause_1_ms();
+}
+
+Wrench AttachedDevice::begin_rendering() {
+  m_is_rendering = true;
+  m_rendered = find_wrench();
+  if (!m_rendered.force.isZero(0.0) || !m_rendered.torque.isZero(0.0)) {
+    m_rendered_at = steady_seconds();
+    m_is_pushing = true;
+  }
+  return m_rendered;
+}
+
+void AttachedDevice::end_rendering() {
+  m_rendered_at = steady_seconds();
+  m_is_pushing = !m_rendered.force.isZero(0.0) || !m_rendered.torque.isZero(0.0);
+  m_is_rendering = false;
+}
+
+Wrench AttachedDevice::find_wrench() {
   m_orders.take(m_last_order);
   const double oldest = std::min(m_last_order.time, m_last_time.load());
   // After a new start m_last_time is still that of a sample from before it.
   const bool is_alive = m_samples > 0 && steady_seconds() - oldest <= kForceLifetime;
-  if (!is_alive || m_is_released || m_is_stopping) return {};
+  if (!is_alive || m_is_released || is_stopping()) return {};
   return m_last_order.wrench;
 }
 
@@ -118,7 +198,8 @@ bool AttachedDevice::deliver(const Vec3& position, const Quat& orientation, unsi
   arrival.time = steady_seconds();
   m_last_time = arrival.time;
   m_arrivals.put(arrival);
-  m_state = DeviceState::ready;
+  DeviceState before = DeviceState::connecting;
+  m_state.compare_exchange_strong(before, DeviceState::ready);  // what is lost stays lost
   return true;
 }
 

@@ -56,7 +56,9 @@ std::string print(const DeviceInfo& info) {
 std::vector<DeviceKind> device_kinds() {
   return {{"simulated", "a hand model that follows a trace and yields to the force"},
           {"haply", "Inverse3 by the Haply Inverse Service on this machine, or haply:HOST:PORT"},
+#ifdef ARGIL_HAS_SPNAV
           {"spacenav", "6-DoF controller by spacenavd, without force"},
+#endif
           {"plugin", "plugin:FILE[,ARGUMENT], a shared library of a device's own (plugin_api.h)"}};
 }
 
@@ -82,19 +84,15 @@ std::string describe_devices(const std::vector<std::string>& names, double patie
   const DeviceSample somewhere;
   options.intent.time = {0.0, 1.0};
   options.intent.samples = {somewhere, somewhere};
+  for (const std::string& name : names) make_device(name, options);  // refuses before it looks for any
   std::string text;
   for (const std::string& name : names) {
-    std::string line;
-    try {
-      const std::unique_ptr<HapticDevice> device = make_device(name, options);
-      device->start();
-      wait_until_ready(*device, patience);
-      line = name + ": " + std::string(to_string(device->state())) + ", " + print(device->info());
-      if (const std::string problem = device->problem(); !problem.empty()) line += " (" + problem + ")";
-    } catch (const InputError& error) {
-      line = name + ": " + error.what();
-    }
-    text += line + '\n';
+    const std::unique_ptr<HapticDevice> device = make_device(name, options);
+    device->start();
+    wait_until_ready(*device, patience);
+    text += name + ": " + std::string(to_string(device->state())) + ", " + print(device->info());
+    if (const std::string problem = device->problem(); !problem.empty()) text += " (" + problem + ")";
+    text += '\n';
   }
   return text;
 }

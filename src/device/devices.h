@@ -33,7 +33,7 @@ std::vector<DeviceKind> device_kinds();
 std::unique_ptr<HapticDevice> make_device(const std::string& name, const DeviceOptions& options);
 
 /// A line for each name of what the device there is: state, name and limits, or why it is not there. Each is
-/// given so many seconds to answer.
+/// given so many seconds to answer. Throws InputError as make_device does.
 std::string describe_devices(const std::vector<std::string>& names, double patience);
 
 /// Waits until the device is ready or lost, or for so many seconds; what it is then.

@@ -29,8 +29,7 @@ using ErrorCode = boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr double kPatience = 2.0;  // [s] to connect, and without a usable sample before the device is lost
-constexpr double kFarewell = 0.2;  // [s] for the service to take the last command
+constexpr double kFarewell = 0.2;             // [s] for the service to take the last command
 constexpr std::size_t kMaxMessage = 1 << 20;  // [bytes]; an inventory of a dozen devices has some 20 kB
 
 /// A whole text or close frame as a client sends it [RFC 6455 §5.2], masked with zeros.
@@ -72,7 +71,7 @@ class HaplyDevice final : public AttachedDevice {
   void on_inventory(const HaplyMessage& message);
   void read();
   void tick();
-  void write();
+  void write_when_due();
   void say_farewell() noexcept;
   DeviceInfo make_info(const std::string& kind, const std::string& id) const;
   /// A handler for Asio: goes on with `next`, or loses the device with the reason.
@@ -89,11 +88,14 @@ class HaplyDevice final : public AttachedDevice {
   std::optional<asio::steady_timer> m_timer;
   beast::flat_buffer m_received{kMaxMessage};
   std::string m_sent;
-  std::string m_id;           ///< of the Inverse3; empty before the inventory
-  bool m_is_waiting = false;  ///< a command has not been answered yet
-  double m_last_good = 0.0;   ///< when a usable sample came [s]
-  std::string m_last_fault;   ///< of what came since
-  std::string m_zero_frame;   ///< final before m_descriptor is set
+  std::string m_id;             ///< of the Inverse3; empty before the inventory
+  std::atomic<int> m_owed = 0;  ///< commands that have not been answered yet
+  bool m_is_writing = false;    ///< a command is with Asio
+  bool m_is_due = false;        ///< the next command, as soon as nothing is owed
+  double m_deadline = 0.0;      ///< of the tick that is awaited [s]
+  double m_last_good = 0.0;     ///< when a usable sample came [s]
+  std::string m_last_fault;     ///< of what came since
+  std::string m_zero_frame;     ///< final before m_descriptor is set
   std::atomic<int> m_descriptor = -1;
 };
 
@@ -126,8 +128,9 @@ void HaplyDevice::work() {
   m_timer.emplace(m_io);
   m_received.clear();
   m_id.clear();
-  m_is_waiting = false;
-  m_last_good = steady_seconds();
+  m_owed = 0;
+  m_is_writing = m_is_due = false;
+  m_deadline = m_last_good = steady_seconds();
   m_last_fault.clear();
   // Also when a handler throws: the last word to the device is zero force.
   struct Farewell {
@@ -170,8 +173,8 @@ void HaplyDevice::read() {
 void HaplyDevice::on_message(const std::string& text) {
   const HaplyMessage message = read_haply_message(text, m_id);
   if (m_id.empty()) return on_inventory(message);
-  if (!m_is_waiting) return count_repeated();  // the service owes one state a command, and no more
-  m_is_waiting = false;
+  if (m_owed == 0) return count_repeated();  // the service owes one state a command, and no more
+  --m_owed;
   if (!message.problem.empty()) {
     count_refused();
     m_last_fault = message.problem;
@@ -180,6 +183,7 @@ void HaplyDevice::on_message(const std::string& text) {
   } else {
     m_last_fault = "position or quaternion is none";
   }
+  write_when_due();
 }
 
 void HaplyDevice::on_inventory(const HaplyMessage& message) {
@@ -193,28 +197,41 @@ void HaplyDevice::on_inventory(const HaplyMessage& message) {
   m_last_good = steady_seconds();
 }
 
-/// Once a period: the next command when the last one was answered.
+/// Once a period a command is due.
 void HaplyDevice::tick() {
   if (steady_seconds() - m_last_good > kPatience)
     throw std::runtime_error("Haply Inverse Service at " + m_host + ":" + m_port + ": no usable sample for " +
                              std::to_string(static_cast<int>(kPatience)) + " s" +
                              (m_last_fault.empty() ? "" : ": " + m_last_fault));
-  if (!m_id.empty() && !m_is_waiting) write();
-  m_timer->expires_after(std::chrono::duration_cast<Clock::duration>(Seconds(period())));
+  m_is_due = true;
+  write_when_due();
+  m_deadline = find_next_deadline(m_deadline, period(), steady_seconds());
+  m_timer->expires_at(Clock::time_point(std::chrono::duration_cast<Clock::duration>(Seconds(m_deadline))));
   m_timer->async_wait(or_lose("timer", [this] { tick(); }));
 }
 
-void HaplyDevice::write() {
-  m_sent = print_haply_force(m_id, take_wrench().force);
-  m_is_waiting = true;
-  m_socket->async_write(asio::buffer(m_sent), or_lose("connection lost", [](std::size_t) {}));
+/// When every command before it was answered.
+void HaplyDevice::write_when_due() {
+  if (m_id.empty() || !m_is_due || m_is_writing || m_owed > 0) return;
+  m_is_due = false;
+  m_is_writing = true;
+  ++m_owed;
+  m_sent = print_haply_force(m_id, begin_rendering().force);
+  m_socket->async_write(asio::buffer(m_sent), or_lose("connection lost", [this](std::size_t) {
+                          end_rendering();
+                          m_is_writing = false;
+                          write_when_due();
+                        }));
 }
 
-/// A short message goes in one piece, between those that Asio writes.
+/// A short message goes in one piece, between those that Asio writes. It is answered like them.
 void HaplyDevice::release_device() noexcept {
   const int descriptor = m_descriptor;
-  if (descriptor >= 0)
-    ::send(descriptor, m_zero_frame.data(), m_zero_frame.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  if (descriptor < 0) return;
+  ++m_owed;
+  const ssize_t sent =
+      ::send(descriptor, m_zero_frame.data(), m_zero_frame.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  if (sent < 0) --m_owed;
 }
 
 /// Zero force and a close frame; then waits until the service has read them, for a socket that is closed with
@@ -222,6 +239,7 @@ void HaplyDevice::release_device() noexcept {
 void HaplyDevice::say_farewell() noexcept {
   release_device();
   const int descriptor = m_descriptor.exchange(-1);
+  wait_for_releases();
   if (descriptor >= 0) {
     const std::string close = make_frame(8, "");
     ::send(descriptor, close.data(), close.size(), MSG_DONTWAIT | MSG_NOSIGNAL);

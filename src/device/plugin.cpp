@@ -2,11 +2,13 @@
 
 #include <dlfcn.h>
 
-#include <chrono>
+#include <cmath>
 #include <cstring>
+#include <new>
 #include <stdexcept>
 
 #include "base/error.h"
+#include "base/realtime.h"
 #include "device/attached.h"
 #include "device/backends.h"
 #include "device/plugin_api.h"
@@ -34,12 +36,22 @@ class PluginDevice final : public AttachedDevice {
     set_info(info);
   }
   ~PluginDevice() override { stop(); }
+  /// What a thread still uses that its library does not let come back, stays.
+  static void operator delete(PluginDevice* self, std::destroying_delete_t) {
+    self->stop();
+    if (!self->has_ended()) return;
+    self->~PluginDevice();
+    ::operator delete(self);
+  }
 
  private:
   void work() override;
   void release_device() noexcept override;
   DeviceInfo describe(void* device) const;
-  void write(void* device, const Wrench& wrench);
+  void talk(void* device, bool has_force);
+  void read(void* device);
+  void write(void* device, const Wrench& wrench) const;
+  void let_go(void* device, bool has_force) noexcept;
   [[noreturn]] void lose(const char* reason) const;
 
   std::string m_file;
@@ -65,10 +77,12 @@ DeviceInfo PluginDevice::describe(void* device) const {
   info.workspace = Vec3(told.workspace[0], told.workspace[1], told.workspace[2]);
   info.rate_hz = told.rate_hz;
   info.has_force = told.has_force != 0;
+  for (const double limit : {info.max_force, info.max_torque, info.max_stiffness, info.rate_hz})
+    if (!(limit >= 0.0 && std::isfinite(limit))) lose("describe: a limit is negative or not finite");
   return info;
 }
 
-void PluginDevice::write(void* device, const Wrench& wrench) {
+void PluginDevice::write(void* device, const Wrench& wrench) const {
   m_plugin.write(device, wrench.force.data(), wrench.torque.data());
 }
 
@@ -79,40 +93,64 @@ void PluginDevice::work() {
   const DeviceInfo info = describe(device);
   set_info(info);
   m_device = device;
-  // Also when the device is lost: its last word is zero force.
-  struct Close {
+  struct LetGo {
     PluginDevice* self;
     void* device;
     bool has_force;
-    ~Close() {
-      if (has_force) self->write(device, {});
-      self->m_device = nullptr;
-      self->m_plugin.close(device);
+    ~LetGo() { self->let_go(device, has_force); }
+  } const let_go{this, device, info.has_force};
+  talk(device, info.has_force);
+}
+
+/// A device that does not wait for its next sample is asked once a period.
+void PluginDevice::talk(void* device, bool has_force) {
+  for (double deadline = steady_seconds(); !is_stopping();) {
+    show_life();
+    read(device);
+    if (has_force) {
+      write(device, begin_rendering());
+      end_rendering();
     }
-  } const close{this, device, info.has_force};
-  while (!is_stopping()) {
-    argil_plugin_sample sample{};
-    const double begin = steady_seconds();
-    const int32_t result = m_plugin.read(device, &sample, &reason);
-    if (result == ARGIL_PLUGIN_LOST) lose(reason);
-    const double* q = sample.orientation;
-    if (result == ARGIL_PLUGIN_SAMPLE)
-      deliver(Eigen::Map<const Vec3>(sample.position), Quat(q[3], q[0], q[1], q[2]), sample.buttons);
-    if (info.has_force) write(device, take_wrench());
-    // A device that does not wait for its next sample is asked once a period.
-    const double rest = period() - (steady_seconds() - begin);
-    if (rest > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(rest));
+    deadline = find_next_deadline(deadline, period(), steady_seconds());
+    sleep_until(deadline);
+  }
+}
+
+void PluginDevice::read(void* device) {
+  argil_plugin_sample sample{};
+  const char* reason = nullptr;
+  const int32_t result = m_plugin.read(device, &sample, &reason);
+  if (result == ARGIL_PLUGIN_LOST) lose(reason);
+  if (result != ARGIL_PLUGIN_SAMPLE && result != ARGIL_PLUGIN_NONE)
+    lose(("read: " + std::to_string(result) + " is no argil_plugin_result").c_str());
+  const double* q = sample.orientation;
+  if (result == ARGIL_PLUGIN_SAMPLE)
+    deliver(Eigen::Map<const Vec3>(sample.position), Quat(q[3], q[0], q[1], q[2]), sample.buttons);
+}
+
+/// Also when the device is lost: its last word is zero force.
+void PluginDevice::let_go(void* device, bool has_force) noexcept {
+  try {
+    if (has_force) write(device, {});
+  } catch (...) {
+    release_device();
+  }
+  m_device = nullptr;
+  wait_for_releases();
+  try {
+    m_plugin.close(device);
+  } catch (...) {  // there is nothing left to close
   }
 }
 
 void PluginDevice::release_device() noexcept {
   void* const device = m_device;
-  if (device != nullptr && m_plugin.release != nullptr) m_plugin.release(device);
+  if (device != nullptr) m_plugin.release(device);
 }
 
 bool is_complete(const argil_plugin& p) {
   return p.open != nullptr && p.describe != nullptr && p.read != nullptr && p.write != nullptr &&
-         p.close != nullptr;
+         p.release != nullptr && p.close != nullptr;
 }
 
 }  // namespace
@@ -135,7 +173,7 @@ std::unique_ptr<HapticDevice> make_plugin(const std::string& place, const Device
     throw InputError("--device plugin:" + file, "", "version " + std::to_string(plugin->version),
                      "build it against version " + std::to_string(ARGIL_PLUGIN_VERSION) + " of plugin_api.h");
   if (!is_complete(*plugin))
-    throw InputError("--device plugin:" + file, "", "a function is missing", "only release may be null");
+    throw InputError("--device plugin:" + file, "", "a function is missing", "give all six");
   return std::make_unique<PluginDevice>(options, file, argument, std::move(library), *plugin);
 }
 

@@ -3,8 +3,10 @@
 /* What a shared library offers to be a haptic device of argil: --device plugin:FILE[,ARGUMENT]. Plain C.
  *
  * argil calls argil_plugin_entry once, then open, and from then on one thread calls read and write in turn
- * until it calls close. Lengths in m, forces in N, torques in N m, quaternions x y z w, all in the device's
- * own right-handed axes; argil turns them into the world's and limits the force before. */
+ * until it calls close; release alone comes from other threads too. That thread may run before all ordinary
+ * ones (SCHED_FIFO); those that the library starts are ordinary. Lengths in m, forces in N, torques in N m,
+ * quaternions x y z w, all in the device's own right-handed axes; argil turns them into the world's and
+ * limits the force before. No function may throw, none may be null. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -15,7 +17,8 @@ extern "C" {
 
 #define ARGIL_PLUGIN_VERSION 1u
 
-/* What the device declares; 0 where it declares nothing. */
+/* What the device declares; 0 where it declares nothing, and never less. No more force or torque is written.
+ */
 struct argil_plugin_info {
   char name[64];
   double max_force;     /* [N] */
@@ -34,7 +37,7 @@ struct argil_plugin_sample {
 
 enum argil_plugin_result {
   ARGIL_PLUGIN_LOST = -1, /* gone for good; *reason says why */
-  ARGIL_PLUGIN_NONE = 0,  /* no new sample yet */
+  ARGIL_PLUGIN_NONE = 0,  /* no new sample yet; say so rather than give the last one again */
   ARGIL_PLUGIN_SAMPLE = 1
 };
 
@@ -43,11 +46,13 @@ struct argil_plugin {
   /* The device that `argument` names ("" when none was given), or null and a reason. */
   void* (*open)(const char* argument, const char** reason);
   void (*describe)(void* device, struct argil_plugin_info* info);
-  /* May wait for the next sample, 10 ms at most. An argil_plugin_result. */
+  /* May wait for the next sample, 10 ms at most: after 0.1 s argil releases the device, after 2 s it is lost.
+   * An argil_plugin_result; any other loses the device. */
   int32_t (*read)(void* device, struct argil_plugin_sample* sample, const char** reason);
-  /* From now on the hand feels this. */
+  /* From now on the hand feels this, also after a release. */
   void (*write)(void* device, const double force[3], const double torque[3]);
-  /* Zero force at once; may be called at any time by any thread and by a signal handler. May be null. */
+  /* Zero force at once, until the next write. Called at any time between open and close by any thread, also
+   * while another is in read or write, and by a signal handler: it takes no lock and does not wait. */
   void (*release)(void* device);
   void (*close)(void* device);
 };

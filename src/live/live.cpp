@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -10,10 +11,10 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/realtime.h"
 #include "device/devices.h"
 #include "device/release_guard.h"
 #include "live/figures.h"
-#include "live/realtime.h"
 #include "live/recorder.h"
 #include "scenario/build.h"
 #include "study/files.h"
@@ -34,17 +35,29 @@ void on_signal(int) {
   if (Session* session = g_session.load()) session->request_stop();
 }
 
-/// As long as this object is there, signals end the session.
+constexpr std::array kEndingSignals = {SIGINT, SIGTERM, SIGHUP};
+
+/// As long as this object is there, signals end the session. Then they do what they did before.
 class SignalScope {
  public:
   explicit SignalScope(Session& session) {
     g_session = &session;
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, on_signal);
-    std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error of the write, like a full disk
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESTART | SA_ONSTACK;
+    for (std::size_t i = 0; i < kEndingSignals.size(); ++i)
+      sigaction(kEndingSignals[i], &action, &m_before[i]);
   }
-  ~SignalScope() { g_session = nullptr; }
+  ~SignalScope() {
+    for (std::size_t i = 0; i < kEndingSignals.size(); ++i)
+      sigaction(kEndingSignals[i], &m_before[i], nullptr);
+    g_session = nullptr;
+  }
   SignalScope(const SignalScope&) = delete;
   SignalScope& operator=(const SignalScope&) = delete;
+
+ private:
+  std::array<struct sigaction, kEndingSignals.size()> m_before;
 };
 
 /// What batch can do and a hand that does not wait cannot.
@@ -179,11 +192,13 @@ int conduct(sim::Simulation& simulation, device::HapticDevice& device, const Ses
   Figures figures;
   Recorder recorder(file, figures, watch);
   Session session(simulation, device, session_options);
-  const SignalScope signals(session);
   const double water_capacity = find_water_capacity(simulation);
-  session.start();
-  if (!session.warning().empty()) std::fprintf(stderr, "argil: warning: %s\n", session.warning().c_str());
-  attend(session, recorder, figures, water_capacity, options.run.quiet);
+  {
+    const SignalScope signals(session);
+    session.start();
+    if (!session.warning().empty()) std::fprintf(stderr, "argil: warning: %s\n", session.warning().c_str());
+    attend(session, recorder, figures, water_capacity, options.run.quiet);
+  }
   device.stop();
   study::end_session(simulation, file);
   file.append_timing(figures.list());
@@ -196,6 +211,7 @@ int conduct(sim::Simulation& simulation, device::HapticDevice& device, const Ses
 }  // namespace
 
 int run_live(const LiveOptions& options) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error of the write, like a full disk
   const scenario::Scenario s = study::load(options.run);
   require_live(s);
   const std::string result = study::name_result(s, options.run);

@@ -5,7 +5,8 @@
 #include <ctime>
 
 #include "base/check.h"
-#include "live/realtime.h"
+#include "base/realtime.h"
+#include "base/signal_stack.h"
 
 namespace argil::live {
 namespace {
@@ -48,7 +49,7 @@ void Session::start() {
   m_running = 2;
   m_physics_thread = std::thread([this] { run_physics(); });
   m_hand_thread = std::thread([this] { run_hand(); });
-  if (m_options.is_realtime && !make_realtime(m_hand_thread))
+  if (m_options.is_realtime && !make_realtime(m_hand_thread.native_handle(), kHandPriority))
     m_warning += "the hand's thread runs at ordinary priority: raise the limit \"rtprio\"; ";
 }
 
@@ -64,6 +65,7 @@ std::optional<Failure> Session::failure() const {
 }
 
 void Session::run_hand() {
+  const SignalStack stack;
   wake_without_slack();
   m_end = make_ticks();
   m_device.send({});
@@ -137,6 +139,7 @@ SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
 
 /// The hand wakes no one, which would be a call of the system: the physics thread looks often instead.
 void Session::run_physics() {
+  const SignalStack stack;
   wake_without_slack();
   const double look = std::min(kLook, 0.05 * m_period * m_simulation.params().rates.physics_period_ticks);
   while (!m_mailbox.is_failed()) {

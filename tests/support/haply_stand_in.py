@@ -3,7 +3,8 @@
 
 First an inventory, then one state for each message. A hand of mass 0.15 kg on a spring of 300 N/m circles slowly and
 yields to the force. Prints "port N", then for each connection a JSON line: messages received, states sent, force
-commands before the first state (all must be zero), largest and last force. Ends when its standard input does.
+commands before the first state (all must be zero), largest and last force, the longest time for which a force was not
+renewed [s]. Ends when its standard input does.
 
 Usage: haply_stand_in.py [--mode MODE] [--good STATES] [--port PORT]
 """
@@ -62,7 +63,8 @@ class Connection:
         self.buffer = b""
         self.hand = Hand()
         self.report = {"messages": 0, "states": 0, "largest_force": 0.0, "last_force": [0.0] * 3, "forced_too_early": 0,
-                       "unreadable": 0, "closed_well": False}
+                       "unreadable": 0, "closed_well": False, "longest_hold": 0.0}
+        self.forced_at = 0.0  # of the force that is held; 0: none is
 
     def take(self, count):
         while len(self.buffer) < count:
@@ -153,6 +155,10 @@ class Connection:
         self.report["forced_too_early"] += self.report["states"] == 0 and size > 0.0
         self.report["largest_force"] = max(self.report["largest_force"], size)
         self.report["last_force"] = force
+        now = time.monotonic()
+        if self.forced_at:
+            self.report["longest_hold"] = max(self.report["longest_hold"], now - self.forced_at)
+        self.forced_at = now if size > 0.0 else 0.0
 
     def answer(self):
         """One state, or what the mode makes of it after so many good ones."""

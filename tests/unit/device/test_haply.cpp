@@ -23,8 +23,9 @@ const Vec3 kForce(1.5, -0.5, 0.25);
 /// The stand-in, and a hand's thread that polls and sends every millisecond until something is so.
 class Session {
  public:
-  explicit Session(const std::string& mode, DeviceOptions options = {})
-      : m_server({ARGIL_SOURCE_DIR "/tests/support/haply_stand_in.py", "--mode", mode}) {
+  explicit Session(const std::string& mode, DeviceOptions options = {}, int good = 50)
+      : m_server({ARGIL_SOURCE_DIR "/tests/support/haply_stand_in.py", "--mode", mode, "--good",
+                  std::to_string(good)}) {
     const std::string port = m_server.read_line();
     m_device = make_device("haply:127.0.0.1:" + port.substr(port.find(' ') + 1), options);
     m_device->start();
@@ -212,6 +213,31 @@ TEST(Haply, GivesWhatASlowServiceHas) {
   ASSERT_TRUE(session.gets_samples(60));
   EXPECT_EQ(session.device().counts().repeated, 0);
   EXPECT_EQ(vector(session.stop().at("last_force")), Vec3::Zero());
+}
+
+// The service holds the last command while it owes its answer.
+TEST(Haply, IsToldOfZeroForceAlthoughItOwesAnAnswer) {
+  Session session("silent");
+  ASSERT_TRUE(session.comes_to(DeviceState::lost));  // after 2 s of silence
+  const nlohmann::json report = session.stop();
+  EXPECT_GT(report.at("largest_force").get<double>(), 0.0);
+  EXPECT_LT(report.at("longest_hold").get<double>(), 1.0);  // 0.1 s on a machine that has time
+}
+
+// A command that is due is written when the answer before it comes, not a period later: at a period of 40 ms
+// and answers after 50 ms a sample takes 50 ms and not 80.
+TEST(Haply, LosesNoPeriodByALateAnswer) {
+  DeviceOptions options;
+  options.period = 0.04;
+  Session session("slow", options, 1);
+  const auto gets = [&](std::int64_t count) {
+    return session.tick_until([&](const DevicePoll& poll) { return poll.number >= count; }, Vec3::Zero());
+  };
+  ASSERT_TRUE(gets(3));
+  const double begin = session.last().time;
+  ASSERT_TRUE(gets(23));
+  EXPECT_LT(session.last().time - begin, 20 * 0.07);
+  session.stop();
 }
 
 TEST(Haply, IsLostWithoutADeviceOrAService) {

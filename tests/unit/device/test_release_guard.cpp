@@ -3,6 +3,7 @@
 #include "device/release_guard.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>  // NOLINT: kill is POSIX
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -37,9 +38,17 @@ class Tattler final : public HapticDevice {
 struct End {
   std::string released;  ///< what the device wrote
   int status;            ///< as waitpid gives it
+  bool was_stopped = false;
 };
 
 Tattler* s_device = nullptr;  ///< of the child
+volatile int s_depth = 0;
+
+int overflow_stack(int depth) {
+  volatile char frame[4096];
+  frame[depth % 4096] = 1;
+  return depth < 0 ? 0 : overflow_stack(depth + 1) + frame[0];
+}
 
 /// A child that does `something` under a guard.
 End run_guarded(const std::function<void(std::optional<ReleaseGuard>&)>& something) {
@@ -58,7 +67,12 @@ End run_guarded(const std::function<void(std::optional<ReleaseGuard>&)>& somethi
   }
   close(ends[1]);
   End end{std::string(8, ' '), 0};
-  waitpid(child, &end.status, 0);
+  waitpid(child, &end.status, WUNTRACED);
+  if (WIFSTOPPED(end.status)) {
+    end.was_stopped = true;
+    kill(child, SIGCONT);
+    waitpid(child, &end.status, 0);
+  }
   const ssize_t size = read(ends[0], end.released.data(), end.released.size());
   end.released.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
   close(ends[0]);
@@ -66,7 +80,10 @@ End run_guarded(const std::function<void(std::optional<ReleaseGuard>&)>& somethi
 }
 
 TEST(ReleaseGuard, ReleasesTheDeviceOnceAndLetsTheSignalGoOn) {
-  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGHUP}) {
+  // All that end a process by default [signal(7)] but SIGKILL and SIGPIPE.
+  for (const int number : {SIGSEGV, SIGBUS,    SIGFPE,  SIGILL,  SIGABRT,   SIGSYS,  SIGTRAP, SIGINT,
+                           SIGTERM, SIGHUP,    SIGQUIT, SIGALRM, SIGUSR1,   SIGUSR2, SIGXCPU, SIGXFSZ,
+                           SIGPROF, SIGVTALRM, SIGPOLL, SIGPWR,  SIGSTKFLT, SIGRTMAX}) {
     const End end = run_guarded([&](auto& guard) {
       guard.reset();
       std::signal(number, SIG_DFL);  // sanitizers have handlers of their own
@@ -78,6 +95,30 @@ TEST(ReleaseGuard, ReleasesTheDeviceOnceAndLetsTheSignalGoOn) {
     EXPECT_TRUE(WIFSIGNALED(end.status)) << number;
     EXPECT_EQ(WTERMSIG(end.status), number);
   }
+}
+
+TEST(ReleaseGuard, ReleasesTheDeviceWhenTheStackOverflows) {
+  const End end = run_guarded([&](auto& guard) {
+    guard.reset();
+    std::signal(SIGSEGV, SIG_DFL);
+    guard.emplace(*s_device);
+    s_depth = overflow_stack(0);
+  });
+  EXPECT_EQ(end.released, "r");
+  EXPECT_EQ(WTERMSIG(end.status), SIGSEGV);
+}
+
+TEST(ReleaseGuard, ReleasesTheDeviceBeforeItIsStopped) {
+  const End end = run_guarded([](auto&) { std::raise(SIGTSTP); });
+  EXPECT_EQ(end.released, "r");
+  EXPECT_TRUE(WIFEXITED(end.status));
+  EXPECT_TRUE(end.was_stopped);
+}
+
+TEST(ReleaseGuard, GoesOnWhenNobodyReadsWhatTheProgramPrints) {
+  const End end = run_guarded([](auto&) { std::raise(SIGPIPE); });
+  EXPECT_EQ(end.released, "");
+  EXPECT_TRUE(WIFEXITED(end.status));
 }
 
 TEST(ReleaseGuard, ReleasesTheDeviceAtExit) {

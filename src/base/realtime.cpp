@@ -1,4 +1,4 @@
-#include "live/realtime.h"
+#include "base/realtime.h"
 
 #include <malloc.h>
 #include <pthread.h>
@@ -12,7 +12,7 @@
 #include <cmath>
 #include <ctime>
 
-namespace argil::live {
+namespace argil {
 
 bool lock_memory() {
   // What has been allocated once stays with the process, so that a later growth finds its pages there.
@@ -29,11 +29,10 @@ void wake_without_slack() {
   prctl(PR_SET_TIMERSLACK, 1UL);  // [ns]
 }
 
-bool make_realtime(std::thread& thread) {
+bool make_realtime(pthread_t thread, int priority) {
   sched_param parameters = {};
-  constexpr int kPriority = 80;  // above what ordinary programs ask for, below the kernel's own threads
-  parameters.sched_priority = kPriority;
-  return pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &parameters) == 0;
+  parameters.sched_priority = priority;
+  return pthread_setschedparam(thread, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) == 0;
 }
 
 void sleep_until(double time) {
@@ -45,4 +44,4 @@ void sleep_until(double time) {
   }
 }
 
-}  // namespace argil::live
+}  // namespace argil
