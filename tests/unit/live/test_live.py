@@ -236,7 +236,7 @@ class Live(unittest.TestCase):
         process, terminal = self.start_in_terminal("4")
         os.read(terminal, 4096)  # it draws
         os.write(terminal, b"\x13")  # Ctrl-S
-        self.wait_for_ticks(process, 2048)
+        self.wait_for_rows(process, 2048)
         os.write(terminal, b"\x11")  # Ctrl-Q
         seen = self.read_to_end(terminal)
         self.assertEqual(process.wait(), 0, seen)
