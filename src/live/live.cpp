@@ -101,13 +101,29 @@ std::unique_ptr<device::HapticDevice> attach(const std::string& name, const devi
   return device;
 }
 
+/// The smaller of two limits, of which 0 is none.
+double find_tighter(double a, double b) {
+  return a > 0.0 && b > 0.0 ? std::min(a, b) : std::max(a, b);
+}
+
 /// Where the session begins; `sample` was taken from the device, which is ready.
 output::SessionHead make_head(const scenario::Scenario& s, const device::DeviceInfo& info,
                               const device::DeviceSample& sample) {
-  output::SessionHead head{info.name, sample, s.params.device.max_force};
+  const device::DeviceLimits& limits = s.params.device;
+  output::SessionHead head{info.name, sample, find_tighter(limits.max_force, info.max_force),
+                           find_tighter(limits.max_torque, info.max_torque)};
   head.start.mode = study::find_fixed_mode(s).value_or(sample.mode);
-  if (info.max_force > 0.0) head.max_force = std::min(head.max_force, info.max_force);
   return head;
+}
+
+void warn_of_stiffness(const scenario::Scenario& s, const device::DeviceInfo& info) {
+  const contact::ContactParams& contact = s.params.contact;
+  const double stiffness = std::max(contact.vertex_face_stiffness, contact.edge_edge_stiffness);
+  if (!(info.max_stiffness > 0.0 && stiffness > info.max_stiffness)) return;
+  std::fprintf(stderr,
+               "argil: warning: %s: /contact: a stiffness of %g N/m is more than the %g N/m that %s declares "
+               "to render stably: lower it, or set /haptics/passivity to time_domain\n",
+               s.file.c_str(), stiffness, info.max_stiffness, info.name.c_str());
 }
 
 void check_watch_name(const scenario::Scenario& s, const std::string& watch, const std::string& result) {
@@ -230,6 +246,7 @@ int run_live(const LiveOptions& options) {
   output::SessionHead head = head_now(first);
   sim::Simulation simulation(std::move(scene.body), tool, study::session_params(head, s.params), head.start);
   study::print_notes(scene, options.run);
+  warn_of_stiffness(s, device->info());
   std::unique_ptr<Watch> watch;
   if (!options.watch.empty()) watch = std::make_unique<Watch>(options.watch, simulation);
   // To make all this took a while, in which the hand may have moved.

@@ -287,6 +287,7 @@ void ResultFile::begin_session(const SessionHead& head, bool is_timed) {
     Group group = m_impl->root.create_group(schema::kSession);
     group.write_attribute("device", head.device);
     group.write_attribute("max_force_N", head.max_force);
+    group.write_attribute("max_torque_Nm", head.max_torque);
     const Vec4 orientation = head.start.orientation.coeffs();
     const auto mode = static_cast<std::uint8_t>(head.start.mode);
     group.write_array("start_position", head.start.position.data(), Shape{3}, false, schema::kStartPosition);

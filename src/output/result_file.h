@@ -33,6 +33,7 @@ struct SessionHead {
   std::string device;          ///< as it calls itself
   device::DeviceSample start;  ///< before the first tick
   double max_force = 0.0;      ///< [N] that scenario and device allow
+  double max_torque = 0.0;     ///< [N m] likewise; 0: no limit
 };
 
 /// What a tick of a live session took from outside, besides the motion that /haptic has.

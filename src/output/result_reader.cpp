@@ -253,6 +253,7 @@ std::optional<Session> ResultReader::find_session() const {
   Session session;
   session.head.device = group.read_text("device");
   session.head.max_force = group.read_real("max_force_N");
+  session.head.max_torque = group.read_real("max_torque_Nm");
   const ColumnReader<double> position(group, "start_position", 1, 3);
   const ColumnReader<double> orientation(group, "start_orientation", 1, 4);
   const ColumnReader<std::uint8_t> mode(group, "start_mode", 1, 1);

@@ -49,6 +49,7 @@ std::optional<output::Session> find_session(const std::string& trace, const scen
 sim::Params session_params(const output::SessionHead& head, sim::Params params) {
   constexpr double kSoftStart = 0.2;  // [s] in which a live hand's force rises at least
   params.device.max_force = head.max_force;
+  params.device.max_torque = head.max_torque;
   params.device.ramp_s = std::max(params.device.ramp_s, kSoftStart);
   return params;
 }

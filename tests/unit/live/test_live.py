@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """argil live with devices that are programs: a session replays to the same bits, however it ended.
 
-Usage: test_live.py ARGIL        the program
+Usage: test_live.py ARGIL HOSTILE_PLUGIN        the program, and the device of tests/support/hostile_plugin.cpp
 """
 import json
 import math
@@ -10,6 +10,7 @@ import pty
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -22,6 +23,7 @@ import numpy
 
 SUPPORT = Path(__file__).resolve().parents[2] / "support"
 ARGIL = str(Path(sys.argv.pop(1)).resolve())
+HOSTILE = str(Path(sys.argv.pop(1)).resolve())
 
 
 def write_press(file, seconds):
@@ -63,7 +65,8 @@ class Live(unittest.TestCase):
                               env={**os.environ, **(environment or {})})
 
     def start(self, *arguments):
-        process = subprocess.Popen([ARGIL, "live", "scene.json", "--device", "simulated", "-o", "live.h5", *arguments],
+        device = [] if "--device" in arguments else ["--device", "simulated"]
+        process = subprocess.Popen([ARGIL, "live", "scene.json", "-o", "live.h5", *device, *arguments],
                                    cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.kill)
         return process
@@ -247,6 +250,61 @@ class Live(unittest.TestCase):
         done = self.call("live", "scene.json", "-o", "live.h5", "--duration", "60", *self.start_stand_in("vanish"))
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertIn("the device was lost", done.stderr)
+        self.replay()
+        self.assert_equal()
+
+    def hostile(self, mode):
+        """A device that goes wrong in that way when its hand is in the ball."""
+        (self.folder / "rendered").write_bytes(bytes(256))
+        return ["--device", f"plugin:{HOSTILE},{mode}:{self.folder}/rendered"]
+
+    def read_rendered(self):
+        """Force, torque, largest of each, whether the device has gone wrong: as hostile_plugin.h lays them out."""
+        values = struct.unpack("8d3i", (self.folder / "rendered").read_bytes()[:76])
+        return values[:3], values[3:6], values[6], values[7], values[10]
+
+    def wait_for_wrong(self, process):
+        while process.poll() is None and not self.read_rendered()[4]:
+            time.sleep(0.01)
+
+    def test_a_device_that_does_not_answer_is_let_go_and_holds_nothing_up(self):
+        process = self.start(*self.hostile("blocks"))
+        self.wait_for_wrong(process)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=60)[1]
+        self.assertIn(process.returncode, (130, 4), said)  # 4 when the device was lost before, after 2 s
+        force, torque, largest_force, _, _ = self.read_rendered()
+        self.assertGreater(largest_force, 0.01)
+        self.assertEqual(force + torque, (0,) * 6)
+        self.replay()
+        self.assert_equal()
+
+    def test_a_device_that_does_not_answer_is_lost(self):
+        done = self.call("live", "scene.json", "-o", "live.h5", *self.hostile("blocks"))
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("does not come back", done.stderr)
+        self.assertEqual(self.read_rendered()[0], (0, 0, 0))
+
+    def test_a_signal_that_kills_leaves_zero_force(self):
+        for number in signal.SIGQUIT, signal.SIGUSR1, signal.SIGXCPU:
+            process = self.start(*self.hostile("good"))
+            self.wait_for_wrong(process)
+            process.send_signal(number)
+            process.communicate(timeout=60)
+            self.assertEqual(process.returncode, -number)
+            force, torque, largest_force, _, _ = self.read_rendered()
+            self.assertGreater(largest_force, 0.01)
+            self.assertEqual(force + torque, (0,) * 6)
+
+    def test_what_a_device_declares_is_kept_to_and_replays(self):
+        done = self.call("live", "scene.json", "-o", "live.h5", "--duration", "0.8", *self.hostile("weak"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("400 N/m is more than the 100 N/m that hostile declares", done.stderr)
+        _, _, largest_force, largest_torque, _ = self.read_rendered()
+        self.assertGreater(largest_force, 0.01)
+        self.assertLessEqual(largest_force, 0.02 * (1 + 1e-12))
+        self.assertGreater(largest_torque, 0)
+        self.assertLessEqual(largest_torque, 1e-6 * (1 + 1e-12))
         self.replay()
         self.assert_equal()
 
