@@ -128,7 +128,7 @@ std::string describe_section(const PageSection& section) {
 }
 
 std::string summarise(const ResultReader& reader, const SurfaceFrames& surface) {
-  const char* outcome = "";
+  std::string outcome;
   switch (reader.outcome()) {
     case Outcome::done:
       outcome = "run done";
@@ -141,9 +141,10 @@ std::string summarise(const ResultReader& reader, const SurfaceFrames& surface) 
       break;
     case Outcome::failed:
       outcome = "run failed";
+      if (const auto failure = reader.read_failure()) outcome += ": " + to_string(*failure);
       break;
   }
-  return std::string(outcome) + " · " + (surface.is_skin() ? "skin" : "cage") + " of " +
+  return outcome + " · " + (surface.is_skin() ? "skin" : "cage") + " of " +
          std::to_string(surface.triangles().cols()) + " triangles";
 }
 
@@ -157,9 +158,9 @@ std::vector<std::string> list_notes(const SurfaceFrames& surface, const PageSurf
     out.str("");
   };
   const std::size_t all = surface.frames().size();
-  out << (page.frames.size() < all ? "Decimated in time: shows " : "Shows all ");
+  out << (page.frames.size() < all ? "Decimated in time: shows " : all == 1 ? "Shows its " : "Shows all ");
   if (page.frames.size() < all) out << page.frames.size() << " of ";
-  out << all << " frames";
+  out << all << (all == 1 ? " frame" : " frames");
   if (page.frames.size() < all)
     out << ", so that they take at most " << options.frame_megabytes << " MB (--megabytes)";
   take();

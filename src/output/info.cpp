@@ -123,11 +123,40 @@ void describe_physics(std::ostream& out, const std::vector<sim::PhysicsRecord>& 
       << with_prefix(kGrams * last.water_removed, "g") << '\n';
 }
 
-/// Wall clock: in all, beside the hand's time, and each stage, the longest first.
+/// What `/fidelity/mode` left out, the step whose error came nearest to its bound, and how far small strain
+/// was left.
+void describe_fidelity(std::ostream& out, const std::vector<sim::FidelityRecord>& steps) {
+  const auto count_at = [&](sim::Rung rung) {
+    return std::count_if(steps.begin(), steps.end(), [&](const auto& step) { return step.rung == rung; });
+  };
+  out << label("left out") << count_at(sim::Rung::asleep) << " of " << count(steps.size(), "step")
+      << " asleep, " << count_at(sim::Rung::coasting) << " coasting";
+  if (!steps.empty()) {
+    const auto share = [](const sim::FidelityRecord& step) {
+      return step.estimate > 0.0 ? step.estimate / step.bound : 0.0;
+    };
+    const auto nearest = std::max_element(steps.begin(), steps.end(),
+                                          [&](const auto& a, const auto& b) { return share(a) < share(b); });
+    const auto most = [&](double sim::FidelityRecord::*member) {
+      return (*std::max_element(steps.begin(), steps.end(),
+                                [&](const auto& a, const auto& b) { return a.*member < b.*member; })).*
+             member;
+    };
+    out << "; estimate at most " << with_prefix(nearest->estimate, "N") << " of bound "
+        << with_prefix(nearest->bound, "N");
+    if (const double error = most(&sim::FidelityRecord::error); error > 0.0)
+      out << ", error beside a full run at most " << with_prefix(error, "N");
+    out << "; large strain " << rounded(100.0 * most(&sim::FidelityRecord::large_strain)) << " %";
+  }
+  out << '\n';
+}
+
+/// Wall clock: in all, beside the hand's time, and each stage, the longest first; then the processors' time.
 void describe_timing(std::ostream& out, std::vector<std::pair<std::string, double>> timing, double moved) {
   std::stable_sort(timing.begin(), timing.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string stages;
+  std::string processors;
   for (const auto& [name, value] : timing) {
     if (name == "total") {
       out << label("timing") << with_prefix(value, "s") << " of wall clock";
@@ -135,11 +164,14 @@ void describe_timing(std::ostream& out, std::vector<std::pair<std::string, doubl
       out << '\n';
     } else if (name == "tick_rate_Hz") {
       out << label("rate") << rounded(value) << " ticks in a second of wall clock\n";
+    } else if (name == "cpu") {
+      processors = label("cpu") + with_prefix(value, "s") + " of all processors together\n";
     } else if (name != "instructions" && !name.starts_with("num_")) {
       stages += (stages.empty() ? "" : ", ") + name + ' ' + with_prefix(value, "s");
     }
   }
   if (!stages.empty()) out << label("of it") << stages << '\n';
+  out << processors;
 }
 
 /// What the run was made from: notes of its start, build, hashes, a line each. The scenario has a page of its
@@ -172,6 +204,7 @@ std::string describe_result(const ResultReader& reader) {
   describe_body(out, header);
   describe_haptic(out, haptic, header.haptic_period);
   describe_physics(out, reader.read_physics());
+  if (const auto fidelity = reader.find_fidelity()) describe_fidelity(out, *fidelity);
   out << label("frames") << frames.size();
   if (!frames.empty())
     out << ", last at tick " << frames.back().tick << ", state " << frames.back().state_hash;

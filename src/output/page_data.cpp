@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 namespace argil::output {
 namespace {
@@ -38,14 +37,15 @@ std::vector<std::uint32_t> to_indices(const Triangles& triangles) {
 }
 
 struct Extent {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
-  Vec3 high = -low;
+  Vec3 low, high;  // [m] of all frames and of the body at rest
   double plastic_strain = 0.0;
   double influence = 0.0;
 };
 
 Extent measure(const SurfaceFrames& surface, const std::vector<FrameInfo>& frames) {
   Extent extent;
+  extent.low = surface.rest_position().rowwise().minCoeff();
+  extent.high = surface.rest_position().rowwise().maxCoeff();
   for (const FrameInfo& info : frames) {
     const SurfaceFrames::Shot shot = surface.read(info);
     extent.low = extent.low.cwiseMin(shot.position.rowwise().minCoeff());
@@ -54,6 +54,12 @@ Extent measure(const SurfaceFrames& surface, const std::vector<FrameInfo>& frame
     if (shot.influence.size() > 0) extent.influence = std::max(extent.influence, shot.influence.maxCoeff());
   }
   return extent;
+}
+
+void append_rounded(std::vector<std::uint16_t>& numbers, const Points& position, const PageSurface& page) {
+  for (Eigen::Index i = 0; i < position.cols(); ++i)
+    for (int k = 0; k < 3; ++k)
+      numbers.push_back(round_to<std::uint16_t>((position(k, i) - page.low(k)) / page.step, kGridSteps));
 }
 
 const Field& find_field(const SurfaceFrames::Shot& shot, const std::string& name) {
@@ -107,14 +113,12 @@ PageSurface add_surface(PageBlock& block, const SurfaceFrames& surface,
   if (extent.influence > 0.0)
     page.fields.push_back({"influence", "region of influence", "–", "strained", 1.0});
 
-  std::vector<std::uint16_t> position;
+  std::vector<std::uint16_t> position, rest;
+  append_rounded(rest, surface.rest_position(), page);
   std::vector<std::vector<std::uint8_t>> fields(page.fields.size());
   for (const FrameInfo& info : frames) {
     const SurfaceFrames::Shot shot = surface.read(info);
-    for (Eigen::Index i = 0; i < shot.position.cols(); ++i)
-      for (int k = 0; k < 3; ++k)
-        position.push_back(
-            round_to<std::uint16_t>((shot.position(k, i) - page.low(k)) / page.step, kGridSteps));
+    append_rounded(position, shot.position, page);
     for (std::size_t f = 0; f < fields.size(); ++f)
       for (const double value : find_field(shot, page.fields[f].name))
         fields[f].push_back(round_to<std::uint8_t>(value / page.fields[f].top * 255.0, 255.0));
@@ -122,6 +126,7 @@ PageSurface add_surface(PageBlock& block, const SurfaceFrames& surface,
   const auto num_vertices = static_cast<std::size_t>(surface.num_vertices());
   take_differences(position, 3 * num_vertices);
   block.add("triangles", to_indices(surface.triangles()));
+  block.add("rest", rest);
   block.add("position", position);
   for (std::size_t f = 0; f < fields.size(); ++f) {
     take_differences(fields[f], num_vertices);

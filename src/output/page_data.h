@@ -58,8 +58,8 @@ std::size_t page_frame_bytes(const SurfaceFrames& surface);
 /// `tick`.
 std::vector<FrameInfo> choose_frames(const std::vector<FrameInfo>& all, std::size_t limit, Tick tick);
 
-/// Adds triangles, positions and fields of `frames` to the block, each frame but the first as what changed
-/// since the one before, modulo the range of the numbers.
+/// Adds triangles, the rest positions, and positions and fields of `frames` to the block, each frame but the
+/// first as what changed since the one before, modulo the range of the numbers.
 PageSurface add_surface(PageBlock& block, const SurfaceFrames& surface, const std::vector<FrameInfo>& frames);
 
 /// Adds tool_vertices [m, in the tool's frame] and tool_triangles.

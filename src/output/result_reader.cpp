@@ -198,6 +198,29 @@ std::vector<sim::PhysicsRecord> ResultReader::read_physics() const {
   return records;
 }
 
+std::optional<std::vector<sim::FidelityRecord>> ResultReader::find_fidelity() const {
+  if (!m_root.has(schema::kFidelity)) return std::nullopt;
+  const Group group = m_root.open_group(schema::kFidelity);
+  std::vector<sim::FidelityRecord> records(group.open_dataset("tick").read<std::int64_t>().size());
+  const auto read_reals = [&](const char* name, double sim::FidelityRecord::*member) {
+    const ColumnReader<double> column(group, name, records.size(), 1);
+    for (std::size_t i = 0; i < records.size(); ++i) records[i].*member = column(i);
+  };
+  const ColumnReader<std::uint8_t> rung(group, "rung", records.size(), 1);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (rung(i) > static_cast<std::uint8_t>(sim::Rung::solved))
+      throw IoError(group.file(), group.path() + "/rung is " + std::to_string(rung(i)) + " in row " +
+                                      std::to_string(i) + ", and rungs end at 2; the file is damaged");
+    records[i].rung = static_cast<sim::Rung>(rung(i));
+  }
+  using Record = sim::FidelityRecord;
+  read_reals("bound", &Record::bound);
+  read_reals("estimate", &Record::estimate);
+  read_reals("large_strain", &Record::large_strain);
+  if (group.has(schema::kFidelityError.name)) read_reals(schema::kFidelityError.name, &Record::error);
+  return records;
+}
+
 std::vector<FrameInfo> ResultReader::read_frame_list() const {
   const Group frames = m_root.open_group("frames");
   std::vector<FrameInfo> list;

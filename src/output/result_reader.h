@@ -33,6 +33,8 @@ class ResultReader {
   std::optional<std::string> find_provenance(const std::string& name) const;
   std::vector<sim::HapticRecord> read_haptic() const;
   std::vector<sim::PhysicsRecord> read_physics() const;
+  /// What each physics step left out; none in a run that computed all of it. `error` is 0 but in `check`.
+  std::optional<std::vector<sim::FidelityRecord>> find_fidelity() const;
   std::vector<FrameInfo> read_frame_list() const;  ///< in the order of ticks
   sim::Frame read_frame(const FrameInfo& info) const;
   /// State from which an unfinished run can go on; nothing when there is none.

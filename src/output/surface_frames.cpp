@@ -15,6 +15,7 @@ SurfaceFrames::SurfaceFrames(const ResultReader& reader, bool wants_cage)
   m_is_skin = header.skin_triangles.cols() > 0 && !wants_cage;
   if (!m_is_skin) {
     number_surface_vertices(header.surface_triangles);
+    m_rest_position = header.rest_position(Eigen::all, m_cage_vertices);
     return;
   }
   m_triangles = header.skin_triangles;
@@ -23,7 +24,11 @@ SurfaceFrames::SurfaceFrames(const ResultReader& reader, bool wants_cage)
   mesh::TetMesh cage;
   cage.vertices = first.position;
   cage.tets = header.tets;
-  m_skin_tets = embed::make_embedding(cage, first.skin_position, reader.file()).tet;
+  const embed::Embedding embedding = embed::make_embedding(cage, first.skin_position, reader.file());
+  m_skin_tets = embedding.tet;
+  m_rest_position = first.skin_position;  // to the last bit where the run began at rest
+  if (first.position != header.rest_position)
+    embed::interpolate_positions(embedding, header.tets, header.rest_position, m_rest_position);
 }
 
 void SurfaceFrames::number_surface_vertices(const Triangles& boundary) {

@@ -18,6 +18,10 @@ class SurfaceFrames {
   int num_vertices() const { return m_num_vertices; }
   const std::vector<FrameInfo>& frames() const { return m_frames; }  ///< all, in the order of ticks
 
+  /// [m] Where the vertices are when nothing deforms the body, which may be so in no frame: of a static
+  /// result.
+  const Points& rest_position() const { return m_rest_position; }
+
   /// The surface at one frame; fields at its vertices.
   struct Shot {
     Points position;       ///< [m]
@@ -36,6 +40,7 @@ class SurfaceFrames {
   std::vector<FrameInfo> m_frames;
   bool m_is_skin = false;
   int m_num_vertices = 0;
+  Points m_rest_position;
   Triangles m_triangles;
   std::vector<int> m_cage_vertices;  // of the surface; none with a skin
   std::vector<int> m_skin_tets;      // containing tet of each skin vertex; none without a skin

@@ -44,14 +44,15 @@ std::string rounded(double value) {
 }
 
 std::string with_prefix(double value, const std::string& unit) {
-  constexpr std::array kPrefixes = {"n", "µ", "m", "", "k", "M", "G"};
-  constexpr int kNone = 3;   // where there is no prefix
+  constexpr std::array kPrefixes = {"p", "n", "µ", "m", "", "k", "M", "G"};
+  constexpr int kNone = 4;   // where there is no prefix
   constexpr int kEvery = 3;  // decimal places from one to the next
   if (value == 0.0 || !std::isfinite(value)) return rounded(value) + ' ' + unit;
   // Of the digits that are printed: 999.96 becomes 1 of the next prefix.
   const double printed = std::stod(rounded(value));
   const int places = static_cast<int>(std::floor(std::log10(std::abs(printed)) / kEvery));
-  const int step = std::clamp(places, -kNone, static_cast<int>(kPrefixes.size()) - 1 - kNone);
+  if (places < -kNone) return rounded(value) + ' ' + unit;
+  const int step = std::min(places, static_cast<int>(kPrefixes.size()) - 1 - kNone);
   return rounded(value / std::pow(10.0, kEvery * step)) + ' ' +
          kPrefixes[static_cast<std::size_t>(kNone + step)] + unit;
 }

@@ -40,14 +40,14 @@ export function positionsOf(result, frame, out) {
   for (let i = 0; i < out.length; ++i) out[i] = low[i % 3] + step * values[start + i];
 }
 
-/** The field in its unit, one number a vertex. Displacement is measured from the first frame that is shown. */
+/** The field in its unit, one number a vertex. Displacement is measured from the body at rest. */
 export function valuesOf(result, field, frame, count) {
   const values = new Float32Array(count);
   if (field.name === "displacement") {
-    const { position } = result.arrays;
+    const { position, rest } = result.arrays;
     const scale = result.grid.step * field.scale;
     const start = 3 * count * frame;
-    const moved = (i) => position[start + i] - position[i];
+    const moved = (i) => position[start + i] - rest[i];
     for (let v = 0; v < count; ++v) values[v] = scale * Math.hypot(moved(3 * v), moved(3 * v + 1), moved(3 * v + 2));
     return values;
   }

@@ -7,6 +7,7 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 const OPENING_DEGREES = 30;
+const ROOM = 1.06; // around the body
 const UP = new Vector3(0, 1, 0); // of three.js' own cylinders
 
 function makeBody(indices, numVertices) {
@@ -64,6 +65,7 @@ export class View {
     this.addCamera(result);
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
+    this.controls.addEventListener("start", () => { this.isFitted = false; });
   }
 
   addCamera(result) {
@@ -80,7 +82,7 @@ export class View {
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
     this.away = this.findDirection(result.touched);
-    this.reset();
+    this.isFitted = true;
   }
 
   /** Towards the eye: 30 degrees off the side of the body's box that the tool is nearest to, and from above. */
@@ -93,9 +95,23 @@ export class View {
     return away.normalize();
   }
 
+  /** How far from the middle every corner of the extent is inside the picture, whatever its aspect [m]. */
+  findDistance() {
+    const right = new Vector3(0, 0, 1).cross(this.away).normalize();
+    const up = this.away.clone().cross(right);
+    const rise = Math.tan((OPENING_DEGREES * Math.PI) / 360);
+    let distance = 0;
+    for (const x of [-0.5, 0.5]) for (const y of [-0.5, 0.5]) for (const z of [-0.5, 0.5]) {
+      const corner = this.extent.box.clone().multiply(new Vector3(x, y, z));
+      const aside = Math.max(Math.abs(corner.dot(right)) / this.camera.aspect, Math.abs(corner.dot(up)));
+      distance = Math.max(distance, corner.dot(this.away) + (ROOM * aside) / rise);
+    }
+    return distance;
+  }
+
   reset() {
-    const distance = (0.42 * this.extent.size) / Math.tan((OPENING_DEGREES * Math.PI) / 360);
-    this.camera.position.copy(this.extent.middle).addScaledVector(this.away, distance);
+    this.isFitted = true;
+    this.camera.position.copy(this.extent.middle).addScaledVector(this.away, this.findDistance());
     this.controls.target.copy(this.extent.middle);
     this.controls.update();
   }
@@ -106,6 +122,7 @@ export class View {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    if (this.isFitted) this.reset();
     this.draw();
   }
 

@@ -1,6 +1,6 @@
-"""Opens the XDMF of the run of records.h in ParaView's three readers, as a user would. Run by ParaView's pvpython.
+"""Opens the XDMF of the run of records.h in ParaView's three readers, as a user would. Run by scripts/pvbatch.
 
-Usage: pvpython check_in_paraview.py RESULT.xdmf FRAMES. Exit code 0 when every reader finds all time steps, the five
+Usage: scripts/pvbatch check_in_paraview.py RESULT.xdmf FRAMES. Exit code 0 when every reader finds all time steps, the five
 points of the cage and the three of the skin, and saturations from 0.25 to 0.75.
 """
 import sys

@@ -31,12 +31,14 @@ TEST(OtherReaders, H5pyFindsEveryDatasetAsDescribedAndTheXdmfNamesThem) {
 }
 
 TEST(OtherReaders, ParaViewFindsEveryFrameAndItsSaturation) {
-  if (run("pvpython --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "needs pvpython (package paraview)";
+  const std::string pvbatch = std::string("'") + ARGIL_SOURCE_DIR + "/scripts/pvbatch' ";
+  if (run(pvbatch + "--version > /dev/null 2>&1") != 0)
+    GTEST_SKIP() << "needs ParaView and its Python modules";
   const TempFolder folder;
   test::write_run(folder / "run.h5", 101);
   write_xdmf(folder / "run.h5", folder / "run.xdmf");
   const std::string script = std::string(ARGIL_SOURCE_DIR) + "/tests/unit/output/check_in_paraview.py";
-  EXPECT_EQ(run("pvpython '" + script + "' '" + folder / "run.xdmf" + "' 11"), 0);
+  EXPECT_EQ(run(pvbatch + "'" + script + "' '" + folder / "run.xdmf" + "' 11"), 0);
 }
 
 TEST(OtherReaders, H5dumpReadsTheWholeFile) {

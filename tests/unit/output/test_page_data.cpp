@@ -81,6 +81,7 @@ TEST(AddSurface, DifferencesAddUpToTheRoundedSkin) {
   PageBlock block;
   const PageSurface page = add_surface(block, surface, surface.frames());
   std::vector<std::uint16_t> position = read_section<std::uint16_t>(block, "position");
+  const std::vector<std::uint16_t> at_rest = read_section<std::uint16_t>(block, "rest");
   const std::size_t row = 3 * static_cast<std::size_t>(surface.num_vertices());
   ASSERT_EQ(position.size(), 3 * row);
   for (std::size_t i = row; i < position.size(); ++i)
@@ -92,10 +93,48 @@ TEST(AddSurface, DifferencesAddUpToTheRoundedSkin) {
   for (std::size_t frame = 0; frame < 3; ++frame)
     for (std::size_t v = 0; v < 4; ++v)
       for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(at_rest[3 * v + k], position[3 * v + k]);  // the run begins at rest
         const double expected = rest(static_cast<int>(k), vertices[v]) + 0.01 * static_cast<double>(frame);
         const double seen = page.low(static_cast<int>(k)) + page.step * position[frame * row + 3 * v + k];
         EXPECT_NEAR(seen, expected, 0.5001 * page.step) << frame << ' ' << v << ' ' << k;
       }
+}
+
+// A static result has one frame, which is not at rest. A unit tet that is twice as large in it: its skin's
+// vertex at (0.5, 0.5, 0.5)/2 of the deformed body was at half of that.
+TEST(SurfaceFrames, RestsWhereTheMeshDoesThoughNoFrameDoes) {
+  const TempFolder folder;
+  for (const bool has_skin : {false, true}) {
+    ResultHeader header = test::make_header(has_skin);
+    {
+      ResultFile file(folder / "run.h5", header);
+      sim::Frame frame = test::make_frame(0, has_skin);
+      frame.position = 2.0 * header.rest_position;
+      if (has_skin) frame.skin_position = Points::Constant(3, 3, 0.25);
+      file.append(frame);
+      file.finish(std::nullopt);
+    }
+    const ResultReader reader(folder / "run.h5");
+    const SurfaceFrames surface(reader, false);
+    const Points expected = has_skin ? Points(Points::Constant(3, 3, 0.125))
+                                     : Points(header.rest_position(Eigen::all, {0, 2, 1, 4}));
+    EXPECT_LT((surface.rest_position() - expected).cwiseAbs().maxCoeff(), 1e-15);
+  }
+}
+
+TEST(WriteHtml, SaysWhatEndedAFailedRun) {
+  const TempFolder folder;
+  {
+    ResultFile file(folder / "run.h5", test::make_header());
+    test::append_run(file, 0, 1);
+    file.finish(Failure{20, "solid", 3, "volume ratio", -0.5, 0.0});
+  }
+  const std::string viewer = folder.write("viewer.html", "<!-- argil:data -->");
+  const std::vector<std::string> notes = write_html(folder / "run.h5", folder / "page.html", {viewer});
+  EXPECT_EQ(notes.front(), "Shows its 1 frame");
+  EXPECT_NE(TempFolder::read(folder / "page.html")
+                .find("run failed: tick 20, solid: volume ratio is -0.5, bound 0, element 3"),
+            std::string::npos);
 }
 
 TEST(WriteHtml, RefusesAViewerWithoutAPlaceForData) {

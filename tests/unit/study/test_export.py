@@ -80,9 +80,9 @@ class Pages(Folder):
     def tearDownClass(cls):
         cls.browser.__exit__()
 
-    def open(self, *options):
+    def open(self, *options, result=None):
         page = self.path("a page & more.html")
-        done = export(RESULT, "--html", page, *options)
+        done = export(result or RESULT, "--html", page, *options)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.browser.complaints.clear()
         self.browser.requests.clear()
@@ -166,6 +166,38 @@ class Pages(Folder):
         self.assertIn(f"Decimated in time: shows 2 of {count} frames", said)
         self.assertIn(f"shows 2 of {count} frames", self.browser.evaluate("notes.textContent"))
         self.assertEqual(self.browser.evaluate("slider.max"), "1")
+
+    def test_the_whole_body_is_in_the_picture_whatever_its_aspect(self):
+        self.open("--cage")
+        for width, height in ((1280, 900), (480, 900), (1600, 500)):
+            self.browser.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
+                              mobile=False)
+            self.browser.wait_for(f"innerWidth === {width} && argil.view.renderer.domElement.width <= {width} && "
+                                  "Math.abs(argil.view.camera.aspect - scene.clientWidth / scene.clientHeight) < 0.01")
+            corner = """(() => {
+              const {middle, box} = argil.view.extent, seen = [];
+              for (const x of [-0.5, 0.5]) for (const y of [-0.5, 0.5]) for (const z of [-0.5, 0.5]) {
+                const at = box.clone().multiply({x, y, z}).add(middle).project(argil.view.camera);
+                seen.push(Math.abs(at.x), Math.abs(at.y));
+              }
+              return Math.max(...seen);
+            })()"""
+            self.assertLess(self.browser.evaluate(corner), 1.0)
+            self.assertGreater(self.browser.evaluate(corner), 0.85)  # and no farther away than that needs
+        self.browser.call("Emulation.clearDeviceMetricsOverride")
+
+    def test_a_result_without_a_frame_at_rest_shows_how_far_it_moved(self):
+        with h5py.File(RESULT) as result, h5py.File(self.path("static.h5"), "w") as static:
+            for name in ("mesh", "haptic", "physics", "provenance", "timing"):
+                result.copy(name, static)
+            static.attrs.update(result.attrs)
+            result.copy(frames_of(result)[-1], static.create_group("frames"), "000000")
+            moved = (result["mesh/rest_position"][:] - frames_of(result)[-1]["position"][:])[
+                np.unique(result["mesh/surface_triangles"][:])]
+        self.open("--cage", result=self.path("static.h5"))
+        self.browser.evaluate("field.value = 'displacement', field.dispatchEvent(new Event('change'))")
+        top = float(self.browser.evaluate("document.querySelector('#legend-ticks li').textContent"))
+        self.assertAlmostEqual(top, 1e3 * np.linalg.norm(moved, axis=1).max(), delta=0.01 * top)
 
     def test_the_cage_is_shown_on_request(self):
         self.open("--cage")
