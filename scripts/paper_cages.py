@@ -10,21 +10,7 @@ from pathlib import Path
 
 import argil_plot as ap
 from argil_plot import np, plt
-from scipy.spatial import cKDTree
-
-NEAREST = 60  # tets around a skin vertex among which the containing one is looked for
-
-
-def find_weights(points, tets, skin):
-    """Containing tet of each skin vertex and its barycentric weights there."""
-    corners = points[tets]
-    inverse = np.linalg.inv((corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1))
-    _, nearest = cKDTree(corners.mean(axis=1)).query(skin, min(NEAREST, len(tets)))
-    last = np.einsum("vnij,vnj->vni", inverse[nearest], skin[:, None] - corners[nearest, 0])
-    weights = np.concatenate([1.0 - last.sum(axis=2, keepdims=True), last], axis=2)
-    best = weights.min(axis=2).argmax(axis=1)
-    rows = np.arange(len(skin))
-    return nearest[rows, best], weights[rows, best]
+from render_shots import find_weights
 
 
 def measure(file):

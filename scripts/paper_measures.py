@@ -5,7 +5,7 @@ Usage: paper_measures.py ARGIL --works DRY.h5 WET.h5 --hands ON.h5 OFF.h5 --dela
        → STEM.json, STEM.png, STEM.pdf
 
 Force on or off: what a hand that yields gives the clay with the force and without; and the work that a hand
-which is put along its trace does against it. Delay: age of the force that the hand feels while it touches. Realism:
+which is put along its trace does against it. Delay: age of the force that the hand feels while it touches, and its lag behind the picture. Realism:
 strength of the clay against its water, beside measured clays, each over its strength at the liquid limit; the
 water's axis is the liquidity index, which the law takes for the saturation.
 """
@@ -34,11 +34,23 @@ def touch(file):
 
 
 def delay(file):
-    """Mean and worst age [s] of the force while the tool touches."""
+    """Mean and worst [s], while the tool touches: age of the force, and how far the moment that it is of lies from that
+    of the last picture there is, when each physics step is drawn and when each frame of the file is."""
     with ap.open_result(file) as result:
         touching = result["haptic/num_contacts"][:] > 0
-        age = result["haptic/force_age"][:][touching] * result.attrs["haptic_period_s"]
-        return {"mean_s": float(age.mean()), "worst_s": float(age.max())}
+        tick, age = (result[f"haptic/{name}"][:][touching] for name in ("tick", "force_age"))
+        frames = np.array([frame.attrs["tick"] for frame in ap.frames_of(result)])
+        lags = {"force_age": age, "lag_of_step": lag(tick - age, tick, result["physics/tick"][:]),
+                "lag_of_frame": lag(tick - age, tick, frames)}
+        period = result.attrs["haptic_period_s"]
+        return {name: {"mean_s": float(period * ticks.mean()), "worst_s": float(period * ticks.max())}
+                for name, ticks in lags.items()}
+
+
+def lag(felt, now, pictures):
+    """Ticks between the moments that are felt and those seen: of the last picture by `now`; the start's before any."""
+    seen = np.concatenate([[0], pictures])[np.searchsorted(pictures, now, side="right")]
+    return np.abs(felt - seen)
 
 
 def strength(argil, saturation):
@@ -89,7 +101,7 @@ def main():
     figure, distances = draw_strength(options.argil)
     figures = {"press": {Path(file).stem: touch(file) for file in options.works},
                "yielding_hand": {name: touch(file) for name, file in zip(("on", "off"), options.hands)},
-               "force_age": {Path(file).stem: delay(file) for file in options.delays},
+               "delay": {Path(file).stem.replace("delay_", ""): delay(file) for file in options.delays},
                "rms_log10_distance_from_measured_clay": distances}
     Path(f"{options.output}.json").write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
     print(f"{options.output}.json")

@@ -90,7 +90,7 @@ def draw(runs, align_press, smooth, start=None):
     whole.margins(x=0)
     if start is not None:
         whole.set_xlim(left=start)
-    whole.set_ylim(bottom=0, top=1.08 * max(1e-12, *(np.max(run.force, initial=0.0) for run in runs)))
+    whole.set_ylim(bottom=0, top=1.08 * (max(np.max(run.force, initial=0.0) for run in runs) or 1.0))
     if peak:
         close = panels[0][1]
         draw_lines(close, runs, time_label)

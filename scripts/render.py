@@ -7,11 +7,13 @@ Usage: render.py A.h5 [B.h5 ...] [--labels A B ...] [--frames before,during,afte
 
 One row a run, one column a moment. A moment is before (the first frame), wetting or drying (the frame in the
 middle of that contact), push, pull, during (nearest to the largest force of that mode; of either), after (the
-last frame), or a time in seconds. Fields: saturation, displacement, on the skin influence, on the cage
-plastic_strain. A movie has one picture a frame of the file, in real time. The pictures are made by VTK
+last frame), or a time in seconds. Fields: saturation, displacement, normal (displacement along the outward normal),
+on the skin influence, on the cage plastic_strain; shape is the body alone. A movie has one picture a frame of the file, in real time. The pictures are made by VTK
 without a window; where there is no display the script starts a virtual one (Xvfb).
 """
 import argparse
+import textwrap
+from pathlib import Path
 
 import argil_plot as ap
 import render_shots
@@ -23,9 +25,25 @@ from render_shots import FIELDS, MOMENTS
 from render_vtk import BACKGROUND
 
 
-def caption(shot, name):
+def caption(shot, name, shows_scene=True):
     force = np.linalg.norm(shot.force)
+    if not shows_scene:
+        return name
     return f"{name}\n{shot.time:.1f} s" + (f", {force:.2f} N" if force > 0.0 else "")
+
+
+def wrapped(words, characters):
+    """Each line broken where it would run into the next panel."""
+    return "\n".join("\n".join(textwrap.wrap(line, characters)) for line in words.split("\n"))
+
+
+def writable(name):
+    """The name, its folder made."""
+    try:
+        Path(name).parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        ap.refuse(f"{name}: its folder cannot be made: {error.strerror}")
+    return name
 
 
 def compose(images, captions, field, top):
@@ -33,6 +51,7 @@ def compose(images, captions, field, top):
     num_rows, num_columns = len(images), len(images[0])
     rows, columns, _ = images[0][0].shape
     panel_width = min(62.0 if columns > rows else 42.0, 240.0 / num_columns) * ap.MILLIMETRES
+    characters = round(0.42 * panel_width / ap.MILLIMETRES)  # that fit beside each other
     panel_height = panel_width * rows / columns + 0.4
     figure, panels = plt.subplots(num_rows, num_columns, squeeze=False,
                                   figsize=(panel_width * num_columns + 0.65, panel_height * num_rows),
@@ -41,8 +60,10 @@ def compose(images, captions, field, top):
     for axes, image, words in zip(panels.flat, sum(images, []), sum(captions, [])):
         axes.imshow(image, interpolation="lanczos")
         axes.set_axis_off()
-        axes.set_title(words, loc="left", color="#222222", fontsize=9, pad=2, x=0.03)
-    scale = ScalarMappable(Normalize(0.0, top), FIELDS[field].colours)
+        axes.set_title(wrapped(words, characters), loc="left", color="#222222", fontsize=9, pad=2, x=0.03)
+    if not FIELDS[field].shows_scene:
+        return figure
+    scale = ScalarMappable(Normalize(-top if FIELDS[field].is_signed else 0.0, top), FIELDS[field].colours)
     bar = figure.colorbar(scale, ax=panels, shrink=0.6 if num_rows > 1 else 0.75, aspect=22, pad=0.01)
     bar.set_label(FIELDS[field].title)
     bar.outline.set_visible(False)
@@ -53,13 +74,15 @@ def draw_sheet(options, labels):
     """The chosen moments of each run, in one picture."""
     moments = options.frames.split(",") if options.frames else render_shots.default_moments(options.files[0])
     rows = [render_shots.read_shots(file, moments, options.field) for file in options.files]
-    captions = [[caption(shot, label + (f", {moment}" if moment in MOMENTS else ""))
+    captions = [[caption(shot, label + (f", {moment}" if moment in MOMENTS else ""),
+                         FIELDS[options.field].shows_scene)
                  for shot, moment in zip(row, moments)] for row, label in zip(rows, labels)]
     with render_vtk.display():
         images, top = render_vtk.render_rows(rows, options.field, options.zoom, options.cage)
     figure = compose(images, captions, options.field, top)
     # Cut to what is there: words that the layout has no room for would be cut off.
-    figure.savefig(options.output, dpi=140, facecolor=BACKGROUND, metadata={"Software": None},
+    figure.draw_without_rendering()  # as in argil_plot.save
+    figure.savefig(writable(options.output), dpi=140, facecolor=BACKGROUND, metadata={"Software": None},
                    bbox_inches="tight", pad_inches=0.05, pil_kwargs={"optimize": True})
     print(options.output)
 
@@ -80,7 +103,7 @@ def draw_movie(options, labels):
     writer = (PillowWriter if is_gif else FFMpegWriter)(fps=max(1.0, (len(shots) - 1) / max(duration, 1e-3)))
     figure = compose([images[:1]], [[caption(shots[0], labels[0])]], options.field, top)
     axes = figure.axes[0]
-    with writer.saving(figure, options.movie, dpi=200):
+    with writer.saving(figure, writable(options.movie), dpi=200):
         for shot, image in zip(shots, images):
             axes.images[0].set_data(image)
             axes.set_title(caption(shot, labels[0]), loc="left", color="#222222", fontsize=9, pad=2, x=0.03)

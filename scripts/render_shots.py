@@ -11,15 +11,20 @@ MODES_OF = {"wetting": ("wet",), "drying": ("dry",), "push": ("push",), "pull": 
 CLAY = (0.80, 0.56, 0.43)
 
 
+NEAREST = 60  # tets around a skin vertex among which the containing one is looked for
+
+
 class Field(NamedTuple):
     """How a quantity is named and coloured."""
 
     title: str
     colours: LinearSegmentedColormap
     scale: float = 1.0  # from SI to the title's unit
-    top: float = None  # of the colour bar; the largest value of all panels when None
+    top: float = None  # of the colour bar; the largest size of all panels when None
+    is_signed: bool = False  # the bar goes from -top to top
     on_cage_only: bool = False
     on_skin_only: bool = False
+    shows_scene: bool = True  # tool, force and bar; else the body alone
 
 
 # From dry clay to deep water: lightness falls all the way, so the order survives a grey print.
@@ -27,12 +32,18 @@ WET = LinearSegmentedColormap.from_list("wet", (CLAY, (0.52, 0.56, 0.62), (0.13,
                                                 (0.04, 0.15, 0.40)))
 STRAINED = LinearSegmentedColormap.from_list("strained", (CLAY, (0.72, 0.33, 0.36), (0.40, 0.12, 0.40),
                                                           (0.13, 0.04, 0.24)))
+# Inwards blue, outwards orange, nothing light: told apart by any colour blindness.
+SIGNED = LinearSegmentedColormap.from_list("signed", ((0.03, 0.15, 0.38), (0.0, 0.45, 0.70), (0.55, 0.74, 0.87),
+                                                      (0.93, 0.92, 0.90), (0.95, 0.69, 0.45), (0.80, 0.36, 0.0),
+                                                      (0.38, 0.14, 0.0)))
 
 FIELDS = {
     "saturation": Field("saturation S [–]", WET, top=1.0),
     "displacement": Field("displacement [mm]", STRAINED, scale=1e3),
+    "normal": Field("moved along the normal,\noutwards > 0 [mm]", SIGNED, scale=1e3, is_signed=True),
     "influence": Field("region of influence [–]", STRAINED, top=1.0, on_skin_only=True),
     "plastic_strain": Field("plastic strain ‖ε_p‖ [–]", STRAINED, on_cage_only=True),
+    "shape": Field("", LinearSegmentedColormap.from_list("clay", (CLAY, CLAY)), top=1.0, shows_scene=False),
 }
 
 
@@ -67,11 +78,54 @@ def rotation_matrix(quaternion):
                      [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
 
 
+def rest_points(result, skinned):
+    """The vertices when nothing deforms the body, which may be so in no frame: of a static result."""
+    first, rest = ap.frames_of(result)[0], result["mesh/rest_position"][:]
+    if not skinned:
+        return rest
+    skin, cage = first["skin_position"][:], first["position"][:]
+    if np.array_equal(cage, rest):
+        return skin
+    tets = result["mesh/tets"][:]
+    tet, weights = find_weights(cage, tets, skin)
+    return np.einsum("vi,vij->vj", weights, rest[tets[tet]])
+
+
+def find_weights(points, tets, skin):
+    """Containing tet of each skin vertex and its barycentric weights there."""
+    from scipy.spatial import cKDTree  # here, for few pictures need it
+
+    corners = points[tets]
+    inverse = np.linalg.inv((corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1))
+    _, nearest = cKDTree(corners.mean(axis=1)).query(skin, min(NEAREST, len(tets)))
+    nearest = nearest.reshape(len(skin), -1)
+    last = np.einsum("vnij,vnj->vni", inverse[nearest], skin[:, None] - corners[nearest, 0])
+    weights = np.concatenate([1.0 - last.sum(axis=2, keepdims=True), last], axis=2)
+    best = weights.min(axis=2).argmax(axis=1)
+    rows = np.arange(len(skin))
+    return nearest[rows, best], weights[rows, best]
+
+
+def vertex_normals(points, triangles):
+    """Outward unit normals, the mean of the triangles around by area; 0 where there are none."""
+    corners = points[triangles]
+    faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sums = np.stack([np.bincount(triangles.ravel(), weights=np.repeat(faces[:, k], 3), minlength=len(points))
+                     for k in range(3)], axis=1)
+    return sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300)
+
+
 def point_values(result, frame, field, skinned):
     """The field at the vertices that are drawn. What is held per tet is averaged around each vertex."""
-    if field == "displacement":
-        name = "skin_position" if skinned else "position"
-        return np.linalg.norm(frame[name][:] - ap.frames_of(result)[0][name][:], axis=1)
+    if field == "shape":
+        return np.zeros(len(frame["skin_position" if skinned else "position"]))
+    if field in ("displacement", "normal"):
+        rest = rest_points(result, skinned)
+        moved = frame["skin_position" if skinned else "position"][:] - rest
+        if field == "displacement":
+            return np.linalg.norm(moved, axis=1)
+        triangles = result["mesh/skin_triangles" if skinned else "mesh/surface_triangles"][:]
+        return np.einsum("vi,vi->v", moved, vertex_normals(rest, triangles))
     if skinned:
         return frame["skin_influence" if field == "influence" else "skin_saturation"][:]
     per_tet = frame["plastic_strain_norm" if field == "plastic_strain" else "saturation"][:]

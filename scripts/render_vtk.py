@@ -41,11 +41,12 @@ def smooth_mapper(vtk, data):
     return mapper
 
 
-def body_actor(vtk, shot, colours, top):
+def body_actor(vtk, shot, field, top):
     from vtk.util.numpy_support import numpy_to_vtk
 
     data = poly_data(vtk, shot.points, shot.triangles)
-    rgb = (255.0 * colours(np.clip(shot.values / top, 0.0, 1.0))[:, :3]).round().astype(np.uint8)
+    share = 0.5 * (shot.values / top + 1.0) if field.is_signed else shot.values / top
+    rgb = (255.0 * field.colours(np.clip(share, 0.0, 1.0))[:, :3]).round().astype(np.uint8)
     data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(rgb), deep=True))
     mapper = smooth_mapper(vtk, data)
     mapper.ScalarVisibilityOn()
@@ -82,15 +83,24 @@ def tool_actor(vtk, shot):
     return actor
 
 
+def arrow_start(shot, length):
+    """Of the arrow of the force on the hand: the hand's point; where the force goes into the body, which would hide
+    the arrow, so far outside that it ends there."""
+    direction = shot.force / np.linalg.norm(shot.force)
+    nearest = np.linalg.norm(shot.points - shot.tool_position, axis=1).argmin()
+    outward = render_shots.vertex_normals(shot.points, shot.triangles)[nearest]
+    return shot.tool_position - length * direction if direction @ outward < 0.0 else shot.tool_position
+
+
 def arrow_actor(vtk, shot, length):
-    """The force on the hand, from the hand's point, `length` metres long."""
+    """The force on the hand, `length` metres long."""
     direction = shot.force / np.linalg.norm(shot.force)
     side = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
     side /= np.linalg.norm(side)
     columns = np.stack([direction, side, np.cross(direction, side)], axis=1) * length
     matrix = np.eye(4)
     matrix[:3, :3] = columns
-    matrix[:3, 3] = shot.tool_position
+    matrix[:3, 3] = arrow_start(shot, length)
     source = vtk.vtkArrowSource()
     source.SetTipResolution(48)
     source.SetShaftResolution(32)
@@ -211,22 +221,24 @@ def render_rows(rows, field, zoom, shows_cage):
     import vtk
 
     shots = [shot for row in rows for shot in row]
-    points = np.concatenate([part for s in shots for part in (s.points, s.tool_points) if part is not None])
+    shows_tool = render_shots.FIELDS[field].shows_scene
+    points = np.concatenate([part for s in shots for part in (s.points, s.tool_points if shows_tool else None)
+                             if part is not None])
     strongest = max(shots, key=lambda shot: np.linalg.norm(shot.force))
     largest_force = np.linalg.norm(strongest.force)
-    top = render_shots.FIELDS[field].top or max(max(shot.values.max() for shot in shots), 1e-12)
+    top = render_shots.FIELDS[field].top or max(np.abs(shot.values).max() for shot in shots) or 1.0
     touched = points.mean(axis=0) if strongest.tool_points is None else strongest.tool_position
     camera = Camera(points, np.concatenate([shot.points for shot in shots]), touched, zoom)
     size = np.ptp(points, axis=0).max()
 
     def actors_of(shot):
-        actors = [body_actor(vtk, shot, render_shots.FIELDS[field].colours, top)]
+        actors = [body_actor(vtk, shot, render_shots.FIELDS[field], top)]
         if shows_cage:
             actors.append(cage_actor(vtk, shot))
-        if shot.tool_points is not None:
+        if shows_tool and shot.tool_points is not None:
             actors.append(tool_actor(vtk, shot))
         force = np.linalg.norm(shot.force)
-        if force > 1e-3 * largest_force > 0.0:
+        if shows_tool and force > 1e-3 * largest_force > 0.0:
             actors.append(arrow_actor(vtk, shot, 0.9 * camera.half_height * force / largest_force))
         return actors
 

@@ -21,6 +21,7 @@ if not MISSING:
     import plot_energy
     import plot_force
     import plot_water
+    import render
     import render_shots
     import render_vtk
     import summarise
@@ -161,6 +162,36 @@ class Figures(unittest.TestCase):
         # Vertex 4 has the wet tet and one dry, vertex 0 and 7 all six, vertex 6 the wet and one dry, the others none.
         np.testing.assert_allclose(values, [0.15, 0, 0, 0, 0.45, 0, 0.45, 0.15])
 
+    def test_displacement_is_measured_from_rest_and_along_the_outward_normal(self):
+        with h5py.File(self.file("wet.h5"), "r+") as result:
+            for name in list(result["frames"])[1:]:  # one frame is left, which is not at rest: as of a static result
+                del result[f"frames/{name}"]
+            frame, rest = result["frames/000000"], result["mesh/rest_position"][:]
+            frame["position"][...] = 0.05 + 1.2 * (rest - 0.05)  # from the middle of the cube: 10 mm along each axis
+            field = render_shots.point_values(result, frame, "normal", skinned=False)
+            np.testing.assert_allclose(render_shots.point_values(result, frame, "displacement", skinned=False),
+                                       0.01 * np.sqrt(3.0))
+            self.assertTrue((field > 0.01).all())  # outwards, and more than along a face's normal
+            self.assertTrue((field <= 0.01 * np.sqrt(3.0) + 1e-15).all())
+
+    def test_the_skin_of_a_static_result_rests_where_its_cage_does(self):
+        with h5py.File(self.file("wet.h5"), "r+") as result:
+            frame, rest = result["frames/000000"], result["mesh/rest_position"][:]
+            frame["position"][...] = 2.0 * rest
+            frame["skin_position"] = np.array([[0.05, 0.1, 0.15], [0.02, 0.02, 0.18]])
+            np.testing.assert_allclose(render_shots.rest_points(result, skinned=True), 0.5 * frame["skin_position"][:])
+
+    def test_long_names_are_broken(self):
+        self.assertEqual(render.wrapped("a_very_long_name_of_a_file\n0.7 s", 10), "a_very_lon\ng_name_of_\na_file\n0.7 s")
+
+    def test_the_arrow_of_a_force_into_the_body_ends_at_the_tool(self):
+        with h5py.File(self.file("dry.h5")) as result:  # the tool is on the side y = 0 of the cube
+            shot = render_shots.Shot(result, result["frames/000006"], "saturation")  # pressed: the force is away from it
+        np.testing.assert_allclose(shot.force, [0.0, -2.0, 0.0])
+        np.testing.assert_allclose(render_vtk.arrow_start(shot, 0.1), [0.05, -0.02, 0.05])
+        shot.force = -shot.force
+        np.testing.assert_allclose(render_vtk.arrow_start(shot, 0.1), [0.05, -0.12, 0.05])
+
     def test_rotations_follow_the_quaternion(self):
         half = np.sqrt(0.5)
         np.testing.assert_allclose(render_shots.rotation_matrix([half, 0, 0, half]) @ [0, 0, 1], [0, -1, 0], atol=1e-15)
@@ -215,6 +246,8 @@ class Figures(unittest.TestCase):
 
         self.assertEqual(share_of_blue("dry.png"), 0)
         self.assertGreater(share_of_blue("wet.png"), 1e-3)
+        self.assertEqual(self.draw("render.py", "dry.h5", "--field", "shape", "-o", "new/dry.png").returncode, 0)
+        self.expect_refusal("its folder cannot be made", "render.py", "dry.h5", "-o", "dry.png/no.png")
         self.expect_refusal("moment 'soon'", "render.py", "dry.h5", "--frames", "soon")
 
     @unittest.skipUnless(importlib.util.find_spec("vtk") and shutil.which("Xvfb") and shutil.which("ffprobe"),

@@ -1,0 +1,104 @@
+#!/usr/bin/python3
+"""The paper's page: its scripts on small runs, and that the committed page is what they write from the committed data.
+
+Usage: test_paper.py ARGIL. Skipped (77) without numpy, h5py, matplotlib and scipy.
+"""
+import importlib.util
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+if any(importlib.util.find_spec(name) is None for name in ("numpy", "h5py", "matplotlib", "scipy")):
+    print("skipped: needs numpy, h5py, matplotlib and scipy")
+    sys.exit(77)
+sys.path.insert(0, str(ROOT / "scripts"))
+sys.dont_write_bytecode = True
+import h5py
+import numpy as np
+import paper_measures
+import paper_skin
+
+ARGIL = str(Path(sys.argv.pop(1)).resolve())
+
+
+def call(*command):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
+
+
+def simulate(scenario, result, *settings):
+    call(ARGIL, "run", ROOT / scenario, "-o", result, "--quiet", *(word for s in settings for word in ("--set", s)))
+    return result
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="argil_paper_")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+
+class Page(Folder):
+    def test_the_committed_page_is_what_the_script_writes_from_the_committed_data(self):
+        call(ROOT / "scripts/paper_page.py", "-o", self.folder / "page.md")
+        self.assertEqual((self.folder / "page.md").read_text(), (ROOT / "results/paper/README.md").read_text())
+
+    def test_all_figures_of_the_limits_are_there(self):
+        call(ROOT / "scripts/paper_page.py", "--check-limits")
+
+
+class Measures(Folder):
+    def test_the_scripts_of_the_page_measure_small_runs(self):
+        ball = simulate("tests/golden/ball.json", self.folder / "cage_ball_1.h5", "/haptics/frame_period_ticks=7")
+        call(ROOT / "scripts/paper_cages.py", ball, "-o", self.folder / "cages")
+        call(ROOT / "scripts/paper_skin.py", ball, "-o", self.folder / "skin.json")
+        call(ROOT / "scripts/paper_measures.py", ARGIL, "--works", ball, ball, "--hands", ball, ball, "--delays", ball,
+             "-o", self.folder / "measures")
+        figures = json.loads((self.folder / "measures.json").read_text())
+        with h5py.File(ball) as result:
+            self.assertEqual(figures["press"]["cage_ball_1"]["contact_work_J"], result["physics/contact_work"][-1])
+            pressed = np.linalg.norm(result["haptic/force"][:], axis=1).max()
+        self.assertIn(f"{pressed:.4g}", (self.folder / "cages.csv").read_text())
+        self.assertGreater(json.loads((self.folder / "skin.json").read_text())["cage_ball_1"]["deepest_dent_m"], 0.0)
+
+    def test_the_lag_is_between_the_felt_moment_and_the_last_picture(self):
+        felt, now = np.array([1, 10, 14, 29]), np.array([1, 10, 20, 29])
+        np.testing.assert_array_equal(paper_measures.lag(felt, now, np.array([10, 20])), [1, 0, 6, 9])
+
+    def test_the_ages_of_a_made_up_run(self):
+        file = self.folder / "run.h5"
+        with h5py.File(file, "w") as result:  # 20 ticks of 1 ms, a step each 4, a frame each 8, the force of the step
+            tick = np.arange(20)
+            result.attrs.update(format="argil-result", complete=1, haptic_period_s=1e-3)
+            for name, data in {"haptic/tick": tick, "haptic/num_contacts": np.ones(20, int), "haptic/force_age": tick % 4,
+                               "physics/tick": np.arange(4, 20, 4)}.items():
+                result[name] = data
+            for number in range(3):
+                result.create_group(f"frames/{number:06d}").attrs.update(tick=8 * number)
+        found = paper_measures.delay(file)
+        for name, (mean, worst) in {"force_age": (1.5, 3), "lag_of_step": (0, 0), "lag_of_frame": (1.6, 4)}.items():
+            self.assertAlmostEqual(found[name]["mean_s"], 1e-3 * mean)
+            self.assertAlmostEqual(found[name]["worst_s"], 1e-3 * worst)
+
+
+class Figure(Folder):
+    def test_the_pushed_and_pulled_figure_has_the_dent_and_the_bump_that_its_scenario_tells(self):
+        result = simulate("scenarios/demo_figure_push_pull.json", self.folder / "figure.h5")
+        skin = paper_skin.measure(result)
+        self.assertAlmostEqual(skin["deepest_dent_m"], 2.8e-3, delta=0.1e-3)  # the digits that `about` gives
+        self.assertAlmostEqual(skin["highest_bump_m"], 2.7e-3, delta=0.1e-3)
+        self.assertGreater(skin["dent_left_m"], 0.5 * skin["deepest_dent_m"])
+        self.assertGreater(skin["bump_left_m"], 0.5 * skin["highest_bump_m"])
+        with h5py.File(result) as run:
+            force, pull = run["haptic/force"][:], run["haptic/mode"][:] == 1
+            strongest = force[pull][np.linalg.norm(force[pull], axis=1).argmax()]
+        self.assertLess(strongest[0], -2.0)  # [N]; the chest looks along +x
+        self.assertLess(np.linalg.norm(force, axis=1).max(), 3.3)  # of a desktop device
+
+
+if __name__ == "__main__":
+    unittest.main()
