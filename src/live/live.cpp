@@ -177,7 +177,7 @@ void attend(Session& session, Recorder& recorder, const Figures& figures, double
   }
   session.join();
   recorder.drain(session);
-  if (draws) std::fputc('\n', stderr);
+  if (draws && takes_text(STDERR_FILENO)) std::fputc('\n', stderr);
 }
 
 int print_end(const Session& session, const device::HapticDevice& device, const std::string& result,
