@@ -18,6 +18,11 @@ enum class SolverKind {
   supernodal,       ///< supernodal LLᵀ by BLAS, renewed likewise
 };
 
+/// By a factor of the very matrix: no iterations.
+constexpr bool is_direct(SolverKind kind) {
+  return kind == SolverKind::cholesky || kind == SolverKind::supernodal;
+}
+
 /// From this tolerance on, the rounding of floats, 6e-8 of a matrix, is beside it.
 inline constexpr double kRoomForFloats = 1e-4;
 

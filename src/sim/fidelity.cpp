@@ -64,8 +64,8 @@ bool Fidelity::sleeps_on(double imbalance) {
   return m_record.estimate <= kSleep * m_record.bound;
 }
 
-void Fidelity::set_made(int iterations, double imbalance) {
-  m_record.rung = iterations > 0 ? Rung::solved : Rung::coasting;
+void Fidelity::set_made(bool is_solved, double imbalance) {
+  m_record.rung = is_solved ? Rung::solved : Rung::coasting;
   m_record.estimate = m_reach * imbalance;
 }
 

@@ -60,8 +60,8 @@ class Fidelity {
   bool falls_asleep(double imbalance, bool flows);
   /// May a body that sleeps and holds back `imbalance` [N] go on so?
   bool sleeps_on(double imbalance);
-  /// The step was made, with so many iterations, and left so much without balance [N].
-  void set_made(int iterations, double imbalance);
+  /// The step was made, `is_solved`: by more than going on as before, and left so much without balance [N].
+  void set_made(bool is_solved, double imbalance);
 
   void set_large_strain(double mean_strain) { m_record.large_strain = mean_strain; }
   const FidelityRecord& record() const { return m_record; }

@@ -197,6 +197,18 @@ TEST(FidelityAuto, DoesNotChatterAtTheEdgeOfSleep) {
   }
 }
 
+/// A factor's solve has no iterations to be told by.
+TEST(FidelityAuto, StepsThatAFactorSolvesDoNotCoast) {
+  for (const linear::SolverKind kind : {linear::SolverKind::cholesky, linear::SolverKind::supernodal}) {
+    Params params = make_params(FidelityMode::automatic);
+    params.solid.solver.kind = kind;
+    Simulation simulation = make_simulation(params);
+    for (Tick k = 1; k <= 60; ++k) ASSERT_TRUE(simulation.tick(press_at(k)).is_ok());
+    EXPECT_GT(simulation.hand_state().hand_force.norm(), 0.1);
+    EXPECT_EQ(simulation.physics_record().fidelity.rung, Rung::solved);
+  }
+}
+
 /// A body without supports falls by backward Euler's ½ g h² k (k + 1), but for the force that may be left
 /// without balance: it coasts, and does not sleep.
 TEST(FidelityAuto, AFreeBodyFallsAndIsNotPutToSleep) {
