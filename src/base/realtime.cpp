@@ -35,6 +35,12 @@ bool make_realtime(pthread_t thread, int priority) {
   return pthread_setschedparam(thread, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) == 0;
 }
 
+double monotonic_now() noexcept {
+  timespec now = {};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 void sleep_until(double time) {
   timespec wanted = {};
   const double seconds = std::floor(time);
@@ -42,6 +48,11 @@ void sleep_until(double time) {
   wanted.tv_nsec = static_cast<long>(1e9 * (time - seconds));
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wanted, nullptr) == EINTR) {
   }
+}
+
+void pause_1_ms() noexcept {
+  constexpr timespec kPause = {0, 1000000};
+  nanosleep(&kPause, nullptr);
 }
 
 }  // namespace argil

@@ -20,7 +20,13 @@ bool make_realtime(pthread_t thread, int priority);
 /// one.
 void wake_without_slack();
 
+/// Seconds of the monotonic clock. Allowed in a signal handler.
+double monotonic_now() noexcept;
+
 /// Sleeps until the monotonic clock shows `time` [s].
 void sleep_until(double time);
+
+/// Between two looks at what another thread does, 1 ms; a signal ends it early. Allowed in a signal handler.
+void pause_1_ms() noexcept;
 
 }  // namespace argil

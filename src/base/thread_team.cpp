@@ -21,16 +21,17 @@ void rest_a_moment() {
 #endif
 }
 
-/// Returns when `counter` is no longer `old`.
-void wait_for_change(const std::atomic<unsigned>& counter, unsigned old) {
+/// What `counter` holds when that is no longer `old`.
+unsigned wait_for_change(const std::atomic<unsigned>& counter, unsigned old) {
   const auto begin = std::chrono::steady_clock::now();
   do {
     for (int i = 0; i < 32; ++i) {
-      if (counter.load(std::memory_order_acquire) != old) return;
+      if (const unsigned now = counter.load(std::memory_order_acquire); now != old) return now;
       rest_a_moment();
     }
   } while (std::chrono::steady_clock::now() - begin < kLook);
   counter.wait(old, std::memory_order_acquire);
+  return counter.load(std::memory_order_acquire);
 }
 
 }  // namespace
@@ -72,14 +73,13 @@ void ThreadTeam::run_job(Job job, void* body) {
   m_number.notify_all();
   take_chunks(number, 0);
   const auto all = number * static_cast<unsigned>(num_chunks());
-  for (unsigned done; (done = m_num_done.load(std::memory_order_acquire)) != all;)
-    wait_for_change(m_num_done, done);
+  unsigned done = m_num_done.load(std::memory_order_acquire);
+  while (done != all) done = wait_for_change(m_num_done, done);
 }
 
 void ThreadTeam::help(int index) {
   for (unsigned last = 0;;) {
-    wait_for_change(m_number, last);
-    last = m_number.load(std::memory_order_acquire);
+    last = wait_for_change(m_number, last);
     if (m_job.load(std::memory_order_relaxed) == nullptr) return;
     take_chunks(last, index);
   }

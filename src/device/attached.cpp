@@ -1,12 +1,9 @@
 #include "device/attached.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <exception>
 
-#include "base/realtime.h"
 #include "base/signal_stack.h"
 #include "device/backends.h"
 
@@ -20,17 +17,7 @@ constexpr double kLook = 0.02;        // [s] between two looks of the watching t
 constexpr double kEndPatience = 1.0;  // [s] for work() to come to its end
 constexpr int kRenderPatience = 100;  // [ms] for a command under way to reach the device
 
-/// Allowed in a signal handler.
-void pause_1_ms() noexcept {
-  constexpr timespec kPause = {0, 1000000};
-  nanosleep(&kPause, nullptr);
-}
-
 }  // namespace
-
-double steady_seconds() noexcept {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 AttachedDevice::AttachedDevice(const DeviceOptions& options) : m_options(options), m_mode(options.mode) {}
 
@@ -60,7 +47,7 @@ void AttachedDevice::stop() noexcept {
   if (!m_thread.joinable()) return;
   interrupt();
   const double patience = m_is_watched ? kEndPatience : 0.0;  // it was left before
-  for (const double end = steady_seconds() + patience; !m_work_has_ended && steady_seconds() < end;)
+  for (const double end = monotonic_now() + patience; !m_work_has_ended && monotonic_now() < end;)
     pause_1_ms();
   if (!m_work_has_ended) release_counted();
   m_is_watched = false;
@@ -96,10 +83,10 @@ void AttachedDevice::lose(const std::string& problem) {
 void AttachedDevice::watch() {
   const SignalStack stack;
   make_realtime(pthread_self(), kHandPriority);  // before a device's thread that does not wait
-  double last = steady_seconds();
+  double last = monotonic_now();
   while (m_is_watched && !m_work_has_ended) {
     sleep_until(last + kLook);
-    const double now = steady_seconds();
+    const double now = monotonic_now();
     // Cleared first: a command that is on its way meanwhile sets it again.
     if (m_is_pushing && now - m_rendered_at > kForceLifetime && m_is_pushing.exchange(false))
       release_counted();
@@ -118,7 +105,7 @@ DeviceState AttachedDevice::state_at(double now, double sample_time) const noexc
 }
 
 DeviceState AttachedDevice::state() const noexcept {
-  return state_at(steady_seconds(), m_last_time);
+  return state_at(monotonic_now(), m_last_time);
 }
 
 DevicePoll AttachedDevice::poll() noexcept {
@@ -127,7 +114,7 @@ DevicePoll AttachedDevice::poll() noexcept {
   poll.sample = m_last_arrival.sample;
   poll.number = m_last_arrival.number;
   poll.time = m_last_arrival.time;
-  const double now = steady_seconds();
+  const double now = monotonic_now();
   poll.age = now - m_last_arrival.time;
   poll.state = state_at(now, m_last_arrival.time);
   return poll;
@@ -136,7 +123,7 @@ DevicePoll AttachedDevice::poll() noexcept {
 void AttachedDevice::send(const Wrench& on_hand) noexcept {
   const Quat to_device = m_options.device_to_world.rotation.conjugate();
   const Wrench wrench{to_device * finite_or_zero(on_hand.force), to_device * finite_or_zero(on_hand.torque)};
-  m_orders.put({wrench, steady_seconds()});
+  m_orders.put({wrench, monotonic_now()});
 }
 
 /// A command under way may reach the device after the first zero: then there is a second. The flags are set
@@ -163,14 +150,14 @@ Wrench AttachedDevice::begin_rendering() {
   m_is_rendering = true;
   m_rendered = find_wrench();
   if (!m_rendered.force.isZero(0.0) || !m_rendered.torque.isZero(0.0)) {
-    m_rendered_at = steady_seconds();
+    m_rendered_at = monotonic_now();
     m_is_pushing = true;
   }
   return m_rendered;
 }
 
 void AttachedDevice::end_rendering() {
-  m_rendered_at = steady_seconds();
+  m_rendered_at = monotonic_now();
   m_is_pushing = !m_rendered.force.isZero(0.0) || !m_rendered.torque.isZero(0.0);
   m_is_rendering = false;
 }
@@ -179,7 +166,7 @@ Wrench AttachedDevice::find_wrench() {
   m_orders.take(m_last_order);
   const double oldest = std::min(m_last_order.time, m_last_time.load());
   // After a new start m_last_time is still that of a sample from before it.
-  const bool is_alive = m_samples > 0 && steady_seconds() - oldest <= kForceLifetime;
+  const bool is_alive = m_samples > 0 && monotonic_now() - oldest <= kForceLifetime;
   if (!is_alive || m_is_released || is_stopping()) return {};
   return m_last_order.wrench;
 }
@@ -195,7 +182,7 @@ bool AttachedDevice::deliver(const Vec3& position, const Quat& orientation, unsi
   arrival.sample = {position, make_unit(orientation), m_mode.update(buttons)};
   move_to_world(m_options.device_to_world, arrival.sample);
   arrival.number = ++m_samples;
-  arrival.time = steady_seconds();
+  arrival.time = monotonic_now();
   m_last_time = arrival.time;
   m_arrivals.put(arrival);
   DeviceState before = DeviceState::connecting;

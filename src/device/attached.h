@@ -6,13 +6,11 @@
 #include <thread>
 
 #include "base/latest_value.h"
+#include "base/realtime.h"
 #include "device/devices.h"
 #include "device/mode_switch.h"
 
 namespace argil::device::internal {
-
-/// Seconds of steady_clock.
-double steady_seconds() noexcept;
 
 /// When a thread that keeps time wakes next [s]: a period after it should have woken last, so that lateness
 /// does not add up; of what it is behind it makes up for one period at most.
@@ -69,7 +67,7 @@ class AttachedDevice : public HapticDevice {
   Wrench begin_rendering();
   void end_rendering();
   /// From now on the thread has to call it again within kPatience.
-  void show_life() { m_alive_at = steady_seconds(); }
+  void show_life() { m_alive_at = monotonic_now(); }
   /// Once release_device finds nothing to release any more, and before that is taken away: none is under way
   /// after it.
   void wait_for_releases() const;

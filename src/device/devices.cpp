@@ -84,15 +84,18 @@ std::string describe_devices(const std::vector<std::string>& names, double patie
   const DeviceSample somewhere;
   options.intent.time = {0.0, 1.0};
   options.intent.samples = {somewhere, somewhere};
-  for (const std::string& name : names) make_device(name, options);  // refuses before it looks for any
+  std::vector<std::unique_ptr<HapticDevice>>
+      devices;  // all of them, so that it refuses before it looks for any
+  for (const std::string& name : names) devices.push_back(make_device(name, options));
   std::string text;
-  for (const std::string& name : names) {
-    const std::unique_ptr<HapticDevice> device = make_device(name, options);
-    device->start();
-    wait_until_ready(*device, patience);
-    text += name + ": " + std::string(to_string(device->state())) + ", " + print(device->info());
-    if (const std::string problem = device->problem(); !problem.empty()) text += " (" + problem + ")";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    HapticDevice& device = *devices[i];
+    device.start();
+    wait_until_ready(device, patience);
+    text += names[i] + ": " + std::string(to_string(device.state())) + ", " + print(device.info());
+    if (const std::string problem = device.problem(); !problem.empty()) text += " (" + problem + ")";
     text += '\n';
+    device.stop();
   }
   return text;
 }

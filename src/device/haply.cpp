@@ -130,7 +130,7 @@ void HaplyDevice::work() {
   m_id.clear();
   m_owed = 0;
   m_is_writing = m_is_due = false;
-  m_deadline = m_last_good = steady_seconds();
+  m_deadline = m_last_good = monotonic_now();
   m_last_fault.clear();
   // Also when a handler throws: the last word to the device is zero force.
   struct Farewell {
@@ -179,7 +179,7 @@ void HaplyDevice::on_message(const std::string& text) {
     count_refused();
     m_last_fault = message.problem;
   } else if (deliver(message.position, message.orientation, message.buttons)) {
-    m_last_good = steady_seconds();
+    m_last_good = monotonic_now();
   } else {
     m_last_fault = "position or quaternion is none";
   }
@@ -194,18 +194,18 @@ void HaplyDevice::on_inventory(const HaplyMessage& message) {
   set_info(make_info(message.kind.empty() ? "inverse3" : message.kind, m_id));
   m_zero_frame = make_frame(1, print_haply_force(m_id, Vec3::Zero()));
   m_descriptor = m_socket->next_layer().socket().native_handle();
-  m_last_good = steady_seconds();
+  m_last_good = monotonic_now();
 }
 
 /// Once a period a command is due.
 void HaplyDevice::tick() {
-  if (steady_seconds() - m_last_good > kPatience)
+  if (monotonic_now() - m_last_good > kPatience)
     throw std::runtime_error("Haply Inverse Service at " + m_host + ":" + m_port + ": no usable sample for " +
                              std::to_string(static_cast<int>(kPatience)) + " s" +
                              (m_last_fault.empty() ? "" : ": " + m_last_fault));
   m_is_due = true;
   write_when_due();
-  m_deadline = find_next_deadline(m_deadline, period(), steady_seconds());
+  m_deadline = find_next_deadline(m_deadline, period(), monotonic_now());
   m_timer->expires_at(Clock::time_point(std::chrono::duration_cast<Clock::duration>(Seconds(m_deadline))));
   m_timer->async_wait(or_lose("timer", [this] { tick(); }));
 }
@@ -244,9 +244,9 @@ void HaplyDevice::say_farewell() noexcept {
     const std::string close = make_frame(8, "");
     ::send(descriptor, close.data(), close.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     ::shutdown(descriptor, SHUT_WR);
-    const double end = steady_seconds() + kFarewell;
+    const double end = monotonic_now() + kFarewell;
     std::array<char, 4096> rest;
-    for (pollfd waited{descriptor, POLLIN, 0}; steady_seconds() < end;) {
+    for (pollfd waited{descriptor, POLLIN, 0}; monotonic_now() < end;) {
       if (::poll(&waited, 1, 20) > 0 && ::recv(descriptor, rest.data(), rest.size(), MSG_DONTWAIT) <= 0)
         break;
     }

@@ -104,14 +104,14 @@ void PluginDevice::work() {
 
 /// A device that does not wait for its next sample is asked once a period.
 void PluginDevice::talk(void* device, bool has_force) {
-  for (double deadline = steady_seconds(); !is_stopping();) {
+  for (double deadline = monotonic_now(); !is_stopping();) {
     show_life();
     read(device);
     if (has_force) {
       write(device, begin_rendering());
       end_rendering();
     }
-    deadline = find_next_deadline(deadline, period(), steady_seconds());
+    deadline = find_next_deadline(deadline, period(), monotonic_now());
     sleep_until(deadline);
   }
 }

@@ -6,9 +6,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
-#include <ctime>
 
 #include "base/check.h"
+#include "base/realtime.h"
 
 namespace argil::device {
 namespace {
@@ -31,8 +31,7 @@ void release_now() {
     s_is_released = true;
     return;
   }
-  constexpr timespec kLook = {0, 1000000};
-  for (int look = 0; look < 100 && !s_is_released; ++look) nanosleep(&kLook, nullptr);
+  for (int look = 0; look < 100 && !s_is_released; ++look) pause_1_ms();
 }
 
 void on_signal(int number) {

@@ -68,10 +68,10 @@ void SpacenavDevice::work() {
   m_counts = {};
   m_buttons = 0;
   SpacenavPose pose;
-  for (double last = steady_seconds(); !is_stopping();) {
+  for (double last = monotonic_now(); !is_stopping();) {
     pollfd waited{spnav_fd(), POLLIN, 0};
     ::poll(&waited, 1, static_cast<int>(std::max(1.0, 1000.0 * period())));
-    const double now = steady_seconds();
+    const double now = monotonic_now();
     advance(m_counts, std::min(now - last, kLongestStep), pose);  // by what was so far
     last = now;
     char byte;

@@ -140,17 +140,15 @@ double find_water_capacity(const sim::Simulation& simulation) {
 }
 
 Tick find_num_ticks(const scenario::Scenario& s, const LiveOptions& options, const device::Trace& trace) {
-  if (options.duration != 0.0) {
-    const double period = s.params.rates.haptic_period;
-    const double ticks = options.duration / period;
-    constexpr double kRounding = 1e-6, kMost = 1e15;
-    std::ostringstream problem;
-    problem << options.duration << " s is not from one tick (" << period << " s) to 1e15 ticks";
-    if (!(ticks + kRounding >= 1.0 && ticks <= kMost))
-      throw InputError("--duration", "", problem.str(), "give a duration in that range");
-    return static_cast<Tick>(ticks + kRounding);
-  }
-  return options.device == "simulated" ? study::count_ticks(s, trace) : 0;
+  constexpr double kMost = 1e15;
+  const double period = s.params.rates.haptic_period;
+  if (options.duration == 0.0) return options.device == "simulated" ? study::count_ticks(s, trace) : 0;
+  const bool is_countable = options.duration > 0.0 && options.duration <= kMost * period;
+  const Tick ticks = is_countable ? study::count_ticks(s, options.duration) : 0;
+  std::ostringstream problem;
+  problem << options.duration << " s is not from one tick (" << period << " s) to 1e15 ticks";
+  if (ticks < 1) throw InputError("--duration", "", problem.str(), "give a duration in that range");
+  return ticks;
 }
 
 /// Would a few words be written at once? Not to a terminal that a user has stopped.

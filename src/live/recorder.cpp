@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/realtime.h"
+
 namespace argil::live {
 
 /// A quick body may answer before the hand has given away the tick.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "base/check.h"
 #include "base/realtime.h"
@@ -15,12 +14,6 @@ constexpr std::size_t kWaitingSteps = 64;
 constexpr double kLook = 2e-4;  // [s] between two looks of a thread that has nothing to do, at most
 
 }  // namespace
-
-double monotonic_now() {
-  timespec now = {};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 Session::Session(sim::Simulation& simulation, device::HapticDevice& device, SessionOptions options)
     : m_simulation(simulation),

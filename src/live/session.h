@@ -109,7 +109,4 @@ class Session {
   std::thread m_hand_thread, m_physics_thread;
 };
 
-/// Seconds of the monotonic clock.
-double monotonic_now();
-
 }  // namespace argil::live

@@ -181,9 +181,7 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
   apply_plastic_flow(h);  // trial ε_p of every tet, committed at once
   m_solid.settle_region(solid, m_is_flowing);
   watch_strain();
-  m_fidelity.set_made(
-      m_solid.counters().linear_iterations > 0 || linear::is_direct(m_params.solid.solver.kind),
-      m_solid.counters().imbalance + m_solid.held_back());
+  m_fidelity.set_made(m_solid.counters().has_solved, m_solid.counters().imbalance + m_solid.held_back());
   m_surface.find_positions(solid.x, answer.surface_x);
   answer.has_moved = true;
   return StepStatus::ok();

@@ -236,10 +236,7 @@ PointMotion Solid::motion(int point) const {
 /// matrix that is off by as much. Its residual is always that of R.
 double Solid::frame_tolerance() const {
   constexpr double kLargest = 0.01;
-  using linear::SolverKind;
-  const SolverKind kind = m_params.solver.kind;
-  const bool is_direct = kind == SolverKind::cholesky || kind == SolverKind::supernodal;
-  if (is_newton() || is_direct) return 0.0;
+  if (is_newton() || linear::is_direct(m_params.solver.kind)) return 0.0;
   return std::min(kLargest, std::max(m_params.solver.tolerance, m_frame_slack));
 }
 

@@ -135,6 +135,7 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
     report = solver.solve(m_matrix, product, m_rhs, m_delta);
   }
   m_counters.linear_iterations += report.iterations;
+  m_counters.has_solved |= report.iterations > 0 || linear::is_direct(m_params.solver.kind);
   m_counters.residual = report.relative_residual;
   m_counters.imbalance = report.relative_residual * report.first / m_tau;
   m_frame_slack =

@@ -117,12 +117,13 @@ device::DeviceSample sample_at(const scenario::Scenario& s, const device::Trace&
   return sample;
 }
 
+Tick count_ticks(const scenario::Scenario& s, double duration) {
+  constexpr double kRounding = 1e-6;
+  return static_cast<Tick>(std::floor(duration / s.params.rates.haptic_period + kRounding));
+}
+
 Tick count_ticks(const scenario::Scenario& s, const device::Trace& trace) {
-  const double duration = s.trace.duration > 0.0 ? s.trace.duration : trace.duration() - s.trace.start;
-  const double ticks = duration / s.params.rates.haptic_period;
-  constexpr double kRounding =
-      1e-6;  // a duration that is a whole number of ticks up to rounding is that number
-  return static_cast<Tick>(std::floor(ticks + kRounding));
+  return count_ticks(s, s.trace.duration > 0.0 ? s.trace.duration : trace.duration() - s.trace.start);
 }
 
 std::uint64_t count_frames(const scenario::Scenario& s, Tick tick) {

@@ -17,6 +17,9 @@ device::DeviceSample sample_at(const scenario::Scenario& s, const device::Trace&
 /// The scenario's mode; nothing where the trace or the device decides.
 std::optional<device::ToolMode> find_fixed_mode(const scenario::Scenario& s);
 
+/// Whole ticks in `duration` [s]; one that is a whole number of ticks up to rounding is that number.
+Tick count_ticks(const scenario::Scenario& s, double duration);
+
 /// Whole ticks of the scenario's motion.
 Tick count_ticks(const scenario::Scenario& s, const device::Trace& trace);
 

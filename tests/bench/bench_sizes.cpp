@@ -116,26 +116,8 @@ void run_steps(benchmark::State& state, const Target& target, const std::string&
     state.SkipWithError(fault.c_str());
     return;
   }
-  bench::StageClock clock;
-  press.simulation().observe_stages(&clock);
-  double iterations = 0.0;
-  double contacts = 0.0;
-  for (auto _ : state) {
-    if (const std::string fault = press.step(); !fault.empty()) {
-      state.SkipWithError(fault.c_str());
-      return;
-    }
-    clock.next_step();
-    iterations += press.simulation().solid().counters().linear_iterations;
-    contacts += static_cast<double>(press.simulation().contacts().contacts.size());
-  }
-  clock.report(state);
-  const auto steps = static_cast<double>(state.iterations());
-  state.counters["steps_per_s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
-  state.counters["cg_iterations"] = iterations / steps;
-  state.counters["contacts"] = contacts / steps;
+  bench::measure_steps(state, press.simulation(), [&] { return press.step(); });
   state.counters["force_N"] = press.simulation().haptic_record().force.norm();
-  state.counters["tets"] = press.simulation().body().mesh.num_tets();
 }
 
 void register_all() {

@@ -81,26 +81,11 @@ void run_steps(benchmark::State& state, device::ToolMode mode, Variant variant =
       state.SkipWithError(fault.c_str());
       return;
     }
-  bench::StageClock clock;
-  press.simulation->observe_stages(&clock);
-  double iterations = 0.0;
-  double contacts = 0.0;
-  for (auto _ : state) {
+  bench::measure_steps(state, *press.simulation, [&] {
     const std::string fault = run_measured_step(press);
-    if (!fault.empty() || press.simulation->contacts().contacts.empty()) {
-      state.SkipWithError(fault.empty() ? "the tool does not touch the body" : fault.c_str());
-      return;
-    }
-    clock.next_step();
-    iterations += press.simulation->solid().counters().linear_iterations;
-    contacts += static_cast<double>(press.simulation->contacts().contacts.size());
-  }
-  clock.report(state);
-  const auto steps = static_cast<double>(state.iterations());
-  state.counters["steps_per_s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
-  state.counters["cg_iterations"] = iterations / steps;
-  state.counters["contacts"] = contacts / steps;
-  state.counters["tets"] = press.simulation->body().mesh.num_tets();
+    return fault.empty() && press.simulation->contacts().contacts.empty() ? "the tool does not touch the body"
+                                                                          : fault;
+  });
 }
 
 void push(benchmark::State& state) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/simulation.h"
 #include "sim/stage.h"
 
 namespace argil::bench {
@@ -51,5 +52,31 @@ class StageClock final : public sim::StageObserver {
   std::array<std::vector<double>, kNumStages> m_samples;
   std::vector<double> m_sums;
 };
+
+/// Measures `step`, which returns what went wrong, if anything, once an iteration. Counters beside the times:
+/// means over the steps.
+template <class Step>
+void measure_steps(benchmark::State& state, sim::Simulation& simulation, Step step) {
+  StageClock clock;
+  simulation.observe_stages(&clock);
+  double iterations = 0.0;
+  double contacts = 0.0;
+  for (auto _ : state) {
+    if (const std::string fault = step(); !fault.empty()) {
+      state.SkipWithError(fault.c_str());
+      break;
+    }
+    clock.next_step();
+    iterations += simulation.solid().counters().linear_iterations;
+    contacts += static_cast<double>(simulation.contacts().contacts.size());
+  }
+  simulation.observe_stages(nullptr);
+  clock.report(state);
+  const auto steps = static_cast<double>(state.iterations());
+  state.counters["steps_per_s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
+  state.counters["cg_iterations"] = iterations / steps;
+  state.counters["contacts"] = contacts / steps;
+  state.counters["tets"] = simulation.body().mesh.num_tets();
+}
 
 }  // namespace argil::bench

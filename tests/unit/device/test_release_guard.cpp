@@ -56,6 +56,8 @@ End run_guarded(const std::function<void(std::optional<ReleaseGuard>&)>& somethi
   EXPECT_EQ(pipe(ends), 0);
   const pid_t child = fork();
   if (child == 0) {
+    // A group of its own, whose parent is in another: the system stops none that nobody could continue.
+    setpgid(0, 0);
     const rlimit no_core{0, 0};
     setrlimit(RLIMIT_CORE, &no_core);
     Tattler device(ends[1]);

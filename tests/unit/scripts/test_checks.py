@@ -115,6 +115,12 @@ class Checks(unittest.TestCase):
         self.write("tests/test_b.py", "")
         self.expect_registered(1, "test_b.py: no CMakeLists.txt names it")
 
+    def test_a_peers_source_may_lack_its_program_but_not_its_name(self):
+        self.write("tests/bench/peers/bench_other.cpp", "")
+        self.expect_registered(1, "bench_other.cpp: no CMakeLists.txt names it")
+        self.write("tests/bench/CMakeLists.txt", "if(OTHER_FOUND)\n  argil_bench(SOURCES peers/bench_other.cpp)\nendif()\n")
+        self.expect_registered(0, "")
+
 
 if __name__ == "__main__":
     unittest.main()
