@@ -83,8 +83,8 @@ class Live(unittest.TestCase):
                 pass  # between two flushes
         self.fail(process.stderr.read())
 
-    def replay(self):
-        done = self.call("run", "scene.json", "--trace", "live.h5", "-o", "again.h5")
+    def replay(self, *arguments):
+        done = self.call("run", "scene.json", "--trace", "live.h5", "-o", "again.h5", *arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done
 
@@ -165,6 +165,7 @@ class Live(unittest.TestCase):
         """What it prints first, without the word before it."""
         process = subprocess.Popen([SUPPORT / program, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         self.addCleanup(process.communicate)
+        self.support = process
         return process.stdout.readline().split()[1]
 
     def start_stand_in(self, mode):
@@ -173,13 +174,65 @@ class Live(unittest.TestCase):
         return ["--device", "haply:127.0.0.1:" + port,
                 "--set", "/trace/device_to_world/translation_m=[0.012, 0.12, -0.1075]"]
 
-    def test_a_haply_service_is_felt_and_replays(self):
-        done = self.call("live", "scene.json", "-o", "live.h5", "--duration", "2.5", *self.start_stand_in("normal"))
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.replay()
-        self.assert_equal()
+    def run_with_stand_in(self, mode, seconds, *arguments):
+        """The session, which replays, and what the service says of its connection."""
+        done = self.call("live", "scene.json", "-o", "live.h5", "--duration", seconds, *arguments, *self.start_stand_in(mode))
+        report = json.loads(self.support.stdout.readline())
+        self.assertEqual(report["forced_too_early"], 0)
         with h5py.File(self.folder / "live.h5") as file:
-            self.assertGreater(numpy.abs(file["haptic/device_force"]).max(), 0.01)
+            self.assertEqual(file.attrs["complete"], 1)
+        if done.returncode == 0 or "device was lost" in done.stderr:
+            self.replay(*arguments)
+            self.assert_equal()
+        return done, report
+
+    def test_a_haply_service_is_felt_and_replays(self):
+        done, report = self.run_with_stand_in("normal", "2.5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(report["largest_force"], 0.01)
+        self.assertEqual(report["last_force"], [0, 0, 0])
+
+    def test_a_service_that_goes_wrong_leaves_the_hand_without_force_and_a_complete_file(self):
+        for mode, words in (("garbage", "no JSON object"), ("half", "no usable sample"), ("zero_quaternion", "quaternion"),
+                            ("huge", "position or quaternion is none"), ("unplugged", "not connected any more")):
+            with self.subTest(mode):
+                done, report = self.run_with_stand_in(mode, "60")
+                self.assertEqual(done.returncode, 4, done.stderr)
+                self.assertIn("the device was lost", done.stderr)
+                self.assertIn(words, done.stderr)
+                self.assertGreater(report["largest_force"], 0.01)
+                self.assertEqual(report["last_force"], [0, 0, 0])
+                with h5py.File(self.folder / "live.h5") as file:
+                    self.assertTrue((file["haptic/gate_events"][-1] & 16) != 0)  # the watchdog had acted before
+                    self.assertEqual(list(file["haptic/device_force"][-1]), [0, 0, 0])
+
+    def test_late_samples_let_the_hand_go_until_they_come_again(self):
+        done, _ = self.run_with_stand_in("late", "3")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with h5py.File(self.folder / "live.h5") as file:
+            is_watched = (file["haptic/gate_events"][:] & 16) != 0
+            self.assertGreaterEqual(numpy.count_nonzero(numpy.diff(is_watched.astype(int)) == -1), 2)
+            force = numpy.linalg.norm(file["haptic/device_force"][:], axis=1)
+            self.assertEqual(force[is_watched].min(), 0)
+            self.assertGreater(force.max(), 0.01)
+
+    def test_duplicate_samples_change_nothing(self):
+        done, report = self.run_with_stand_in("surplus", "2.5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(report["largest_force"], 0.01)
+        self.assertEqual(report["last_force"], [0, 0, 0])
+
+    def test_a_huge_force_is_never_sent(self):
+        stiff = [word for pair in ("vertex_face", "edge_edge")
+                 for word in ("--set", f"/contact/{pair}_stiffness_N_per_m=1e6")]
+        done, report = self.run_with_stand_in("normal", "2.5", *stiff)
+        self.assertIn(done.returncode, (0, 3), done.stderr)
+        self.assertGreater(report["largest_force"], 1.0)
+        self.assertLessEqual(report["largest_force"], 3.3 * (1 + 1e-12))
+        self.assertEqual(report["last_force"], [0, 0, 0])
+        with h5py.File(self.folder / "live.h5") as file:
+            self.assertGreater(numpy.linalg.norm(file["haptic/force"][:], axis=1).max(), 33)
+            self.assertTrue(((file["haptic/gate_events"][:] & 2) != 0).any())
 
     @unittest.skipUnless(shutil.which("spacenavd"), "spacenavd is not installed")
     def test_a_controller_presses_and_replays(self):
@@ -200,12 +253,15 @@ class Live(unittest.TestCase):
     def test_a_hand_of_4_kHz_replays(self):
         self.write_scene("scene.json", {"period_s": 0.00025, "physics_period_ticks": 8, "water_period_ticks": 40,
                                         "frame_period_ticks": 200})
-        done = self.call("live", "scene.json", "--device", "simulated", "-o", "live.h5", "--duration", "1")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.replay()
-        self.assert_equal()
-        with h5py.File(self.folder / "live.h5") as file:
-            self.assertEqual(file["haptic/tick"].shape[0], 4000)
+        for device in ["--device", "simulated"], self.hostile("good"):
+            with self.subTest(device[1]):
+                done = self.call("live", "scene.json", *device, "-o", "live.h5", "--duration", "1")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.replay()
+                self.assert_equal()
+                with h5py.File(self.folder / "live.h5") as file:
+                    self.assertEqual(file["haptic/tick"].shape[0], 4000)
+                    self.assertGreater(numpy.abs(file["haptic/device_force"]).max(), 0.01)
 
     def start_in_terminal(self, seconds):
         terminal, end = pty.openpty()
@@ -278,6 +334,18 @@ class Live(unittest.TestCase):
         self.assertEqual(force + torque, (0,) * 6)
         self.replay()
         self.assert_equal()
+
+    def test_a_second_interrupt_ends_at_once_what_waits_for_a_device(self):
+        process = self.start(*self.hostile("blocks"))
+        self.wait_for_wrong(process)
+        begin = time.monotonic()
+        while process.poll() is None and time.monotonic() < begin + 60:
+            process.send_signal(signal.SIGINT)
+            time.sleep(0.2)
+        said = process.communicate(timeout=60)[1]
+        self.assertIn(process.returncode, (-signal.SIGINT, 130, 4), said)
+        self.assertEqual(self.read_rendered()[0], (0, 0, 0))
+        self.replay()
 
     def test_a_device_that_does_not_answer_is_lost(self):
         done = self.call("live", "scene.json", "-o", "live.h5", *self.hostile("blocks"))
