@@ -2,7 +2,8 @@
 """Draws a map of `argil stability`: what became of each run over one or two parameters, the boundaries found, and the limits
 of theory.
 
-Usage: plot_map.py TABLE.csv [-o STEM] [--title TITLE]      writes STEM.png, STEM.pdf
+Usage: plot_map.py TABLE.csv [-o STEM] [--title TITLE] [--forces METHOD REFERENCE]      writes STEM.png, STEM.pdf
+With --forces a second panel has the largest hand force of the method and of the reference, which are given those names.
 """
 import argparse
 import csv
@@ -61,10 +62,34 @@ def draw_limits(axes, rows, is_plane):
                 axes.axvline(number(row, "x"), **dict(style, label=name if k == 0 else None))
 
 
-def draw(rows, provenance, title):
+def draw_forces(axes, runs, names, y_name):
+    """Marks: the method; lines: the reference. One colour for each y."""
+    rows_of_y = list(dict.fromkeys(row["y"] for row in runs))
+    for place, y in enumerate(rows_of_y):
+        mine = sorted((row for row in runs if row["y"] == y), key=lambda row: number(row, "x"))
+        x = [number(row, "x") for row in mine]
+        colour = COLOURS[place % len(COLOURS)]
+        axes.plot(x, [number(row, "reference_peak_force_N") for row in mine], color=colour, zorder=2)
+        axes.plot(x, [number(row, "peak_force_N") for row in mine], linestyle="none", marker="o", markersize=3.5,
+                  color=colour, label=f"{number(mine[0], 'y'):g}" if y else None, zorder=3)
+    axes.set_ylabel("largest hand force [N]")
+    axes.set_ylim(bottom=0.0)
+    kinds = [plt.Line2D([], [], color="black", linestyle="none", marker="o", markersize=3.5, label=names[0]),
+             plt.Line2D([], [], color="black", label=names[1])]
+    title = None
+    if len(rows_of_y) > 1:
+        kinds += axes.get_legend_handles_labels()[0]
+        title = f"colours: {y_name}"
+    axes.legend(handles=kinds, title=title, title_fontsize=7, loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7)
+
+
+def draw(rows, provenance, title, force_names=None):
     runs, boundaries, limits = ([row for row in rows if row["kind"] == kind] for kind in ("run", "boundary", "limit"))
     is_plane = any(row["y"] for row in runs)
-    figure, axes = plt.subplots(figsize=(150 * MILLIMETRES, 85 * MILLIMETRES))
+    panels = 2 if force_names else 1
+    figure, all_axes = plt.subplots(panels, 1, sharex=True, squeeze=False,
+                                    figsize=(150 * MILLIMETRES, (25 + 60 * panels) * MILLIMETRES))
+    axes = all_axes[0, 0]
     if is_plane:
         draw_runs(axes, runs, lambda row: number(row, "y"))
         axes.plot([number(row, "x") for row in boundaries], [number(row, "y") for row in boundaries], linestyle="none",
@@ -85,9 +110,11 @@ def draw(rows, provenance, title):
     if "y" in scales:
         axes.set_yscale("log")
     draw_limits(axes, limits, is_plane)
-    axes.set_xlabel(provenance.get("x", ""))
     axes.set_title(title)
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7)
+    if force_names:
+        draw_forces(all_axes[1, 0], runs, force_names, provenance.get("y", ""))
+    all_axes[-1, 0].set_xlabel(provenance.get("x", ""))
     return figure
 
 
@@ -96,11 +123,14 @@ def main():
     parser.add_argument("table", type=Path, metavar="TABLE.csv")
     parser.add_argument("-o", "--output", type=Path, metavar="STEM")
     parser.add_argument("--title", default="")
+    parser.add_argument("--forces", nargs=2, metavar=("METHOD", "REFERENCE"))
     options = parser.parse_args()
     rows, provenance = read_table(options.table)
     if not rows or "kind" not in rows[0]:
         ap.refuse(f"{options.table}: is not a table of argil stability")
-    ap.save(draw(rows, provenance, options.title), options.output or options.table.with_suffix(""))
+    if options.forces and not any(row.get("reference_peak_force_N") for row in rows):
+        ap.refuse(f"{options.table}: has no forces of a reference, for its study has none; leave out --forces")
+    ap.save(draw(rows, provenance, options.title, options.forces), options.output or options.table.with_suffix(""))
 
 
 if __name__ == "__main__":

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <map>
+#include <sstream>
 
 #include "base/error.h"
 #include "output/result_reader.h"
@@ -21,7 +23,8 @@ class Shrinking {
   Shrinking(const StabilityMap& map, const Place& place) : m_map(map), m_place(place) {}
 
   void shrink() {
-    if (m_place.result.exit_code == kDone) halve("/trace/duration_s", m_place.figures.simulated_seconds, 0.0);
+    if (m_place.result.exit_code == kDone && m_place.outcome != Outcome::wrong)
+      halve("/trace/duration_s", m_place.figures.simulated_seconds, 0.0);
     const scenario::Scenario s = load_place(m_map, m_place, {});
     if (s.body.kind == scenario::BodyKind::shape)
       halve("/body/shape/target_tets", s.body.target_tets, kFewestTets);
@@ -60,9 +63,15 @@ class Shrinking {
 };
 
 std::string describe(const StabilityMap& map, const Place& place) {
-  return "Ends as " + to_string(place.outcome) + " by design of " +
-         std::filesystem::path(map.study().file).filename().string() +
-         (place.result.reason.empty() ? "" : ": " + place.result.reason);
+  std::ostringstream text;
+  text << "Ends as " << to_string(place.outcome) << " by design of "
+       << std::filesystem::path(map.study().file).filename().string();
+  if (place.outcome == Outcome::wrong)
+    text << ": the hand force is off by " << std::setprecision(3) << place.errors.force
+         << " from that of the same with " << print_settings(map.study().reference);
+  else if (!place.result.reason.empty())
+    text << ": " << place.result.reason;
+  return text.str();
 }
 
 void write_text(const std::string& file, const std::string& text) {
@@ -97,7 +106,7 @@ void write_failures(const StabilityMap& map, const std::string& folder) {
   if (error) throw IoError(folder, "cannot be made (" + error.message() + ")");
   std::map<Outcome, const Place*> nearest;
   const auto add = [&nearest](const Place& place) {
-    if (is_known(place.outcome) && !is_stable(place.outcome)) nearest.emplace(place.outcome, &place);
+    if (is_known(place.outcome) && place.outcome != Outcome::accurate) nearest.emplace(place.outcome, &place);
   };
   const Place* accepted = nullptr;
   for (const Boundary& b : map.boundaries())

@@ -24,6 +24,7 @@ output::StudyTable make_table(const StabilityMap& map) {
                    {"energy_gain", "1", "mechanical energy beyond what the hand gave, relative"},
                    {"chatter", "1", "rms of the hand force above 50 Hz over its rms"},
                    {"peak_force_N", "N", "largest hand force"},
+                   {"reference_peak_force_N", "N", "the same of the reference there"},
                    {"run", "-", "name of the result in the folder of runs"},
                    {"reason", "-", "why the run ended early"}};
   for (const Place& p : map.places()) {
@@ -31,7 +32,7 @@ output::StudyTable make_table(const StabilityMap& map) {
     const auto figure = [&](double value) { return is_done ? value : kUnknown; };
     table.rows.push_back({"run", p.x, p.y, kUnknown, kUnknown, to_string(p.outcome), p.errors.force,
                           figure(p.figures.energy_gain), figure(p.figures.chatter),
-                          figure(p.figures.peak_force), p.result.id, p.result.reason});
+                          figure(p.figures.peak_force), p.true_peak_force, p.result.id, p.result.reason});
   }
   for (const Boundary& b : map.boundaries()) {
     const Place& below = map.places()[b.below];
@@ -39,15 +40,16 @@ output::StudyTable make_table(const StabilityMap& map) {
     const double middle = study.x.is_logarithmic ? std::sqrt(below.x * above.x) : 0.5 * (below.x + above.x);
     table.rows.push_back({"boundary", middle, below.y, below.x, above.x,
                           to_string(below.outcome) + " > " + to_string(above.outcome), kUnknown, kUnknown,
-                          kUnknown, kUnknown, "", ""});
+                          kUnknown, kUnknown, kUnknown, "", ""});
   }
   for (const scenario::MapLimit& limit : study.limits)
     for (std::size_t i = 0; i < limit.x.size(); ++i)
       table.rows.push_back({"limit", limit.x[i], limit.y.empty() ? kUnknown : limit.y[i], kUnknown, kUnknown,
-                            limit.name, kUnknown, kUnknown, kUnknown, kUnknown, "", ""});
+                            limit.name, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, "", ""});
   std::vector<CaseResult> results;
   for (const Place& p : map.places()) results.insert(results.end(), {p.result, p.truth});
   table.provenance = describe_study(study.file, study.about, study.scenario, study.settings, results);
+  table.provenance.emplace_back("reference", print_settings(study.reference));
   table.provenance.emplace_back("x", study.x.name);
   table.provenance.emplace_back("y", study.y.name);
   table.provenance.emplace_back(

@@ -71,11 +71,15 @@ std::vector<std::size_t> StabilityMap::visit(const std::vector<std::pair<double,
 }
 
 void StabilityMap::judge(Place& place) const {
+  std::optional<output::ResultReader> truth;
+  if (!place.truth.file.empty() && place.truth.exit_code == kDone) {
+    truth.emplace(place.truth.file);
+    place.true_peak_force = compute_figures(*truth).peak_force;
+  }
   if (place.result.exit_code == kDone) {
     const output::ResultReader reader(place.result.file);
     place.figures = compute_figures(reader);
-    if (!place.truth.file.empty() && place.truth.exit_code == kDone)
-      place.errors = compute_errors(reader, output::ResultReader(place.truth.file));
+    if (truth) place.errors = compute_errors(reader, *truth);
   }
   OutcomeBounds bounds;
   bounds.wrong_above = m_study.wrong_above;

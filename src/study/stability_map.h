@@ -20,6 +20,7 @@ struct Place {
   CaseResult truth;
   Outcome outcome = Outcome::killed;
   RunFigures figures;
+  double true_peak_force = kUnknown;  ///< [N]
   RunErrors errors;
 };
 

@@ -42,9 +42,9 @@ PIXELS = """(() => {
 })()"""
 
 
-def press_a_ball(result):
-    subprocess.run([ARGIL, "run", str(ROOT / "tests/golden/ball.json"), "-o", result, "--quiet",
-                    "--set", "/haptics/frame_period_ticks=7"], check=True)
+def press_a_ball(result, *settings):
+    sets = [word for setting in ("/haptics/frame_period_ticks=7", *settings) for word in ("--set", setting)]
+    subprocess.run([ARGIL, "run", str(ROOT / "tests/golden/ball.json"), "-o", result, "--quiet", *sets], check=True)
 
 
 def export(*arguments, program=None):
@@ -166,6 +166,16 @@ class Pages(Folder):
         self.assertIn(f"Decimated in time: shows 2 of {count} frames", said)
         self.assertIn(f"shows 2 of {count} frames", self.browser.evaluate("notes.textContent"))
         self.assertEqual(self.browser.evaluate("slider.max"), "1")
+
+    def test_a_result_of_100_MB_becomes_a_page_that_can_be_sent(self):
+        big = self.path("big.h5")
+        press_a_ball(big, "/body/shape/skin_triangles=80000", "/haptics/frame_period_ticks=1")
+        self.assertGreater(big.stat().st_size, 100e6)
+        self.assertIn("Decimated in time", self.open(result=big))
+        self.assertLess(self.path("a page & more.html").stat().st_size, 10e6)
+        self.browser.click("#slider", across=0.99)
+        self.assertEqual(self.frame(), int(self.browser.evaluate("slider.max")))
+        self.assertGreater(self.browser.evaluate(PIXELS)[0], 5000)
 
     def test_the_whole_body_is_in_the_picture_whatever_its_aspect(self):
         self.open("--cage")

@@ -157,6 +157,20 @@ TEST_F(Study, MapFindsTheExplicitLimitWithinOnePercent) {
   EXPECT_EQ(run(again), kRunFailed);
 }
 
+TEST_F(Study, MapSaysTheReferencesForceBesideARunsOwn) {
+  ASSERT_EQ(map_stability(options(R"({"about": "softer", "scenario": "scene.json",
+    "x": {"name": "E [Pa]", "pointers": ["/material/youngs_modulus_Pa"], "values": [1e4, 2e4]},
+    "reference": {"/material/youngs_modulus_Pa": 2e4}, "wrong_above": 10})"),
+                          ""),
+            kDone);
+  const std::vector<Row> rows = table();
+  ASSERT_EQ(rows.size(), 2U);
+  for (const Row& row : rows) EXPECT_EQ(row.at("reference_peak_force_N"), rows[1].at("peak_force_N"));
+  EXPECT_LT(std::stod(rows[0].at("peak_force_N")), 0.95 * std::stod(rows[1].at("peak_force_N")));
+  EXPECT_NE(read_text(folder / "table.csv").find("# reference: /material/youngs_modulus_Pa=2"),
+            std::string::npos);
+}
+
 const std::string kChart = R"({"about": "orders", "scenario": "scene.json",
   "settings": {"/dynamics/iteration": "newton", "/dynamics/solver/kind": "cholesky"},
   "reference": {"/haptics/period_s": 0.000125, "/haptics/frame_period_ticks": 400, "/haptics/water_period_ticks": 80},
