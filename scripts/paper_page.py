@@ -26,8 +26,7 @@ LIMITS = [  # what fails in the paper's form, figure, what is done instead
      "the kernel to the power h/h_ref, the rate form"),
     ("Linear tets with undrained water lock", "../verification/locking.png",
      "drained by default; undrained clay needs `p1_nodal` or `p2`, or says that it locks"),
-    ("Linear strain grows under rotation; the push is x + 25 mm, and the error is largest where x = 0",
-     "../stability/rotation.png", "corotational strain, which the errors are measured from"),
+    ("Linear strain grows under rotation", "../stability/rotation.png", "corotational strain, which the errors are measured from"),
     ("A contact force held between slow physics steps makes the hand chatter", "../contact/stability.png",
      "contact in the solve; re-evaluated contact, local compliance and a passivity controller as options"),
 ]
@@ -245,8 +244,8 @@ def limits():
     rows = [[what if (PAPER / figure).resolve().is_file() else f"{what} (figure not made)",
              f"[figure]({figure})", remedy] for what, figure, remedy in LIMITS]
     return (table(["what fails or misleads", "where it is seen", "what is done here"], rows)
-            + prose("""These figures are drawn by the scripts that their folders name; `scripts/reproduce limits` only
-                looks whether they are there.""")
+            + prose("""In the three maps, dots are the paper's form and lines what is done instead; these figures stay in
+                the folders of their subjects.""")
             + pictures(*((figure, what) for what, figure, _ in LIMITS)))
 
 

@@ -3,6 +3,7 @@
 
 Usage: test_paper.py ARGIL. Skipped (77) without numpy, h5py, matplotlib and scipy.
 """
+import csv
 import importlib.util
 import json
 import subprocess
@@ -49,6 +50,26 @@ class Page(Folder):
 
     def test_all_figures_of_the_limits_are_there(self):
         call(ROOT / "scripts/paper_page.py", "--check-limits")
+
+
+class Reproduce(Folder):
+    def test_an_unknown_item_is_refused_with_those_that_there_are(self):
+        done = subprocess.run([ROOT / "scripts/reproduce", "push_pull", "teapot"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no item teapot; there are: push_pull dry_wet sculpted cages rates measures limits page", done.stderr)
+
+    def test_the_rates_of_all_bodies_and_modes_are_measured(self):
+        call(ROOT / "scripts/paper_rates.py", ARGIL, "--repeats", "1", "-o", self.folder / "rates.csv")
+        lines = (self.folder / "rates.csv").read_text().splitlines()
+        self.assertIn("one thread; ticks in a second, best of 1", lines[0])
+        rows = list(csv.DictReader(lines[1:]))
+        self.assertEqual([row["body"] for row in rows], ["dinosaur", "figure", "sphere", "cylinder"])
+        for row in rows:
+            self.assertLess(abs(int(row["tets"]) / 5000 - 1), 0.1)
+            # Pushed, the free nodes are solved for: of a mesh of tets some fifth of their number.
+            self.assertTrue(0.05 < int(row["nodes_solved_in_push"]) / int(row["tets"]) < 0.4)
+            for mode in "push", "pull", "wet", "dry":
+                self.assertGreater(float(row[f"{mode}_Hz"]), 0)
 
 
 class Measures(Folder):
