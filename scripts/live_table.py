@@ -2,9 +2,11 @@
 """How well a live session keeps its times, on the demonstration's dinosaur, with physics of three rates; each session is
 replayed and compared.
 
-    scripts/live_table.py [--build BUILD] [--seconds 60] [--devices simulated haply spacenav …] [--output results/live]
+    scripts/live_table.py [--build BUILD] [--seconds 60] [--devices simulated haply spacenav …]
+                          [--sessions 1000:re_evaluate 71:hold …] [--output results/live]
 
-writes live.csv and README.md there, one line a session; lines of other devices stay. Run it on a machine with nothing
+writes live.csv and README.md there, one line a session; other lines stay. A session is the physics' rate [Hz] and what the
+hand feels between its steps. Run it on a machine with nothing
 else to do. A simulated hand means to press, wet, press and dry the haunch, to and fro, for as long as the session
 lasts. "haply" and "spacenav" are the stand-ins of the tests, started here; any other device must be there.
 """
@@ -24,6 +26,8 @@ ROOT = Path(__file__).resolve().parent.parent
 SCENARIO = ROOT / "scenarios" / "demo_dino_dry.json"
 # Ticks of 1 ms: a physics step, the water's, a picture.
 RATES = {"1000": (1, 10, 40), "333": (3, 12, 42), "71": (14, 14, 42)}
+SESSIONS = [*(f"{rate}:re_evaluate" for rate in RATES), "71:hold"]  # hold: the paper's, at its rate
+KEY = ("device", "physics_Hz", "between_frames")
 STAND_INS = {"haply": ("haply_stand_in.py", (-0.006, 0.074, -0.088)),
              "spacenav": ("spacenav_stand_in.py", (-0.006, -0.2364, 0.062))}
 FIGURES = ["wake_late_p50", "wake_late_p99", "wake_late_p999", "wake_late_max", "tick_work_p50", "tick_work_p99",
@@ -40,8 +44,8 @@ def call(argil, *arguments, environment=None):
     return done.returncode, done.stdout + done.stderr
 
 
-def quantiles(row, name, scale, digits):
-    return " / ".join(f"{scale * row[f'{name}_{q}']:.{digits}f}" for q in ("p50", "p99", "max"))
+def quantiles(row, name, scale, digits, wanted=("p50", "p99", "max")):
+    return " / ".join(f"{scale * row[f'{name}_{q}']:.{digits}f}" for q in wanted)
 
 
 def write_intent(file, seconds):
@@ -76,31 +80,32 @@ def stand_in(device):
         process.wait()
 
 
-def run_session(argil, folder, device, rate, seconds):
+def run_session(argil, folder, device, session, seconds):
     with stand_in(device) as (name, environment, placed):
-        return record(argil, folder, (device, name, environment), placed, rate, seconds)
+        return record(argil, folder, (device, name, environment), placed, session, seconds)
 
 
-def record(argil, folder, devices, placed, rate, seconds):
+def record(argil, folder, devices, placed, session, seconds):
     device, name, environment = devices
+    rate, way = session.split(":")
     write_intent(folder / "intent.csv", seconds)
     physics, water, frame = RATES[rate]
     settings = [f"/haptics/physics_period_ticks={physics}", f"/haptics/water_period_ticks={water}",
-                f"/haptics/frame_period_ticks={frame}", "/haptics/between_frames=re_evaluate",
+                f"/haptics/frame_period_ticks={frame}", f"/haptics/between_frames={way}",
                 f"/trace/file={folder / 'intent.csv'}"]
     sets = [word for setting in settings + placed for word in ("--set", setting)]
     live, again = folder / "live.h5", folder / "again.h5"
     code, said = call(argil, "live", SCENARIO, "--device", name, "--duration", seconds, "-o", live, "-q",
                       "--watch", folder / "watch.h5", *sets, environment=environment)
     if code != 0:
-        raise SystemExit(f"{device} at {rate} Hz: code {code}: {said}")
+        raise SystemExit(f"{device}, {session}: code {code}: {said}")
     granted = "no: " + said.strip().split("warning: ")[-1] if "warning" in said else "yes"
     sets = [word for setting in settings[:-1] for word in ("--set", setting)]
     code, said = call(argil, "run", SCENARIO, "--trace", live, "-o", again, "-q", *sets)
     if code != 0:
-        raise SystemExit(f"replay of {device} at {rate} Hz: code {code}: {said}")
+        raise SystemExit(f"replay of {device}, {session}: code {code}: {said}")
     code, said = call(argil, "compare", live, again)
-    row = {"device": device, "physics_Hz": rate, "replay": "equal" if code == 0 else said.splitlines()[0],
+    row = {"device": device, "physics_Hz": rate, "between_frames": way, "replay": "equal" if code == 0 else said.splitlines()[0],
            "granted": granted}
     with h5py.File(live) as file:
         row["commit"] = file["provenance/build"][()].decode().splitlines()[1].removeprefix("commit ")
@@ -111,20 +116,24 @@ def record(argil, folder, devices, placed, rate, seconds):
     return row
 
 
-def read_others(table, devices):
-    """Rows of devices that are not measured now."""
+def read_others(table, measured):
+    """Rows of sessions that are not measured now."""
     with open(table, encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if row["device"] not in devices]
+        rows = [row for row in csv.DictReader(file) if tuple(row[key] for key in KEY) not in measured]
     for row in rows:
         row.update({name: float(row[name]) for name in FIGURES})
     return rows
+
+
+def name_session(row):
+    return f"{row['device']} | {row['physics_Hz']} Hz, `{row['between_frames']}`"
 
 
 def write_readme(file, rows, options):
     us, ms = 1e6, 1e3
     lines = [
         "# How well a live session keeps its times", "",
-        f"The dinosaur of `demo_dino_dry`, {options.seconds:g} s a session, hand at 1 kHz, `re_evaluate`; {os.cpu_count()} processors,",
+        f"The dinosaur of `demo_dino_dry`, {options.seconds:g} s a session, hand at 1 kHz; {os.cpu_count()} processors,",
         f"{platform.machine()}, Linux {platform.release()}. Each session is replayed in one thread; \"equal\": `argil compare` finds",
         f"no difference, forces and hashes included. `scripts/live_table.py` writes this. {options.note}".rstrip(),
         f"Real-time priority of the hand's thread and locked memory were granted: {', '.join(sorted({r['granted'] for r in rows}))}."
@@ -132,25 +141,23 @@ def write_readme(file, rows, options):
         "\"Woken late\": by the system, after the time that the hand asked for. A tick is missed when that is more than a period.",
         "\"Late steps\": those for which the body was not ready when the hand had the next load for it; the hand went on against the",
         "last surface, whose age is in the column before.", "",
-        "| device | physics | woken late, p50 / p99 / p99.9 / max [µs] | a tick's work, p50 / p99 / max [µs] |"
+        "| device | physics, between its steps | woken late, p50 / p99 / p99.9 / max [µs] | a tick's work, p50 / p99 / max [µs] |"
         " a step's work, p50 / p99 / max [ms] | age of the surface, p50 / p99 / max [ticks] | missed ticks | late steps | replay |",
         "|---|---|---|---|---|---|---|---|---|"]
     for r in rows:
-        late = " / ".join(f"{us * r['wake_late_' + q]:.0f}" for q in ("p50", "p99", "p999", "max"))
-        work = " / ".join(f"{us * r['tick_work_' + q]:.0f}" for q in ("p50", "p99", "max"))
-        step = " / ".join(f"{ms * r['step_work_' + q]:.2f}" for q in ("p50", "p99", "max"))
-        age = " / ".join(f"{r['num_surface_age_ticks_' + q]:.0f}" for q in ("p50", "p99", "max"))
-        lines.append(f"| {r['device']} | {r['physics_Hz']} Hz | {late} | {work} | {step} | {age} |"
+        times = [quantiles(r, "wake_late", us, 0, ("p50", "p99", "p999", "max")), quantiles(r, "tick_work", us, 0),
+                 quantiles(r, "step_work", ms, 2), quantiles(r, "num_surface_age_ticks", 1, 0)]
+        lines.append(f"| {name_session(r)} | {' | '.join(times)} |"
                      f" {r['num_missed_ticks']:.0f} of {r['num_ticks']:.0f} | {r['num_late_steps']:.0f} of {r['num_steps']:.0f}"
                      f" | {r['replay']} |")
     lines += [
         "", "**What the hand's force rests on.** The sample's age by the device's clock when the hand takes it; ticks for which there was no",
         "newer one; ticks since the force was last found anew from contacts; and how long after the force its picture was in the",
         "file that others watch (`--watch`, a picture each 40 or 42 ticks).", "",
-        "| device | physics | age of the sample, p50 / p99 / max [ms] | ticks without a new sample |"
+        "| device | physics, between its steps | age of the sample, p50 / p99 / max [ms] | ticks without a new sample |"
         " age of the force, p50 / p99 / max [ticks] | force to picture, p50 / p99 / max [ms] |", "|---|---|---|---|---|---|"]
     for r in rows:
-        lines.append(f"| {r['device']} | {r['physics_Hz']} Hz | {quantiles(r, 'sample_age', ms, 2)} | {r['num_repeated_samples']:.0f}"
+        lines.append(f"| {name_session(r)} | {quantiles(r, 'sample_age', ms, 2)} | {r['num_repeated_samples']:.0f}"
                      f" | {quantiles(r, 'num_force_age_ticks', 1, 0)} | {quantiles(r, 'picture_delay', ms, 1)} |")
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
@@ -160,16 +167,20 @@ def main():
     parser.add_argument("--build", type=Path, default=ROOT / "build")
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--devices", nargs="+", default=["simulated", *STAND_INS])
+    parser.add_argument("--sessions", nargs="+", default=SESSIONS, choices=SESSIONS, metavar="RATE:WAY")
     parser.add_argument("--note", default="", help="a sentence about the machine for the page")
     parser.add_argument("--output", type=Path, default=ROOT / "results" / "live")
     options = parser.parse_args()
     table = options.output / "live.csv"
-    rows = read_others(table, options.devices) if table.is_file() else []
+    measured = {(device, *session.split(":")) for device in options.devices for session in options.sessions}
+    rows = read_others(table, measured) if table.is_file() else []
     for device in options.devices:
-        for rate in RATES:
+        for session in options.sessions:
             with tempfile.TemporaryDirectory() as folder:
-                rows.append(run_session(options.build / "bin" / "argil", Path(folder), device, rate, options.seconds))
+                rows.append(run_session(options.build / "bin" / "argil", Path(folder), device, session, options.seconds))
             print(rows[-1])
+    devices = list(dict.fromkeys(row["device"] for row in rows))
+    rows.sort(key=lambda row: (devices.index(row["device"]), SESSIONS.index(f"{row['physics_Hz']}:{row['between_frames']}")))
     options.output.mkdir(parents=True, exist_ok=True)
     with open(table, "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, rows[0].keys())
