@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <string>
 
 #include "device/plugin_api.h"
@@ -17,13 +18,21 @@ namespace {
 using argil::test::RenderedForce;
 
 constexpr int kGoodSamples = 300;
+constexpr double kStill = 1.0;  // [s] at first, while a session makes its scene
 
 struct Device {
   std::string mode;
   RenderedForce* rendered = nullptr;
-  int samples = 0;
+  double opened_at = 0.0;
+  int samples = 0;  // since it began to move
   bool is(const char* wanted) const { return samples > kGoodSamples && mode == wanted; }
 };
+
+double now() {
+  timespec time = {};
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 void wait_for_ever() {
   for (;;) pause();
@@ -47,7 +56,7 @@ void* open_device(const char* argument, const char** reason) {
   close(file);
   *reason = "no file to write to";
   if (memory == MAP_FAILED) return nullptr;
-  auto* const device = new Device{text.substr(0, colon), static_cast<RenderedForce*>(memory)};
+  auto* const device = new Device{text.substr(0, colon), static_cast<RenderedForce*>(memory), now()};
   if (device->mode == "open_blocks") wait_for_ever();
   return device;
 }
@@ -64,10 +73,10 @@ void describe(void* handle, argil_plugin_info* info) {
   if (mode == "nan_limit") info->max_force = NAN;
 }
 
-/// Goes down on the ball of tests/unit/live and stays in it.
+/// Goes down on the ball of tests/unit/live, when that is made, and stays in it.
 std::int32_t read_sample(void* handle, argil_plugin_sample* sample, const char**) {
   Device& device = *static_cast<Device*>(handle);
-  ++device.samples;
+  if (now() - device.opened_at > kStill) ++device.samples;
   sample->position[0] = 0.001;
   sample->position[1] = 0.0007;
   sample->position[2] = 0.048 - std::fmin(0.0045, 3e-5 * device.samples);

@@ -168,19 +168,18 @@ class Live(unittest.TestCase):
         self.support = process
         return process.stdout.readline().split()[1]
 
-    def start_stand_in(self, mode):
+    def start_stand_in(self, mode, good=1500):
         """A service on loopback whose hand circles over the ball's flank and touches it after a second."""
-        port = self.start_support("haply_stand_in.py", "--mode", mode, "--good", "1500")
+        port = self.start_support("haply_stand_in.py", "--mode", mode, "--good", str(good))
         return ["--device", "haply:127.0.0.1:" + port,
                 "--set", "/trace/device_to_world/translation_m=[0.012, 0.12, -0.1075]"]
 
-    def run_with_stand_in(self, mode, seconds, *arguments):
+    def run_with_stand_in(self, mode, seconds, *arguments, good=1500):
         """The session, which replays, and what the service says of its connection."""
-        done = self.call("live", "scene.json", "-o", "live.h5", "--duration", seconds, *arguments, *self.start_stand_in(mode))
+        done = self.call("live", "scene.json", "-o", "live.h5", "--duration", seconds, *arguments,
+                         *self.start_stand_in(mode, good))
         report = json.loads(self.support.stdout.readline())
         self.assertEqual(report["forced_too_early"], 0)
-        with h5py.File(self.folder / "live.h5") as file:
-            self.assertEqual(file.attrs["complete"], 1)
         if done.returncode == 0 or "device was lost" in done.stderr:
             self.replay(*arguments)
             self.assert_equal()
@@ -207,11 +206,11 @@ class Live(unittest.TestCase):
                     self.assertEqual(list(file["haptic/device_force"][-1]), [0, 0, 0])
 
     def test_late_samples_let_the_hand_go_until_they_come_again(self):
-        done, _ = self.run_with_stand_in("late", "3")
+        done, _ = self.run_with_stand_in("late", "4", good=200)
         self.assertEqual(done.returncode, 0, done.stderr)
         with h5py.File(self.folder / "live.h5") as file:
             is_watched = (file["haptic/gate_events"][:] & 16) != 0
-            self.assertGreaterEqual(numpy.count_nonzero(numpy.diff(is_watched.astype(int)) == -1), 2)
+            self.assertGreaterEqual(numpy.count_nonzero(numpy.diff(is_watched.astype(int)) == -1), 1)
             force = numpy.linalg.norm(file["haptic/device_force"][:], axis=1)
             self.assertEqual(force[is_watched].min(), 0)
             self.assertGreater(force.max(), 0.01)
@@ -255,12 +254,12 @@ class Live(unittest.TestCase):
                                         "frame_period_ticks": 200})
         for device in ["--device", "simulated"], self.hostile("good"):
             with self.subTest(device[1]):
-                done = self.call("live", "scene.json", *device, "-o", "live.h5", "--duration", "1")
+                done = self.call("live", "scene.json", *device, "-o", "live.h5", "--duration", "2")
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.replay()
                 self.assert_equal()
                 with h5py.File(self.folder / "live.h5") as file:
-                    self.assertEqual(file["haptic/tick"].shape[0], 4000)
+                    self.assertEqual(file["haptic/tick"].shape[0], 8000)
                     self.assertGreater(numpy.abs(file["haptic/device_force"]).max(), 0.01)
 
     def start_in_terminal(self, seconds):
@@ -365,7 +364,7 @@ class Live(unittest.TestCase):
             self.assertEqual(force + torque, (0,) * 6)
 
     def test_what_a_device_declares_is_kept_to_and_replays(self):
-        done = self.call("live", "scene.json", "-o", "live.h5", "--duration", "0.8", *self.hostile("weak"))
+        done = self.call("live", "scene.json", "-o", "live.h5", "--duration", "1.8", *self.hostile("weak"))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("400 N/m is more than the 100 N/m that hostile declares", done.stderr)
         _, _, largest_force, largest_torque, _ = self.read_rendered()
