@@ -74,26 +74,33 @@ void remove_unless_busy(const std::string& name) {
     throw IoError(name, std::string("cannot be replaced: ") + std::strerror(errno));
   }
   struct stat status {};
+  bool is_busy = false;
   std::string problem;
   if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode))
     problem = "is not a regular file";
   else if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    problem = kBusy;
+    is_busy = true;
   else if (is_same_file(descriptor, name) && unlink(name.c_str()) != 0)
     problem = std::string("cannot be replaced: ") + std::strerror(errno);
   else
     unlink(name_journal(name).c_str());
   ::close(descriptor);
+  if (is_busy) throw BusyError(name);
   if (!problem.empty()) throw IoError(name, problem);
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& action) {
   const std::string reason = take_reason();
-  if (reason == std::strerror(EWOULDBLOCK)) throw IoError(name, kBusy);
+  if (reason == std::strerror(EWOULDBLOCK)) throw BusyError(name);
   throw IoError(name, action + ": " + reason);
 }
 
 }  // namespace
+
+BusyError::BusyError(const std::string& file)
+    : IoError(file,
+              "another process has this file open (a run that writes it, or a reader); wait for it or choose "
+              "another name") {}
 
 File File::create(const std::string& name) {
   start_library();

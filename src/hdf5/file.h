@@ -2,7 +2,7 @@
 
 // The project's only door to the HDF5 C library. Its headers stay behind this one; what a file contains is
 // the business of output/ and device/. Every function throws IoError (file, object, the library's reason with
-// errno).
+// errno), where another process stands in the way a BusyError.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +11,15 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
+
 namespace argil::hdf5 {
+
+/// Another process has the file open and this one must not: nothing is wrong with its content.
+class BusyError : public IoError {
+ public:
+  explicit BusyError(const std::string& file);
+};
 
 /// hid_t of HDF5 1.10 and later.
 using Id = std::int64_t;

@@ -27,10 +27,6 @@ hid_t file_type(Element element);
 /// Element of an HDF5 type; throws IoError naming `where` when the project has none for it.
 Element element_of_type(hid_t type, const std::string& file, const std::string& where);
 
-inline constexpr const char* kBusy =
-    "another process has this file open (a run that writes it, or a reader); wait for it or choose another "
-    "name";
-
 /// Lengths of a dataspace; one without values has {0}.
 Shape read_shape(Id space);
 

@@ -123,14 +123,16 @@ void recover(const std::string& file) {
     throw IoError(file, "was killed in the middle of a write, which must be finished first: " +
                             std::string(std::strerror(errno)));
   }
+  bool is_busy = false;
   std::string problem;
   if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    problem = kBusy;
+    is_busy = true;
   else if (left && !apply_pages(descriptor, left->pages, left->size))
     problem = std::string("cannot finish a write in which it was killed: ") + std::strerror(errno);
   else
     unlink(journal.c_str());  // may fail in a read-only folder: the next reader comes to the same
   ::close(descriptor);
+  if (is_busy) throw BusyError(file);
   if (!problem.empty()) throw IoError(file, problem);
 }
 

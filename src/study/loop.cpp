@@ -3,26 +3,13 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 
 #include "study/cost_meter.h"
+#include "study/interrupt.h"
 #include "study/progress.h"
 
 namespace argil::study {
 namespace {
-
-volatile std::sig_atomic_t g_interrupted = 0;  // the one thing a signal handler may touch
-
-void on_signal(int) {
-  g_interrupted = 1;
-}
-
-void watch_signals() {
-  g_interrupted = 0;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error of the write, like a full disk
-}
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -79,14 +66,14 @@ std::optional<Failure> run_ticks(const scenario::Scenario& s, Tick num_ticks, Ha
     progress.update(k);
     if (!simulation.physics_due_last_tick()) continue;
     const bool is_due = s.checkpoint_period_ticks > 0 && k - last_checkpoint >= s.checkpoint_period_ticks;
-    if ((is_due || g_interrupted) && k < num_ticks) {
+    if ((is_due || is_interrupted()) && k < num_ticks) {
       Snapshot snapshot = simulation.take_snapshot();
       Archive archive = Archive::make_saving(snapshot);
       hand.exchange_state(archive);
       if (full) full->save(snapshot);
       file.write_checkpoint(snapshot);
       last_checkpoint = k;
-      if (g_interrupted) break;
+      if (is_interrupted()) break;
     }
   }
   return {};

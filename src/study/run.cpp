@@ -41,9 +41,8 @@ int print_end(const std::string& result, const LoopEnd& end, Tick first, Tick la
               const RunOptions& options) {
   if (end.failure) return print_failure(*end.failure);
   if (end.is_interrupted) {
-    std::fprintf(stderr,
-                 "argil: interrupted after tick %lld; %s is readable up to there; go on with --resume\n",
-                 static_cast<long long>(last), result.c_str());
+    std::fprintf(stderr, "argil: interrupted after tick %lld; %s is readable up to there; %s\n",
+                 static_cast<long long>(last), result.c_str(), options.remedy.c_str());
     return kInterrupted;
   }
   if (options.quiet) return kDone;
@@ -71,7 +70,7 @@ int run_static(const scenario::Scenario& s, scenario::Scene& scene, const RunOpt
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   file.append_timing({{"solve", seconds}, {"total", seconds}});
   file.finish(failure);
-  output::write_xdmf(result, name_xdmf(result));
+  if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
   if (failure) return print_failure(*failure);
   if (!options.quiet) {
     const Points moved = simulation.body_state().solid.x - simulation.solid().elements().rest;
@@ -187,9 +186,8 @@ int run(const RunOptions& options) {
                    !options.quiet);
     file->finish(end.failure, end.is_interrupted);
   } catch (const IoError&) {
-    std::fprintf(stderr,
-                 "argil: note: %s is readable up to its last flush; make room and go on with --resume\n",
-                 result.c_str());
+    std::fprintf(stderr, "argil: note: %s is readable up to its last flush; make room and %s\n",
+                 result.c_str(), options.remedy.c_str());
     throw;
   }
   if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));

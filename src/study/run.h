@@ -18,6 +18,7 @@ struct RunOptions {
   bool writes_xdmf = true;
   bool dry_run = false;  ///< check and build everything, run and write nothing
   bool quiet = false;
+  std::string remedy = "go on with --resume";  ///< of a run that was stopped or found no room, in its message
 };
 
 /// Exit codes of the program.

@@ -15,8 +15,11 @@
 #include "base/error.h"
 #include "output/result_reader.h"
 #include "output/study_table.h"
+#include "scenario/scenario.h"
 #include "scenario/sweep_file.h"
 #include "study/identity.h"
+#include "study/interrupt.h"
+#include "study/point_lock.h"
 #include "study/run.h"
 #include "study/sweep_figures.h"
 
@@ -92,6 +95,8 @@ void remove_unusable(const std::string& part, const std::string& id) {
       if (reader.find_checkpoint()) compute_sweep_figures(reader);
       return;
     }
+  } catch (const hdf5::BusyError&) {
+    throw;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "argil: note: what was there of the point does not read, it is begun anew: %s\n",
                  error.what());
@@ -110,13 +115,18 @@ int run_point(const SweepPoint& point, const SweepRun& sweep) {
   RunOptions options = make_options(point, sweep.points);
   options.output = name + ".part.h5";
   options.threads = sweep.threads;
-  options.resume = true;
   options.writes_xdmf = false;
-  if (find_identity(load(options)).id() != point.id)
+  options.remedy = "run the point again, which goes on from its last checkpoint";
+  const scenario::Scenario scenario = load(options);
+  options.resume = scenario.mode != scenario::Mode::equilibrium;  // which has no ticks to resume
+  if (find_identity(scenario).id() != point.id)
     throw InputError(sweep.points, "point " + std::to_string(point.index),
                      "was expanded from other inputs or by another build of argil",
                      "run argil sweep expand again");
-  fs::create_directories(fs::path(name).parent_path());
+  const fs::path folder = fs::path(name).parent_path();
+  fs::create_directories(folder);
+  const PointLock lock(folder.string(), point.index);
+  if (look(point, sweep.points).is_done) return kDone;  // by another process, meanwhile
   remove_unusable(options.output, point.id);
   fs::remove(name + ".refused");
   try {
@@ -168,8 +178,17 @@ int run_sweep(const SweepRun& sweep) {
   if (index < 0 || index > (count - 1) / sweep.block)
     throw InputError(sweep.points, "--index", std::to_string(index) + " is past the last block",
                      "give 0 to " + std::to_string((count - 1) / sweep.block));
-  for (std::int64_t i = index * sweep.block; i < std::min((index + 1) * sweep.block, count); ++i)
+  watch_signals();
+  const std::int64_t end = std::min((index + 1) * sweep.block, count);
+  for (std::int64_t i = index * sweep.block; i < end; ++i) {
+    if (is_interrupted()) {
+      std::fprintf(stderr,
+                   "argil: interrupted before point %lld of %s; the same command goes on from there\n",
+                   static_cast<long long>(i), sweep.points.c_str());
+      return kInterrupted;
+    }
     if (const int code = run_point(points[static_cast<std::size_t>(i)], sweep); code != kDone) return code;
+  }
   return kDone;
 }
 

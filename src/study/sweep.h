@@ -20,8 +20,9 @@ struct SweepRun {
 
 /// Runs the points of a block, each into FOLDER/NNNNNN.h5 beside points.jsonl (its name without .jsonl): to a
 /// .part first, which a later call resumes, synced and renamed when it ends. A point whose file opens, is
-/// complete and has its id is skipped. A refused point leaves NNNNNN.refused with the reason. Returns
-/// kInterrupted after a signal, else kDone, also when a run failed: `collect` says so.
+/// complete and has its id is skipped, and one that another process computes is an IoError. A refused point
+/// leaves NNNNNN.refused with the reason. Returns kInterrupted after a signal, which ends it within the point
+/// or before the next, else kDone, also when a run failed: `collect` says so.
 int run_sweep(const SweepRun& run);
 
 /// Prints the indices of the blocks with points that did not end, in the syntax of sbatch --array.

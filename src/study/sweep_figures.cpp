@@ -9,10 +9,12 @@ namespace argil::study {
 namespace {
 
 void add_force(const output::ResultReader& result, SweepFigures& figures) {
+  const std::vector<sim::HapticRecord> records = result.read_haptic();
+  if (records.empty()) return;  // an equilibrium without a hand
   figures.peak_force = 0.0;
   double sum = 0.0;
   std::size_t touching = 0;
-  for (const sim::HapticRecord& record : result.read_haptic()) {
+  for (const sim::HapticRecord& record : records) {
     const double force = record.force.norm();
     figures.peak_force = std::max(figures.peak_force, force);
     if (record.num_contacts == 0) continue;

@@ -5,9 +5,12 @@ serial run, GNU parallel and blocks.
 Usage: test_sweep.py ARGIL        the program
 """
 import csv
+import fcntl
 import json
 import os
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -193,6 +196,100 @@ class Sweep(unittest.TestCase):
             self.assertEqual(self.points.read_text(), lines)
             self.assertEqual(self.call("missing", name), "")
             self.call("run", name, "--index", 0)
+
+    def files(self):
+        return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in (self.folder / "points").iterdir()}
+
+    def start(self):
+        process = subprocess.Popen([ARGIL, "sweep", "run", self.points, "--index", "0", "--block", "26"], cwd=self.folder,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def wait_until(self, condition):
+        for _ in range(60000):
+            if condition():
+                return
+            time.sleep(0.001)
+        self.fail("did not come")
+
+    def test_a_signal_between_two_points_ends_the_block(self):
+        self.expand(grid={"/trace/duration_s": [0.001], "/body/initial_saturation": [k / 26 for k in range(26)]})  # no tick to end early at
+        process = self.start()
+        self.wait_until((self.folder / "points" / "000003.h5").exists)
+        process.terminate()
+        error = process.communicate()[1]
+        self.assertEqual(process.returncode, 130, error)
+        num_done = len(list((self.folder / "points").glob("0*.h5")))
+        self.assertTrue(4 <= num_done < 26, num_done)
+        self.assertEqual(error, f"argil: interrupted before point {num_done} of {self.points}; the same command goes on from there\n")
+        self.assertEqual(list((self.folder / "points").glob("*.part*")), [])
+        self.call("run", self.points, "--index", 0, "--block", 26)
+        self.assertEqual(self.call("missing", self.points), "")
+
+    def test_a_signal_before_the_first_tick_leaves_nothing_that_misleads(self):
+        self.expand(list=[{"/body/shape/target_tets": 2000}])
+        process = self.start()
+        self.wait_until((self.folder / "points").exists)  # the body is made after this
+        process.terminate()
+        error = process.communicate()[1]
+        self.assertEqual(process.returncode, 130, error)
+        self.assertIn("run the point again, which goes on from its last checkpoint", error)
+        self.assertNotIn("--resume", error)
+        self.assertEqual(self.call("missing", self.points), "0")
+        self.assertEqual(self.collect()[0]["reason"], "not finished")
+
+    def test_a_point_that_another_process_computes_is_let_alone(self):
+        self.expand(list=[{"/output/checkpoint_period_ticks": 20}])
+        self.call("run", self.points, "--index", 0)
+        expected = self.collect()
+        shutil.rmtree(self.folder / "points")
+        process = self.start()
+        part = self.folder / "points" / "000000.part.h5"
+        self.wait_until(part.exists)
+        process.send_signal(signal.SIGSTOP)
+        before = self.files()
+        error = self.call("run", self.points, "--index", 0, expected=4)
+        self.assertIn("point 0 is being computed by another process", error)
+        self.assertNotIn("begun anew", error)
+        self.assertEqual(self.files(), before)
+        process.send_signal(signal.SIGCONT)
+        self.assertEqual(process.communicate()[1], "")
+        self.assertEqual(process.returncode, 0)
+        self.assertEqual(self.collect(), expected)
+
+    def test_a_file_that_is_busy_is_not_taken_for_damaged(self):
+        self.expand(list=[{"/output/checkpoint_period_ticks": 20}])
+        part = self.folder / "points" / "000000.part.h5"
+        self.kill_after_a_checkpoint(part)
+        before = self.files()
+        with open(part, "rb") as reader:
+            fcntl.flock(reader, fcntl.LOCK_EX)
+            self.assertIn("another process has this file open", self.call("run", self.points, "--index", 0, expected=4))
+        self.assertEqual(self.files(), before)
+
+    def test_where_there_is_no_room_the_advice_is_that_of_a_sweep(self):
+        self.expand(list=[{}])
+        limit = 150_000  # bytes of a file, as where a disk is full: after the beginning of a result of 360 kB
+        done = subprocess.run([ARGIL, "sweep", "run", self.points, "--index", "0"], cwd=self.folder, capture_output=True, text=True, timeout=300,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("make room and run the point again", done.stderr)
+        self.assertNotIn("--resume", done.stderr)
+
+    def test_equilibria_are_swept(self):
+        points = self.expand(grid={"/dynamics/mode": ["static"], "/body/loads/gravity_m_per_s2": [[0, 0, -9.81], [0, 0, -4.905]]})
+        self.call("run", self.points, "--block", len(points), "--index", 0)
+        self.assertEqual(self.call("missing", self.points), "")
+        self.assertEqual(sorted(self.files()), ["000000.h5", "000001.h5", "lock"])
+        table = self.collect()
+        self.assertEqual([row["outcome"] for row in table], ["done", "done"])
+        full, half = (float(row["indentation_m"]) for row in table)
+        self.assertGreater(full, 0.0)
+        self.assertAlmostEqual(full / half, 2.0, delta=0.02)  # linear but for rotations
+        self.assertEqual(table[0]["peak_force_N"], "")  # there is no hand
 
     def test_failed_and_refused_points_are_named_with_their_reason(self):
         self.expand(list=[{"/trace/duration_s": 0.01}, {"/dynamics/min_volume_ratio": 0.9999},
