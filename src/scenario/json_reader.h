@@ -1,6 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,6 +45,15 @@ class JsonReader {
              "give a number in it");
     return value->get<double>();
   }
+  /// Without a `fallback` it must be there.
+  std::int64_t whole_number(const std::string& key, std::int64_t least, std::int64_t most,
+                            std::optional<std::int64_t> fallback = std::nullopt) {
+    if (!fallback) get(key, "a whole number");
+    const double value = number(key, static_cast<double>(fallback.value_or(least)),
+                                static_cast<double>(least), static_cast<double>(most));
+    if (value != std::floor(value)) refuse(key, m_json[key].dump() + " is not whole", "give a whole number");
+    return static_cast<std::int64_t>(value);
+  }
   bool flag(const std::string& key, bool fallback) {
     const Json* value = find(key);
     if (!value) return fallback;
@@ -57,6 +69,17 @@ class JsonReader {
       values.push_back(value.get<double>());
     }
     return values;
+  }
+  /// Memory of a setting.
+  static std::size_t count_bytes(const std::string& pointer, std::size_t value_size = 0) {
+    return sizeof(Setting) + pointer.size() + value_size;
+  }
+  /// Refuses settings of a study that take more than it is given, before they are made.
+  void check_bytes(const std::string& key, std::size_t bytes) const {
+    constexpr std::size_t kMost = std::size_t{512} << 20;
+    if (bytes > kMost)
+      refuse(key, "makes settings of " + std::to_string(bytes >> 20) + " MiB in memory, more than 512",
+             "take fewer or shorter values, or put what does not vary into the scenario");
   }
   /// {"/pointer": value, …}
   std::vector<Setting> settings(const std::string& key) {
@@ -74,11 +97,14 @@ class JsonReader {
   const Json& axes(const std::string& key, const Json& object) const {
     if (!object.is_object() || object.empty())
       refuse(key, "is not an object of axes", "give {\"/json/pointer\": [values], …}");
+    std::size_t bytes = 0;
     for (const auto& [pointer, values] : object.items()) {
       check_pointer(key, pointer);
       if (!values.is_array() || values.empty())
         refuse(key, pointer + " has no list of values", "give for instance [1, 2, 5]");
+      bytes += values.size() * count_bytes(pointer);
     }
+    check_bytes(key, bytes);
     return object;
   }
   /// Axes of one length, taken together.

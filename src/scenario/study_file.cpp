@@ -83,7 +83,7 @@ ChartStudy read_chart_study(const std::string& file) {
   if (study.refined.empty())
     reader.refuse("refined", "is missing",
                   "add what refines the reference once more, so that its own error is known");
-  study.repeats = static_cast<int>(reader.number("repeats", 3, 1, 99));
+  study.repeats = static_cast<int>(reader.whole_number("repeats", 1, 99, 3));
   const Json& curves = reader.get("curves", "the methods to compare");
   if (!curves.is_array() || curves.empty())
     reader.refuse("curves", "is not a list", "give [{\"name\": …}, …]");

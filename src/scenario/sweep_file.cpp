@@ -1,9 +1,13 @@
 #include "scenario/sweep_file.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <set>
 
 #include "base/rng.h"
 #include "scenario/json_reader.h"
@@ -13,32 +17,44 @@ namespace {
 
 using PointList = std::vector<std::vector<Setting>>;
 
-constexpr std::size_t kMostPoints = 1000000;
-constexpr std::size_t kMostSettings = 4000000;  // of all points: some 0.5 GB
+constexpr std::int64_t kMostPoints = 1000000;
 
-std::size_t count_settings(const PointList& points) {
-  std::size_t count = 0;
-  for (const auto& settings : points) count += settings.size();
-  return count;
+std::size_t count_bytes(const PointList& points) {
+  std::size_t bytes = 0;
+  for (const auto& settings : points)
+    for (const Setting& setting : settings)
+      bytes += JsonReader::count_bytes(setting.pointer, setting.value.size());
+  return bytes;
 }
 
-void check_settings(std::size_t count, const JsonReader& reader, const std::string& key) {
-  if (count > kMostSettings)
-    reader.refuse(key, "makes " + std::to_string(count) + " settings, more than four million",
-                  "take fewer values, or put what does not vary into the scenario");
+/// Refuses a point that sets a key of the scenario twice, or an object and what is in it.
+void check_apart(const std::vector<Setting>& settings, const JsonReader& reader, const std::string& key) {
+  std::vector<std::string> folders;
+  for (const Setting& setting : settings) folders.push_back(setting.pointer + "/");
+  std::sort(folders.begin(), folders.end());  // what is in an object follows it
+  for (std::size_t i = 1; i < folders.size(); ++i)
+    if (folders[i].starts_with(folders[i - 1])) {
+      const auto name = [](const std::string& folder) { return folder.substr(0, folder.size() - 1); };
+      reader.refuse(key,
+                    folders[i] == folders[i - 1] ? name(folders[i]) + " is set twice in one point"
+                                                 : name(folders[i]) + " is set in one point with " +
+                                                       name(folders[i - 1]) + ", which it is part of",
+                    "set it in one place");
+    }
 }
 
 /// Every point of `a` with every point of `b`.
 PointList combine(const PointList& a, const PointList& b, const JsonReader& reader, const std::string& key) {
-  if (b.empty() || a.size() > kMostPoints / b.size())
+  if (b.empty() || a.size() > static_cast<std::size_t>(kMostPoints) / b.size())
     reader.refuse(key, "makes more than a million points, or none", "take fewer values");
-  check_settings(b.size() * count_settings(a) + a.size() * count_settings(b), reader, key);
+  reader.check_bytes(key, b.size() * count_bytes(a) + a.size() * count_bytes(b));
   PointList product;
   product.reserve(a.size() * b.size());
   for (const auto& left : a)
     for (const auto& right : b) {
       product.push_back(left);
       product.back().insert(product.back().end(), right.begin(), right.end());
+      check_apart(product.back(), reader, key);
     }
   return product;
 }
@@ -47,7 +63,12 @@ PointList read_grid(const JsonReader& reader, const Json& axes) {
   PointList points = {{}};
   for (const auto& [pointer, values] : reader.axes("grid", axes).items()) {
     PointList axis;
-    for (const Json& value : values) axis.push_back({{pointer, value.dump()}});
+    std::set<Json> seen;
+    for (const Json& value : values) {
+      if (!seen.insert(value).second)
+        reader.refuse("grid", pointer + " has " + value.dump() + " twice", "give each value once");
+      axis.push_back({{pointer, value.dump()}});
+    }
     points = combine(points, axis, reader, "grid");
   }
   return points;
@@ -91,12 +112,15 @@ PointList read_sample(const Json& json, const std::string& file) {
   const std::string method = reader.text("method", "\"random\" or \"halton\"");
   if (method != "random" && method != "halton")
     reader.refuse("method", "\"" + method + "\" is unknown", "give random or halton");
-  const auto count =
-      static_cast<std::size_t>(reader.number("count", 1.0, 1.0, static_cast<double>(kMostPoints)));
-  const auto seed = static_cast<std::uint64_t>(reader.number("seed", 0.0, 0.0, 0x1p53));
+  const auto count = static_cast<std::size_t>(reader.whole_number("count", 1, kMostPoints));
+  const auto seed = static_cast<std::uint64_t>(reader.whole_number("seed", 0, std::int64_t{1} << 53, 0));
   const Json& axes = reader.axes("axes", reader.get("axes", "{\"/json/pointer\": [low, high], …}"));
   reader.finish();
-  check_settings(count * axes.size(), reader, "axes");
+  constexpr std::size_t kNumber = 24;  // characters of a double
+  std::size_t bytes = 0;
+  for (const auto& [pointer, range] : axes.items())
+    bytes += count * JsonReader::count_bytes(pointer, kNumber);
+  reader.check_bytes("axes", bytes);
   PointList points(count);
   std::uint64_t base = 1;
   for (const auto& [pointer, range] : axes.items()) {
@@ -120,8 +144,7 @@ SweepPoint read_point(const std::string& line, const std::string& file, std::siz
   const Json json = parse_json(line, file + ", line " + std::to_string(number));
   JsonReader reader(json, file + ", line " + std::to_string(number), "");
   SweepPoint point;
-  point.index =
-      static_cast<std::int64_t>(reader.number("index", -1.0, 0.0, static_cast<double>(kMostPoints)));
+  point.index = reader.whole_number("index", 0, kMostPoints);
   point.id = reader.text("id", "the run's hash");
   point.scenario = reader.text("scenario", "the base scenario");
   point.settings = reader.settings("settings");
@@ -155,6 +178,14 @@ Sweep load_sweep(const std::string& file) {
   return sweep;
 }
 
+std::variant<std::string, double> parse_value(const Setting& setting) {
+  constexpr double kWhole = 0x1p53;  // up to here each integer is a double
+  const Json json = Json::parse(setting.value);
+  if (json.is_number_float() || (json.is_number() && std::abs(json.get<double>()) <= kWhole))
+    return json.get<double>();
+  return json.is_string() ? json.get<std::string>() : json.dump();
+}
+
 std::string print_point(const SweepPoint& point) {
   Json settings = Json::object();
   for (const Setting& setting : point.settings) settings[setting.pointer] = Json::parse(setting.value);
@@ -165,13 +196,12 @@ std::string print_point(const SweepPoint& point) {
 }
 
 std::vector<SweepPoint> load_points(const std::string& file) {
-  constexpr std::size_t kLongestLine = 1 << 20;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw IoError(file, std::string("cannot be read: ") + std::strerror(errno));
   std::vector<SweepPoint> points;
   std::string line;
   while (std::getline(stream, line)) {
-    if (line.size() > kLongestLine || points.size() >= kMostPoints)
+    if (line.size() > kLongestPoint || std::ssize(points) >= kMostPoints)
       throw InputError(file, "line " + std::to_string(points.size() + 1),
                        "is longer than 1 MiB or past a million points",
                        "give a file that argil sweep expand wrote");

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "scenario/scenario.h"
@@ -18,8 +19,9 @@ struct Sweep {
 /// Reads a sweep: {"scenario": BASE, "grid": {"/pointer": [values], …}, "zip": {…}, "list": [{"/pointer":
 /// value, …}, …], "sample": {"method": "random" | "halton", "count": n, "seed": s, "axes": {"/pointer": [low,
 /// high], …}}}. grid: every combination, the last axis fastest; zip: lists of one length, taken together;
-/// list: as it stands; sample: uniform in the box, independent or low-discrepancy [Halton1960]. What is given
-/// of these is combined, each with each. At most a million points. Throws InputError, IoError.
+/// list: as it stands; sample: uniform in the box, independent or low-discrepancy [Halton1960], by a seed
+/// that is 0 where it is not given. What is given of these is combined, each with each. In a point each key
+/// of the scenario is set once. At most a million points, of 512 MiB together. Throws InputError, IoError.
 Sweep load_sweep(const std::string& file);
 
 /// A line of points.jsonl.
@@ -29,6 +31,12 @@ struct SweepPoint {
   std::string scenario;  ///< relative to the folder of points.jsonl
   std::vector<Setting> settings;
 };
+
+/// A setting's value: a number that a double holds, a text as it is, anything else as JSON.
+std::variant<std::string, double> parse_value(const Setting& setting);
+
+/// What load_points() reads of a point at most.
+inline constexpr std::size_t kLongestPoint = std::size_t{1} << 20;
 
 std::string print_point(const SweepPoint& point);
 /// Reads them all and checks that they are numbered from 0. Throws InputError with the line.

@@ -90,13 +90,27 @@ class Sweep(unittest.TestCase):
                             ({"grid": {"/water/porosty": [0.3]}}, "porosty"),
                             ({"grids": {}}, "did you mean grid?"),
                             ({"grid": {f"/body/fixed/{k}/radius_m": list(range(100)) for k in range(4)}}, "more than a million"),
-                            ({"grid": {f"/body/fixed/{k}/radius_m": [0, 1] for k in range(19)}}, "4718592 settings, more than four million"),
+                            ({"grid": {f"/body/fixed/{k}/radius_m": [0, 1] for k in range(19)}}, "/grid: makes settings of"),
+                            ({"grid": {"/about": ["a" * 200000], "/body/initial_saturation": list(range(1000)),
+                                       "/material/youngs_modulus_Pa": list(range(1000))}}, "/grid: makes settings of 19"),  # 191 GiB
+                            ({"zip": {"/about/" + "a" * 1000000: [0] * 1000}}, "/zip: makes settings of 953 MiB in memory, more than 512"),
                             ({"sample": {"method": "halton", "count": 1e6, "axes": {f"/body/fixed/{k}/radius_m": [0, 1] for k in range(5)}}},
-                             "5000000 settings, more than four million")):
-            (self.folder / "sweep.json").write_text(json.dumps({"scenario": os.path.relpath(BASE, self.folder), **axes}))
-            self.assertIn(words, self.call("expand", "sweep.json", "-o", self.points, expected=2))
-        self.points.write_text('{"index": 1, "id": "", "scenario": "x", "settings": {}}\n')
-        self.assertIn("points.jsonl, line 1: /index", self.call("run", self.points, "--index", 0, expected=2))
+                             "/sample/axes: makes settings of")):
+            self.assertIn(words, self.refuse_to_expand(axes))
+        for index in ("1", "0.5"):
+            self.points.write_text(f'{{"index": {index}, "id": "", "scenario": "x", "settings": {{}}}}\n')
+            self.assertIn(f"points.jsonl, line 1: /index: {index} is not", self.call("run", self.points, "--index", 0, expected=2))
+
+    def refuse_to_expand(self, axes, points="points.jsonl"):
+        (self.folder / "sweep.json").write_text(json.dumps({"scenario": os.path.relpath(BASE, self.folder), **axes}))
+        message = self.call("expand", "sweep.json", "-o", points, expected=2)
+        self.assertEqual(os.listdir(self.folder), ["sweep.json"])
+        return message
+
+    def test_counts_of_a_sample_are_whole_and_there(self):
+        for numbers, words in (({"count": 2.7}, "/sample/count: 2.7 is not whole"), ({"count": 2, "seed": 1.5}, "/sample/seed: 1.5 is not whole"),
+                               ({}, "/sample/count: is missing"), ({"count": 0}, "/sample/count: 0 is outside [1")):
+            self.assertIn(words, self.refuse_to_expand({"sample": {"method": "random", "axes": {"/body/initial_saturation": [0, 1]}, **numbers}}))
 
     def test_a_point_is_done_only_when_its_file_says_so(self):
         self.expand_and_run()
