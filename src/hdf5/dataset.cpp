@@ -262,4 +262,23 @@ void Group::write_string(const std::string& name, const std::string& text, const
   write_label(written, label);
 }
 
+void Group::write_texts(const std::string& name, const std::vector<std::string>& texts,
+                        const Label& label) const {
+  const Handle type = datatype(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type.id(), H5T_VARIABLE);
+  H5Tset_cset(type.id(), H5T_CSET_UTF8);
+  const hsize_t count = texts.size();
+  const Handle space = dataspace(H5Screate_simple(1, &count, nullptr));
+  const Handle properties = creation_properties();
+  Handle made = dataset(
+      H5Dcreate2(id(), name.c_str(), type.id(), space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT));
+  if (made.id() < 0) fail("cannot create", name);
+  std::vector<const char*> words;
+  for (const std::string& text : texts) words.push_back(text.c_str());
+  if (count > 0 && H5Dwrite(made.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, words.data()) < 0)
+    fail("cannot write", name);
+  Dataset column(std::move(made), m_file, join(m_path, name));
+  write_label(column, label);
+}
+
 }  // namespace argil::hdf5

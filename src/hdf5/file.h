@@ -168,6 +168,8 @@ class Group : public Object {
     write_raw(name, data, element_of<T>(), shape, compress, label);
   }
   void write_string(const std::string& name, const std::string& text, const Label& label) const;
+  /// A text a row, UTF-8 of any length; without a byte of value zero, which ends a text.
+  void write_texts(const std::string& name, const std::vector<std::string>& texts, const Label& label) const;
 
  private:
   void write_raw(const std::string& name, const void* data, Element element, const Shape& shape,

@@ -12,6 +12,7 @@ struct StudyTable {
     std::string name;   ///< with its unit, as in force_error or cpu_s_per_s
     std::string units;  ///< SI unit, "1" for a pure number, "-" for text
     std::string about;
+    bool is_exact = false;  ///< numbers are printed so that they read back equal, else in nine digits
   };
   using Cell = std::variant<std::string, double>;
 
@@ -20,12 +21,12 @@ struct StudyTable {
   std::vector<std::pair<std::string, std::string>> provenance;  ///< name → text of one line
 };
 
-/// Comma-separated values: provenance as comment lines (#), names, then a line a row, numbers in nine digits.
-/// Throws IoError.
+/// Comma-separated values [RFC 4180]: provenance as comment lines (#), names, then a line a row. Throws
+/// IoError.
 void write_csv(const StudyTable& table, const std::string& file);
 
-/// One dataset a column (text: one string, a line a row), provenance as attributes of the root. Throws
-/// IoError.
+/// One dataset a column, provenance as attributes of the root. A column with a text in it is one of texts
+/// (UTF-8 of any length), its numbers as in the CSV. Throws IoError.
 void write_hdf5(const StudyTable& table, const std::string& file);
 
 }  // namespace argil::output

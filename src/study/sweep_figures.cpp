@@ -1,7 +1,6 @@
 #include "study/sweep_figures.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -67,15 +66,6 @@ void add_frames(const output::ResultReader& result, SweepFigures& figures) {
   figures.final_saturation = wet / whole;
 }
 
-/// A JSON value as a cell: numbers as such, a text without its quotes.
-output::StudyTable::Cell make_cell(const std::string& json) {
-  char* end = nullptr;
-  const double number = std::strtod(json.c_str(), &end);
-  if (!json.empty() && *end == '\0') return number;
-  const bool is_text = json.size() >= 2 && json.front() == '"' && json.back() == '"';
-  return is_text ? json.substr(1, json.size() - 2) : json;
-}
-
 /// HDF5 takes / for a folder.
 std::string name_column(const std::string& pointer) {
   std::string name = pointer.substr(1);
@@ -108,7 +98,7 @@ output::StudyTable SweepTable::take() {
   table.columns.push_back({"index", "1", "place in the sweep, from 0"});
   table.columns.push_back({"id", "-", "hash of scenario, inputs and build"});
   for (const std::string& pointer : pointers)
-    table.columns.push_back({name_column(pointer), "-", "setting of the scenario's key " + pointer});
+    table.columns.push_back({name_column(pointer), "-", "setting of the scenario's key " + pointer, true});
   const std::vector<std::pair<output::StudyTable::Column, double SweepFigures::*>> figures = {
       {{"peak_force_N", "N", "largest force at the hand"}, &SweepFigures::peak_force},
       {{"mean_force_N", "N", "mean force at the hand over the ticks in touch"}, &SweepFigures::mean_force},
@@ -133,7 +123,7 @@ output::StudyTable SweepTable::take() {
       const auto found = std::find_if(row.point.settings.begin(), row.point.settings.end(),
                                       [&](const scenario::Setting& s) { return s.pointer == pointer; });
       cells.push_back(found == row.point.settings.end() ? output::StudyTable::Cell(SweepFigures::kNone)
-                                                        : make_cell(found->value));
+                                                        : scenario::parse_value(*found));
     }
     for (const auto& [column, member] : figures) cells.emplace_back(row.figures.*member);
     cells.emplace_back(row.outcome);

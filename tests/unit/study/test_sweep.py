@@ -305,6 +305,26 @@ class Sweep(unittest.TestCase):
         self.assertAlmostEqual(full / half, 2.0, delta=0.02)  # linear but for rotations
         self.assertEqual(table[0]["peak_force_N"], "")  # there is no hand
 
+    def test_tables_keep_every_setting_as_it_is(self):
+        about = 'a "quoted", comma\nnew line\r\t\u00e9'
+        translation = [0, 0.001, 0]
+        self.expand(grid=SHORT, list=[{"/tool/mode": "wet", "/about": about}, {"/tool/mode": "push", "/material/youngs_modulus_Pa": 12345678.12345679},
+                                      {"/trace/device_to_world/translation_m": translation, "/material/youngs_modulus_Pa": 0.1 + 0.2 + 1e5}])
+        self.call("run", self.points, "--index", 0, "--block", 3)
+        self.call("collect", self.points, "-o", "table")
+        with open(self.folder / "table.csv", newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([row["about"] for row in table], [about, "", ""])
+        self.assertEqual([float(row["material.youngs_modulus_Pa"] or 0) for row in table], [0, 12345678.12345679, 0.1 + 0.2 + 1e5])
+        self.assertEqual([row["trace.duration_s"] for row in table], ["0.028"] * 3)
+        with h5py.File(self.folder / "table.h5") as file:
+            for name in ("about", "tool.mode", "trace.device_to_world.translation_m", "id", "outcome", "reason"):
+                self.assertEqual(h5py.check_string_dtype(file[name].dtype), ("utf-8", None), name)  # of any length
+                self.assertEqual(list(file[name].asstr()[()]), [row[name] for row in table], name)
+            self.assertEqual(list(file["tool.mode"].asstr()[()]), ["wet", "push", ""])
+            self.assertEqual(json.loads(file["trace.device_to_world.translation_m"].asstr()[2]), translation)
+            self.assertEqual(list(file["material.youngs_modulus_Pa"][1:]), [12345678.12345679, 0.1 + 0.2 + 1e5])
+
     def test_failed_and_refused_points_are_named_with_their_reason(self):
         self.expand(list=[{"/trace/duration_s": 0.01}, {"/dynamics/min_volume_ratio": 0.9999},
                           {"/trace/device_to_world/translation_m": [0, 0, -0.03]}])
