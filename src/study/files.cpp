@@ -33,6 +33,13 @@ void require_other_file(const std::string& output, const std::string& input, con
                      "give another name to " + option);
 }
 
+void require_no_input(const scenario::Scenario& s, const std::string& output, const std::string& option) {
+  for (const scenario::InputFile& input : scenario::list_input_files(s))
+    require_other_file(
+        output, input.file,
+        input.pointer.empty() ? "the scenario" : "a file that the run reads (" + input.pointer + ")", option);
+}
+
 std::string hash_file(const std::string& file) {
   return Sha256().add(read_file(file)).hex_digest();
 }
@@ -46,12 +53,8 @@ void check_result_name(const scenario::Scenario& s, const std::string& result, c
     throw InputError(result, "", "is the name of the XDMF that is written beside a result",
                      "give " + option + " a name such as " +
                          std::filesystem::path(result).replace_extension(".h5").filename().string());
-  for (const scenario::InputFile& input : scenario::list_input_files(s)) {
-    const std::string what =
-        input.pointer.empty() ? "the scenario" : "a file that the run reads (" + input.pointer + ")";
-    require_other_file(result, input.file, what, option);
-    require_other_file(name_xdmf(result), input.file, what, option);
-  }
+  require_no_input(s, result, option);
+  require_no_input(s, name_xdmf(result), option);
 }
 
 void check_cage_name(const std::string& surface, const std::string& cage) {

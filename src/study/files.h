@@ -15,6 +15,10 @@ void require_input_file(const std::string& file, const std::string& place = "");
 void require_other_file(const std::string& output, const std::string& input, const std::string& what,
                         const std::string& option = "-o");
 
+/// Refuses an output that is a file which the scenario's run reads. Throws InputError.
+void require_no_input(const scenario::Scenario& s, const std::string& output,
+                      const std::string& option = "-o");
+
 /// SHA-256 of a file's bytes.
 std::string hash_file(const std::string& file);
 

@@ -10,13 +10,16 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <vector>
 
 #include "base/error.h"
 #include "output/result_reader.h"
 #include "output/study_table.h"
+#include "output/text.h"
 #include "scenario/scenario.h"
 #include "scenario/sweep_file.h"
+#include "study/files.h"
 #include "study/identity.h"
 #include "study/interrupt.h"
 #include "study/point_lock.h"
@@ -29,6 +32,17 @@ namespace {
 namespace fs = std::filesystem;
 using scenario::SweepPoint;
 
+/// A file's folder, the same whatever it is called and through whatever links.
+fs::path find_folder(const std::string& file) {
+  return fs::weakly_canonical(fs::absolute(file).parent_path());
+}
+
+void check_points_name(const std::string& points) {
+  if (!fs::path(points).has_extension())
+    throw InputError(points, "", "has no ending, and the results lie in a folder of its name without that",
+                     "give a name such as points.jsonl");
+}
+
 /// Where a point's files are: FOLDER/000012 without suffix.
 std::string name_point(const std::string& points, std::int64_t index) {
   char number[24];
@@ -36,9 +50,15 @@ std::string name_point(const std::string& points, std::int64_t index) {
   return (fs::path(points).replace_extension() / number).string();
 }
 
+/// Loads the points and sees that there is a place for their results.
+std::vector<SweepPoint> load_points(const std::string& points) {
+  check_points_name(points);
+  return scenario::load_points(points);
+}
+
 RunOptions make_options(const SweepPoint& point, const std::string& points) {
   RunOptions options;
-  options.scenario = (fs::path(points).parent_path() / point.scenario).lexically_normal().string();
+  options.scenario = (find_folder(points) / point.scenario).lexically_normal().string();
   for (const scenario::Setting& setting : point.settings)
     options.settings.push_back(setting.pointer + "=" + setting.value);
   options.quiet = true;
@@ -104,9 +124,17 @@ void remove_unusable(const std::string& part, const std::string& id) {
   fs::remove(part);
 }
 
-void write_refusal(const std::string& file, const std::string& id, const std::string& reason) {
-  std::ofstream(file + ".part") << id << '\n' << reason << '\n';
-  publish(file + ".part", file);
+/// The whole file or none.
+void write_published(const std::string& file, const std::string& text) {
+  const std::string part = file + ".part";
+  try {
+    output::write_file(part, text);
+    publish(part, file);
+  } catch (const IoError&) {
+    std::error_code ignored;
+    fs::remove(part, ignored);
+    throw;
+  }
 }
 
 int run_point(const SweepPoint& point, const SweepRun& sweep) {
@@ -117,12 +145,13 @@ int run_point(const SweepPoint& point, const SweepRun& sweep) {
   options.threads = sweep.threads;
   options.writes_xdmf = false;
   options.remedy = "run the point again, which goes on from its last checkpoint";
-  const scenario::Scenario scenario = load(options);
-  options.resume = scenario.mode != scenario::Mode::equilibrium;  // which has no ticks to resume
-  if (find_identity(scenario).id() != point.id)
+  const scenario::Scenario s = load(options);
+  options.resume = s.mode != scenario::Mode::equilibrium;  // which has no ticks to resume
+  if (find_identity(s).id() != point.id)
     throw InputError(sweep.points, "point " + std::to_string(point.index),
                      "was expanded from other inputs or by another build of argil",
                      "run argil sweep expand again");
+  require_no_input(s, name + ".h5", "argil sweep expand -o");
   const fs::path folder = fs::path(name).parent_path();
   fs::create_directories(folder);
   const PointLock lock(folder.string(), point.index);
@@ -134,10 +163,28 @@ int run_point(const SweepPoint& point, const SweepRun& sweep) {
     if (code == kDone || code == kRunFailed) publish(options.output, name + ".h5");
     return code == kInterrupted ? kInterrupted : kDone;
   } catch (const InputError& error) {
-    write_refusal(name + ".refused", point.id, error.what());
+    write_published(name + ".refused", point.id + "\n" + error.what() + "\n");
     std::fprintf(stderr, "argil: point %lld refused: %s\n", static_cast<long long>(point.index),
                  error.what());
     return kDone;
+  }
+}
+
+/// Refuses a table under whose name the points, a result or what a run reads lies.
+void check_table_name(const std::string& table, const std::vector<SweepPoint>& points,
+                      const std::string& file) {
+  if (!fs::exists(table)) return;
+  require_other_file(table, file, "the list of points");
+  for (const SweepPoint& point : points) {
+    for (const char* ending : {".h5", ".part.h5"})
+      require_other_file(table, name_point(file, point.index) + ending, "a result of the sweep");
+    std::optional<scenario::Scenario> s;
+    try {
+      s = load(make_options(point, file));
+    } catch (const InputError&) {  // moved or changed since its points ran: it reads nothing any more
+      continue;
+    }
+    require_no_input(*s, table);
   }
 }
 
@@ -153,26 +200,37 @@ std::int64_t find_index(const SweepRun& sweep) {
 }  // namespace
 
 int expand_sweep(const std::string& file, const std::string& points) {
+  check_points_name(points);
+  require_other_file(points, file, "the sweep");
   const scenario::Sweep sweep = scenario::load_sweep(file);
-  const fs::path folder = fs::absolute(points).parent_path();
-  const std::string base = fs::absolute(sweep.scenario).lexically_relative(folder).string();
+  const fs::path base = find_folder(sweep.scenario) / fs::path(sweep.scenario).filename();
+  const std::string relative = base.lexically_relative(find_folder(points)).string();
+  std::map<std::string, std::int64_t> index_of;
   std::string text;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
-    SweepPoint point{static_cast<std::int64_t>(i), "", base, sweep.points[i]};
-    point.id = find_identity(load(make_options(point, points))).id();
-    text += print_point(point);
+    SweepPoint point{static_cast<std::int64_t>(i), "", relative, sweep.points[i]};
+    const scenario::Scenario s = load(make_options(point, points));
+    require_no_input(s, points);
+    point.id = find_identity(s).id();
+    const std::string line = print_point(point);
+    const auto [same, is_new] = index_of.emplace(point.id, point.index);
+    if (!is_new)
+      throw InputError(file, "",
+                       "points " + std::to_string(same->second) + " and " + std::to_string(i) +
+                           " are one and the same run: " + line.substr(0, line.size() - 1),
+                       "leave one of them out");
+    if (line.size() > scenario::kLongestPoint)
+      throw InputError(file, "", "point " + std::to_string(i) + " is longer than 1 MiB",
+                       "put what is long into the scenario or a file that it reads");
+    text += line;
   }
-  std::ofstream out(points + ".part", std::ios::binary);
-  if (!(out << text) || !out.flush())
-    throw IoError(points, std::string("cannot be written: ") + std::strerror(errno));
-  out.close();
-  publish(points + ".part", points);
+  write_published(points, text);
   std::printf("%s: %zu points\n", points.c_str(), sweep.points.size());
   return kDone;
 }
 
 int run_sweep(const SweepRun& sweep) {
-  const std::vector<SweepPoint> points = scenario::load_points(sweep.points);
+  const std::vector<SweepPoint> points = load_points(sweep.points);
   const std::int64_t count = static_cast<std::int64_t>(points.size());
   const std::int64_t index = find_index(sweep);
   if (index < 0 || index > (count - 1) / sweep.block)
@@ -194,7 +252,7 @@ int run_sweep(const SweepRun& sweep) {
 
 int print_missing(const std::string& file, std::int64_t block) {
   std::vector<std::int64_t> missing;
-  for (const SweepPoint& point : scenario::load_points(file))
+  for (const SweepPoint& point : load_points(file))
     if (!look(point, file).has_ended && (missing.empty() || missing.back() != point.index / block))
       missing.push_back(point.index / block);
   std::string text;
@@ -210,7 +268,8 @@ int print_missing(const std::string& file, std::int64_t block) {
 }
 
 int collect_sweep(const std::string& file, const std::string& table_name) {
-  const std::vector<SweepPoint> points = scenario::load_points(file);
+  const std::vector<SweepPoint> points = load_points(file);
+  for (const char* ending : {".csv", ".h5"}) check_table_name(table_name + ending, points, file);
   SweepTable table;
   std::size_t num_without = 0;
   for (const SweepPoint& point : points) {

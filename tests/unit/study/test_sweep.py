@@ -107,10 +107,59 @@ class Sweep(unittest.TestCase):
         self.assertEqual(os.listdir(self.folder), ["sweep.json"])
         return message
 
+    def test_each_key_is_set_once_and_each_point_is_another(self):
+        mode, soft = {"/tool/mode": ["push", "wet"]}, {"/material/youngs_modulus_Pa": 5e4}
+        box = {"/material/youngs_modulus_Pa": [1e5, 2e5]}
+        for axes, words in (({"grid": mode, "list": [{}, {"/tool/mode": "dry"}]}, "/list: /tool/mode is set twice in one point"),
+                            ({"grid": box, "sample": {"method": "random", "count": 2, "axes": box}}, "/sample: /material/youngs_modulus_Pa is set twice"),
+                            ({"grid": mode, "zip": {"/tool": [{}]}}, "/zip: /tool/mode is set in one point with /tool, which it is part of"),
+                            ({"list": [{"/tool/mode": "wet", "/about": "", "/tool": {}}]}, "/list: /tool/mode is set in one point with /tool"),
+                            ({"grid": {"/material/youngs_modulus_Pa": [1e5, 100000]}}, "/grid: /material/youngs_modulus_Pa has 100000 twice"),
+                            ({"grid": {"/tool/mode": ["wet", "push", "wet"]}}, '/grid: /tool/mode has "wet" twice; give each value once'),
+                            ({"list": [soft, {}, soft]}, "points 0 and 2 are one and the same run"),
+                            ({"list": [{}, {"/tool/mode": "push"}]}, "points 0 and 1 are one and the same run")):
+            self.assertIn(words, self.refuse_to_expand(axes))
+
     def test_counts_of_a_sample_are_whole_and_there(self):
         for numbers, words in (({"count": 2.7}, "/sample/count: 2.7 is not whole"), ({"count": 2, "seed": 1.5}, "/sample/seed: 1.5 is not whole"),
                                ({}, "/sample/count: is missing"), ({"count": 0}, "/sample/count: 0 is outside [1")):
             self.assertIn(words, self.refuse_to_expand({"sample": {"method": "random", "axes": {"/body/initial_saturation": [0, 1]}, **numbers}}))
+
+    def test_points_have_a_name_beside_which_results_fit(self):
+        for name in ("pts", ".", "..", "sub/"):
+            self.assertIn("has no ending", self.refuse_to_expand({"list": [{}]}, name))
+        self.expand(list=[{"/trace/duration_s": 0.002}])
+        self.points.rename(self.folder / "pts")
+        for command in (("run", "pts", "--index", 0), ("missing", "pts"), ("collect", "pts", "-o", "table")):
+            self.assertIn("pts: has no ending", self.call(*command, expected=2))
+
+    def test_nothing_that_is_read_is_overwritten(self):
+        for name in ("ball.json", "rub.csv"):
+            shutil.copy(BASE.parent / name, self.folder)
+        self.points.write_text("")
+        (self.folder / "s.json").write_text(json.dumps({"scenario": "ball.json", "list": [{"/trace/duration_s": 0.002}]}))
+
+        def refuse(words, *command):
+            before = {path: path.read_bytes() for path in self.folder.rglob("*.*") if path.is_file()}
+            self.assertIn(words, self.call(*command, expected=2))
+            self.assertEqual({path: path.read_bytes() for path in self.folder.rglob("*.*") if path.is_file()}, before)
+
+        refuse("s.json: is the sweep and would be overwritten", "expand", "s.json", "-o", "s.json")
+        refuse("ball.json: is the scenario and would be", "expand", "s.json", "-o", "ball.json")
+        refuse("rub.csv: is a file that the run reads (/trace/file)", "expand", "s.json", "-o", "rub.csv")
+        self.call("expand", "s.json", "-o", self.points)
+        self.call("run", self.points, "--index", 0)
+        refuse("rub.csv: is a file that the run reads (/trace/file)", "collect", self.points, "-o", "rub")
+        refuse("000000.h5: is a result of the sweep", "collect", self.points, "-o", "points/000000")
+        (self.folder / "t.csv").symlink_to(self.points)
+        refuse("t.csv: is the list of points", "collect", self.points, "-o", "t")
+        # a result of an earlier sweep as the motion of this one
+        shutil.copy(self.folder / "points" / "000000.h5", self.folder / "motion.h5")
+        (self.folder / "s.json").write_text(json.dumps({"scenario": "ball.json", "list": [{"/trace/file": "next/000000.h5"}]}))
+        (self.folder / "next").mkdir()
+        (self.folder / "motion.h5").rename(self.folder / "next" / "000000.h5")
+        self.call("expand", "s.json", "-o", "next.jsonl")
+        refuse("000000.h5: is a file that the run reads (/trace/file)", "run", "next.jsonl", "--index", 0)
 
     def test_a_point_is_done_only_when_its_file_says_so(self):
         self.expand_and_run()
@@ -205,11 +254,32 @@ class Sweep(unittest.TestCase):
     def test_points_are_the_same_by_any_name(self):
         self.expand_and_run()
         lines = self.points.read_text()
-        for name in ("points.jsonl", "./points.jsonl", f"../{self.folder.name}/points.jsonl"):
+        (self.folder / "sub").mkdir()
+        (self.folder / "link").symlink_to(self.folder / "sub")
+        for name in ("points.jsonl", "./points.jsonl", f"../{self.folder.name}/points.jsonl", "sub/../points.jsonl", "link/../points.jsonl"):
             self.call("expand", "sweep.json", "-o", name)
             self.assertEqual(self.points.read_text(), lines)
             self.assertEqual(self.call("missing", name), "")
             self.call("run", name, "--index", 0)
+
+    def test_the_base_is_found_from_wherever_the_points_lie(self):
+        for folder, modulus in (("mine", 1e5), ("out", 2e5)):  # another scenario of the same name beside the points
+            (self.folder / folder).mkdir()
+            shutil.copy(BASE.parent / "rub.csv", self.folder / folder)
+            base = json.loads(BASE.read_text())
+            base["material"]["youngs_modulus_Pa"] = modulus
+            (self.folder / folder / "ball.json").write_text(json.dumps(base))
+        (self.folder / "deep").mkdir()
+        (self.folder / "deep" / "link").symlink_to(self.folder / "out")
+        (self.folder / "mine" / "s.json").write_text(json.dumps({"scenario": "ball.json", "grid": SHORT}))
+        for place, sweep, points in (("mine", "s.json", "../out/q.jsonl"), ("mine", "../mine/s.json", "../mine/../out/q.jsonl"),
+                                     ("deep", "../mine/s.json", "link/q.jsonl"), ("out", "../mine/s.json", "q.jsonl")):
+            subprocess.run([ARGIL, "sweep", "expand", sweep, "-o", points], cwd=self.folder / place, check=True, capture_output=True)
+            self.assertEqual(json.loads((self.folder / "out" / "q.jsonl").read_text())["scenario"], "../mine/ball.json")
+            self.call("run", "out/q.jsonl", "--index", 0)
+            with h5py.File(self.folder / "out" / "q" / "000000.h5") as file:
+                self.assertEqual(json.loads(file["provenance/scenario"][()])["material"]["youngs_modulus_Pa"], 1e5)
+            subprocess.run([ARGIL, "sweep", "run", points, "--index", "0"], cwd=self.folder / place, check=True)
 
     def files(self):
         return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in (self.folder / "points").iterdir()}
