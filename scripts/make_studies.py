@@ -37,6 +37,7 @@ def main():
     argil = options.build / "bin" / "argil"
     if not argil.is_file():
         sys.exit(f"{argil}: is not there; scripts/build makes it")
+    failed = []
     for name in options.names or TITLES:
         kind, _, stem = name.partition("_")
         command, folder, plot = (("chart", "chart", "plot_chart.py") if kind == "chart"
@@ -48,10 +49,14 @@ def main():
         if command == "stability":
             words += ["--failures", ROOT / "scenarios" / "failures"]
         print(name, flush=True)
-        subprocess.run(words, check=True)
+        if subprocess.run(words, check=False).returncode != 0:  # it has said why
+            failed.append(name)
+            continue
         forces = ["--forces", *REMEDIES[name]] if name in REMEDIES else []
         subprocess.run([ROOT / "scripts" / plot, table.with_suffix(".csv"), "--title", TITLES[name], *forces], check=True,
                        stdout=subprocess.DEVNULL)
+    if failed:
+        sys.exit(f"not made: {', '.join(failed)}")
 
 
 if __name__ == "__main__":

@@ -40,7 +40,8 @@ def find_front(points):
     return front
 
 
-def draw_curve(axes, rows, name, place, error, top):
+def draw_curve(axes, rows, name, place, error, corner):
+    """`corner`: the least cost, where a run is drawn that was refused and so has none, and the largest error."""
     style = {"color": COLOURS[place % len(COLOURS)], "marker": MARKS[place % len(MARKS)], "markersize": 4.5}
     good = [(number(row, "cpu_s_per_s"), number(row, error)) for row in rows if row["outcome"] in STABLE]
     shaky = [(number(row, "cpu_s_per_s"), number(row, error)) for row in rows
@@ -51,20 +52,20 @@ def draw_curve(axes, rows, name, place, error, top):
     axes.loglog(*zip(*whole) if whole else ([], []), linestyle=dashes, linewidth=1.0, color=style["color"])
     axes.loglog(*zip(*good) if good else ([], []), linestyle="none", label=name, **style)
     axes.loglog(*zip(*shaky) if shaky else ([], []), linestyle="none", markerfacecolor="white", **style)
-    ended = [cost for cost in ended if cost > 0.0]
-    axes.loglog(ended, [top] * len(ended), linestyle="none", color=style["color"], marker="x", clip_on=False)
+    ended = [cost if cost > 0.0 else corner[0] for cost in ended]
+    axes.loglog(ended, [corner[1]] * len(ended), linestyle="none", color=style["color"], marker="x", clip_on=False)
     return good
 
 
 def draw(rows, error, title):
     reference, rest = rows[0], rows[2:]
     figure, axes = plt.subplots(figsize=(175 * MILLIMETRES, 105 * MILLIMETRES))
-    values = [number(row, error) for row in rest if number(row, error) > 0.0]
-    top = 2.0 * max(values)
+    top = 2.0 * max(number(row, error) for row in rest if number(row, error) > 0.0)
+    costs = [number(row, "cpu_s_per_s") for row in rest if number(row, "cpu_s_per_s") > 0.0]
     names = list(dict.fromkeys(row["curve"] for row in rest))
     points = []
     for place, name in enumerate(names):
-        points += draw_curve(axes, [row for row in rest if row["curve"] == name], name, place, error, top)
+        points += draw_curve(axes, [row for row in rest if row["curve"] == name], name, place, error, (0.5 * min(costs), top))
     front = find_front(points)
     axes.loglog(*zip(*front), color="black", linewidth=3.5, alpha=0.18, zorder=1, label="best at its cost")
     if error.endswith("force_error"):
@@ -80,8 +81,8 @@ def draw(rows, error, title):
     axes.annotate("real time", (1.0, axes.get_ylim()[0]), color=GREY, fontsize=7, rotation=90, va="bottom", ha="right",
                   xytext=(-2, 3), textcoords="offset points")
     axes.plot([], [], linestyle="none", marker="o", markerfacecolor="white", color=GREY, label="hollow: chatters or gains energy")
-    if any(row["outcome"] not in STABLE + ("chatter", "growing_energy") and row["cpu_s_per_s"] for row in rest):
-        axes.plot([], [], linestyle="none", marker="x", color=GREY, label="ended early")
+    if any(row["outcome"] not in STABLE + ("chatter", "growing_energy") for row in rest):
+        axes.plot([], [], linestyle="none", marker="x", color=GREY, label="ended early; at the left: refused")
     axes.set_xlabel("CPU time of a simulated second, one thread [s/s]")
     axes.set_ylabel(LABELS.get(error, error))
     axes.set_title(title)
@@ -99,6 +100,8 @@ def main():
     rows = read_table(options.table)
     if len(rows) < 3 or "cpu_s_per_s" not in rows[0]:
         ap.refuse(f"{options.table}: is not a table of argil chart")
+    if not any(number(row, options.error) > 0.0 for row in rows[2:]):
+        ap.refuse(f"{options.table}: no run has a {options.error}; choose another --error")
     ap.save(draw(rows, options.error, options.title), options.output or options.table.with_suffix(""))
 
 

@@ -13,10 +13,6 @@
 namespace argil::study {
 namespace {
 
-scenario::Scenario load_place(const StabilityMap& map, const Place& place, const Settings& extra) {
-  return load(make_run_options(map.study().scenario, join(map.settings_at(place.x, place.y), extra)));
-}
-
 /// The failure of a map's place, made smaller and smaller.
 class Shrinking {
  public:
@@ -25,13 +21,13 @@ class Shrinking {
   void shrink() {
     if (m_place.result.exit_code == kDone && m_place.outcome != Outcome::wrong)
       halve("/trace/duration_s", m_place.figures.simulated_seconds, 0.0);
-    const scenario::Scenario s = load_place(m_map, m_place, {});
+    const scenario::Scenario s = m_map.load_place(m_place, {});
     if (s.body.kind == scenario::BodyKind::shape)
       halve("/body/shape/target_tets", s.body.target_tets, kFewestTets);
   }
 
   scenario::Scenario make_scenario() const {
-    scenario::Scenario s = load_place(m_map, m_place, m_extra);
+    scenario::Scenario s = m_map.load_place(m_place, m_extra);
     if (m_place.result.file.empty()) return s;
     if (const auto failure = output::ResultReader(m_place.result.file).read_failure())
       s.trace.duration = static_cast<double>(failure->tick + 1) * s.params.rates.haptic_period;
@@ -92,7 +88,7 @@ void write_failure(const StabilityMap& map, const Place& place, const std::strin
 
 void write_refused(const StabilityMap& map, const Place& refused, const Place& accepted,
                    const std::string& file) {
-  scenario::Scenario s = load_place(map, accepted, {});
+  scenario::Scenario s = map.load_place(accepted, {});
   s.about = describe(map, refused);
   s.file = file;
   write_text(file, scenario::print_portable(s, map.settings_at(refused.x, refused.y)));

@@ -230,4 +230,10 @@ RunFigures compute_figures(const output::ResultReader& run) {
   return figures;
 }
 
+bool works_by_hand_alone(const scenario::Scenario& s) {
+  const auto moves = [](const solid::Support& support) { return !support.displacement.isZero(0.0); };
+  return s.params.solid.gravity.isZero(0.0) && s.body.loads.nodal.empty() && s.body.loads.pressure.empty() &&
+         std::none_of(s.body.fixed.begin(), s.body.fixed.end(), moves) && s.params.water.swelling == 0.0;
+}
+
 }  // namespace argil::study

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "output/result_reader.h"
+#include "scenario/scenario.h"
 
 namespace argil::study {
 
@@ -35,11 +36,14 @@ struct RunFigures {
   double factorisations = 0.0;
   double peak_force = 0.0;   ///< [N]
   double energy_gain = 0.0;  ///< largest K + W + D − contact work since the start, over the largest |contact
-                             ///< work| or K + W at the start; of scenes without loads and moving supports
+                             ///< work| or K + W at the start; says something where works_by_hand_alone
   double chatter = 0.0;  ///< rms of the hand force above 50 Hz over its rms
 };
 
 RunFigures compute_figures(const output::ResultReader& run);
+
+/// Does nothing but the hand work on the body: no gravity, load, support that moves, or clay that swells?
+bool works_by_hand_alone(const scenario::Scenario& s);
 
 /// Rms of a series of forces (3×n) above `frequency` [Hz] over its rms, Hann windowed; `period` [s] apart.
 double compute_share_above(const Points& force, double period, double frequency);

@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
+#include "base/error.h"
 #include "output/result_reader.h"
 #include "study/run.h"
 
@@ -31,6 +33,10 @@ Settings StabilityMap::settings_at(double x, double y) const {
   put(m_study.x, x);
   if (!m_study.y.values.empty()) put(m_study.y, y);
   return settings;
+}
+
+scenario::Scenario StabilityMap::load_place(const Place& place, const Settings& extra) const {
+  return load(make_run_options(m_study.scenario, join(settings_at(place.x, place.y), extra)));
 }
 
 /// With the truth of each where there is one.
@@ -79,24 +85,24 @@ void StabilityMap::judge(Place& place) const {
   if (place.result.exit_code == kDone) {
     const output::ResultReader reader(place.result.file);
     place.figures = compute_figures(reader);
-    if (truth) place.errors = compute_errors(reader, *truth);
+    if (!works_by_hand_alone(load_place(place, {}))) place.figures.energy_gain = kUnknown;
+    try {
+      if (truth) place.errors = compute_errors(reader, *truth);
+    } catch (const InputError& error) {
+      place.result.reason = error.what();  // of this place alone
+    }
   }
   OutcomeBounds bounds;
   bounds.wrong_above = m_study.wrong_above;
   bounds.compares = !m_study.reference.empty();
   place.outcome = classify(place.result, place.figures, place.errors, bounds);
-  if (place.outcome == Outcome::unknown)
+  if (place.outcome == Outcome::unknown && place.result.reason.empty())
     place.result.reason = "reference: " + (place.truth.reason.empty() ? "no force" : place.truth.reason);
 }
 
-/// Is one accurate, wrong or unstable, and the other not? All ways to be unstable count as one.
 bool StabilityMap::turns(std::size_t a, std::size_t b) const {
-  if (!is_known(m_places[a].outcome) || !is_known(m_places[b].outcome)) return false;
-  const auto rank = [this](std::size_t i) {
-    const Outcome outcome = m_places[i].outcome;
-    return is_stable(outcome) ? static_cast<int>(outcome) : -1;
-  };
-  return rank(a) != rank(b);
+  return is_known(m_places[a].outcome) && is_known(m_places[b].outcome) &&
+         m_places[a].outcome != m_places[b].outcome;
 }
 
 /// Middle of a boundary; nothing when it is narrow enough.
@@ -107,23 +113,30 @@ std::optional<double> StabilityMap::find_middle(const Boundary& boundary) const 
   const double range = m_study.x.values.back() - m_study.x.values.front();
   const bool is_narrow =
       m_study.x.is_logarithmic ? b / a - 1.0 <= m_study.bisect_to : b - a <= m_study.bisect_to * range;
-  if (is_narrow) return {};
-  return m_study.x.is_logarithmic ? std::sqrt(a * b) : 0.5 * (a + b);
+  const double middle = m_study.x.is_logarithmic ? std::sqrt(a * b) : 0.5 * (a + b);
+  return is_narrow || middle == a || middle == b ? std::nullopt : std::optional(middle);
 }
 
-/// One round over all boundaries; false when all are found.
+/// One round over all boundaries; false when all are found. Where the middle is neither as the one side nor
+/// as the other, there are two boundaries.
 bool StabilityMap::bisect() {
   std::vector<std::pair<double, double>> middles;
-  std::vector<Boundary*> halved;
-  for (Boundary& boundary : m_boundaries)
-    if (const auto middle = find_middle(boundary)) {
-      middles.emplace_back(*middle, m_places[boundary.below].y);
-      halved.push_back(&boundary);
-    }
+  for (const Boundary& boundary : m_boundaries)
+    if (const auto middle = find_middle(boundary)) middles.emplace_back(*middle, m_places[boundary.below].y);
   if (middles.empty()) return false;
   const std::vector<std::size_t> places = visit(middles);
-  for (std::size_t i = 0; i < places.size(); ++i)
-    (turns(halved[i]->below, places[i]) ? halved[i]->above : halved[i]->below) = places[i];
+  std::vector<Boundary> halves;
+  auto place = places.begin();
+  for (const Boundary& boundary : m_boundaries) {
+    if (!find_middle(boundary)) {
+      halves.push_back(boundary);
+      continue;
+    }
+    const std::size_t middle = *place++;
+    if (turns(boundary.below, middle)) halves.push_back({boundary.below, middle});
+    if (turns(middle, boundary.above)) halves.push_back({middle, boundary.above});
+  }
+  m_boundaries = std::move(halves);
   return true;
 }
 

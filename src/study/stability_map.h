@@ -24,7 +24,7 @@ struct Place {
   RunErrors errors;
 };
 
-/// Two places of one row of the map between which the outcome turns.
+/// Two neighbouring places of one row of the map between which the outcome turns.
 struct Boundary {
   std::size_t below;  ///< in the list of places
   std::size_t above;
@@ -42,6 +42,7 @@ class StabilityMap {
   const std::vector<Boundary>& boundaries() const { return m_boundaries; }
   const scenario::StabilityStudy& study() const { return m_study; }
   Settings settings_at(double x, double y) const;
+  scenario::Scenario load_place(const Place& place, const Settings& extra) const;
   /// A place anew, with other settings on top; not in the list.
   Place run_with(const Place& place, const Settings& extra) const;
 

@@ -157,6 +157,47 @@ TEST_F(Study, MapFindsTheExplicitLimitWithinOnePercent) {
   EXPECT_EQ(run(again), kRunFailed);
 }
 
+// Four-node tets are refused from ν = 0.45 on; before, the force is more and more another than that at 0.3.
+TEST_F(Study, MapFindsBothBoundariesBetweenThreeOutcomes) {
+  ASSERT_EQ(map_stability(options(R"({"about": "ν", "scenario": "scene.json",
+    "x": {"name": "ν", "pointers": ["/material/poissons_ratio"], "values": [0.3, 0.7]},
+    "reference": {"/material/poissons_ratio": 0.3}, "wrong_above": 0.01, "bisect_to": 0.02})"),
+                          ""),
+            kDone);
+  std::vector<Row> boundaries;
+  for (const Row& row : table())
+    if (row.at("kind") == "boundary") boundaries.push_back(row);
+  ASSERT_EQ(boundaries.size(), 2U);
+  EXPECT_EQ(boundaries[0].at("outcome"), "accurate > wrong");
+  EXPECT_EQ(boundaries[1].at("outcome"), "wrong > refused");
+  EXPECT_LE(std::stod(boundaries[1].at("x_below")), 0.45);
+  EXPECT_NEAR(std::stod(boundaries[1].at("x_above")), 0.45, 0.01);
+}
+
+TEST_F(Study, MapDoesNotTakeGravityForEnergyFromNowhere) {
+  ASSERT_EQ(map_stability(options(R"({"about": "weight", "scenario": "scene.json",
+    "settings": {"/body/loads/gravity_m_per_s2": [0, 0, -30]},
+    "x": {"name": "E [Pa]", "pointers": ["/material/youngs_modulus_Pa"], "values": [2e4, 4e4]}})"),
+                          ""),
+            kDone);
+  for (const Row& row : table()) {
+    EXPECT_EQ(row.at("outcome"), "accurate");
+    EXPECT_EQ(row.at("energy_gain"), "");
+  }
+}
+
+TEST_F(Study, MapSaysOfAPlaceThatItCannotBeCompared) {
+  ASSERT_EQ(map_stability(options(R"({"about": "ticks that the reference has not", "scenario": "scene.json",
+    "x": {"name": "tick [s]", "pointers": ["/haptics/period_s"], "values": [0.001, 0.0015]},
+    "reference": {"/haptics/period_s": 0.001}})"),
+                          ""),
+            kRunFailed);
+  ASSERT_EQ(table().size(), 2U);
+  EXPECT_EQ(table()[0].at("outcome"), "accurate");
+  EXPECT_EQ(table()[1].at("outcome"), "unknown");
+  EXPECT_NE(table()[1].at("reason").find("has ticks that"), std::string::npos) << table()[1].at("reason");
+}
+
 TEST_F(Study, MapSaysTheReferencesForceBesideARunsOwn) {
   ASSERT_EQ(map_stability(options(R"({"about": "softer", "scenario": "scene.json",
     "x": {"name": "E [Pa]", "pointers": ["/material/youngs_modulus_Pa"], "values": [1e4, 2e4]},
