@@ -92,6 +92,8 @@ Found look(const SweepPoint& point, const std::string& points) {
     const std::optional<Failure> failure = reader.read_failure();
     if (reader.outcome() == output::Outcome::failed && failure) return {true, false, to_string(*failure), {}};
     return {false, false, "not finished", {}};
+  } catch (const hdf5::BusyError&) {
+    throw;
   } catch (const std::exception& error) {
     return {false, false, std::string("its file does not read: ") + error.what(), {}};
   }

@@ -7,7 +7,8 @@
 namespace argil::study {
 
 /// Writes points.jsonl: one line a point with its index, its id and its settings. Each point's scenario is
-/// checked. Throws InputError, IoError.
+/// checked, and each point is another run. Throws InputError, also when `points` has no ending, or names the
+/// sweep or a file that a point reads; IoError.
 int expand_sweep(const std::string& sweep, const std::string& points);
 
 /// What of a sweep one call runs.
@@ -29,7 +30,8 @@ int run_sweep(const SweepRun& run);
 int print_missing(const std::string& points, std::int64_t block);
 
 /// One row a point, in the order of their indices: settings, outcome with reason, and figures; as TABLE.csv
-/// and TABLE.h5. Wall clock is left out, so that equal runs give equal tables.
+/// and TABLE.h5. Wall clock is left out, so that equal runs give equal tables. Throws InputError when one of
+/// these is the points, a result or a file that a point reads.
 int collect_sweep(const std::string& points, const std::string& table);
 
 }  // namespace argil::study

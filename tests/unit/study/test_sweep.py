@@ -353,6 +353,13 @@ class Sweep(unittest.TestCase):
             fcntl.flock(reader, fcntl.LOCK_EX)
             self.assertIn("another process has this file open", self.call("run", self.points, "--index", 0, expected=4))
         self.assertEqual(self.files(), before)
+        self.call("run", self.points, "--index", 0)
+        before = self.files()
+        with open(self.folder / "points" / "000000.h5", "rb") as reader:
+            fcntl.flock(reader, fcntl.LOCK_EX)
+            for command in (("run", self.points, "--index", 0), ("missing", self.points), ("collect", self.points, "-o", "table")):
+                self.assertIn("000000.h5: another process has this file open", self.call(*command, expected=4))
+        self.assertEqual(self.files(), before)
 
     def test_where_there_is_no_room_the_advice_is_that_of_a_sweep(self):
         self.expand(list=[{}])
