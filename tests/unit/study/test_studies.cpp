@@ -359,6 +359,8 @@ TEST_F(Study, RefusesWhatItCannotRun) {
   expect(head + R"("refined": {"/haptics/period_s": 1}, "curves": [{"name": "a",
          "along": {"/body/loads/gravity_m_per_s2/0": [1, 2], "/trace/start_s": [1]}}]})",
          {"/curves/0/along", "/trace/start_s has 1 values, the first axis 2"});
+  expect(head + R"("repeats": 2.5, "refined": {"/haptics/period_s": 1}, "curves": [{"name": "a"}]})",
+         {"/repeats: 2.5 is not whole"});
   expect(head + R"("refined": {"/haptics/perod_s": 1}, "curves": [{"name": "a"}]})",
          {"/refined", "\"/haptics/perod_s\" is no key of a scenario", "did you mean /haptics/period_s?"});
   expect(head + R"("refined": {"/haptics/period_s": 1}, "curve": [], "curves": [{"name": "a"}]})",
