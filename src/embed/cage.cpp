@@ -53,6 +53,7 @@ void require_usable_input(const mesh::TriangleMesh& surface, const CageOptions& 
   const Vec3 extent = surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff();
   if (!(extent.maxCoeff() > 0.0))
     throw InputError(name, "", "all vertices lie in one point", "give a surface with an extent");
+  mesh::require_size(surface.vertices, name);
   constexpr int kFewest = 100;
   constexpr int kMost = 20'000'000;
   if (options.target_tets < kFewest || options.target_tets > kMost)

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <sstream>
 
 #include "base/error.h"
 #include "base/ordered_sum.h"
@@ -118,7 +119,8 @@ void measure_tet(const TetMesh& mesh, int t, double volume, QualityReport& repor
     farthest = std::max(farthest, x[a].norm());
     for (std::size_t b = a + 1; b < 4; ++b) longest = std::max(longest, (x[b] - x[a]).norm());
   }
-  const double round_off = kRoundOff * (farthest + longest) * longest * longest;
+  constexpr double kLeastVolume = 1e-45;  // [m³] of the millionth part of the smallest body, each way
+  const double round_off = std::max(kLeastVolume, kRoundOff * (farthest + longest) * longest * longest);
   if (!(std::abs(volume) > round_off)) {
     report.flat.push_back(t);
   } else if (volume < 0.0) {
@@ -204,6 +206,17 @@ QualityReport compute_quality(const TetMesh& mesh) {
     if (end - begin != 2) ++report.num_non_manifold_edges;
   });
   return report;
+}
+
+void require_size(const Points& vertices, const std::string& file) {
+  const double size = (vertices.rowwise().maxCoeff() - vertices.rowwise().minCoeff()).maxCoeff();
+  const double farthest = vertices.cwiseAbs().maxCoeff();
+  if (size >= kSmallestSize && farthest <= kLargestSize) return;
+  std::ostringstream text;
+  text << "is " << size << " m across and reaches " << farthest << " m off the origin; bodies and tools are ["
+       << kSmallestSize << ", " << kLargestSize << "] m";
+  throw InputError(file, "vertices", text.str(),
+                   "give it in metres, by the scale of the scenario's /…/scale");
 }
 
 std::string require_usable(const QualityReport& report, const std::string& file) {

@@ -7,6 +7,14 @@
 
 namespace argil::mesh {
 
+/// Sizes of bodies and tools [m], from molecules to orbits: no scene lies beyond, and their cubes and
+/// quotients stay far from what a double cannot hold.
+inline constexpr double kSmallestSize = 1e-9;
+inline constexpr double kLargestSize = 1e9;
+
+/// Throws InputError when what `file` holds is smaller or larger across, or lies farther off the origin.
+void require_size(const Points& vertices, const std::string& file);
+
 /// What a reviewer asks of a tet mesh. Lists hold element or vertex numbers from 0, increasing.
 struct QualityReport {
   int num_vertices = 0;
@@ -15,7 +23,7 @@ struct QualityReport {
   double min_dihedral_degrees = 0.0;  ///< between faces, inside the tet; 0 when a face has no area
   double max_dihedral_degrees = 0.0;  ///< 180 when a face has no area
   std::vector<int> inverted;          ///< tets with volume < 0, beyond round-off
-  std::vector<int> flat;              ///< tets whose volume is below round-off of their size
+  std::vector<int> flat;              ///< tets whose volume is below round-off of their size, or 1e-45 m³
   std::vector<int> orphan_vertices;   ///< used by no tet
   std::vector<int> overfull_faces;    ///< tets with a face that three or more share, or two on the same side
   std::vector<int> non_manifold_vertices;  ///< boundary vertices whose boundary triangles form no single fan

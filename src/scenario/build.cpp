@@ -102,6 +102,7 @@ void make_mesh(const Scenario& s, Scene& scene) {
   const std::string& origin = s.body.kind == BodyKind::mesh ? s.body.file
                               : !s.body.cage_file.empty()   ? s.body.cage_file
                                                             : s.file;
+  mesh::require_size(body.mesh.vertices, origin);
   const std::string warning = mesh::require_usable(mesh::compute_quality(body.mesh), origin);
   if (!warning.empty()) scene.notes.push_back(warning);
   body.topology = mesh::make_topology(body.mesh);
@@ -197,6 +198,7 @@ mesh::TriangleMesh make_tool(const Scenario& s) {
       break;
   }
   mesh::TriangleMesh tool = mesh::read_triangle_mesh(s.tool.file, s.tool.scale);
+  mesh::require_size(tool.vertices, s.tool.file);
   contact::require_closed_surface(tool, s.tool.file);
   return tool;
 }

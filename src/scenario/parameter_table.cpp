@@ -4,11 +4,22 @@
 
 #include <filesystem>
 
+#include "mesh/quality.h"
 #include "scenario/binding.h"
 #include "scenario/medium_check.h"
 
 namespace argil::scenario {
 namespace {
+
+// A tick of 1 MHz, a thousand times as fast as the paper's; a hand that is let go within minutes: the ticks
+// of either stay countable.
+constexpr double kShortestTick = 1e-6;
+constexpr double kLongestRelease = 100.0;
+
+/// Of a body or tool, and, as wide, of metres per unit of a file.
+Range size_range() {
+  return between(mesh::kSmallestSize, mesh::kLargestSize);
+}
 
 void describe_region(Binder& b, solid::Region& r) {
   using Kind = solid::Region::Kind;
@@ -63,7 +74,7 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
   const auto only = [&body](BodyKind kind) { return [&body, kind] { return body.kind == kind; }; };
   b.path("/body/mesh/file", body.file, folder, "Tetrahedral mesh: Gmsh, Medit, TetGen, VTK, VTU or Vega.")
       .applies = only(BodyKind::mesh);
-  b.number("/body/mesh/scale", body.scale, positive(), "", "Metres per unit of the file.").applies =
+  b.number("/body/mesh/scale", body.scale, size_range(), "", "Metres per unit of the file.").applies =
       only(BodyKind::mesh);
   b.text("/body/mesh/saturation_field", body.saturation_field,
          "Cell data with the initial saturation; empty: uniform.")
@@ -83,7 +94,7 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
                              {mesh::ShapeKind::figure, "figure"}},
                             "Body that argil makes itself.")
       .applies = only(BodyKind::shape);
-  b.number("/body/shape/size_m", body.shape.size, positive(), "m",
+  b.number("/body/shape/size_m", body.shape.size, size_range(), "m",
            "Diameter of the sphere, length of the dinosaur, height of the others.")
       .applies = only(BodyKind::shape);
   b.number("/body/shape/slenderness", body.shape.slenderness, between(0.1, 10), "",
@@ -101,7 +112,7 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
   b.path("/body/surface/file", body.file, folder,
          "Triangle surface (OBJ, STL, PLY); it becomes the skin in a cage.")
       .applies = only(BodyKind::surface);
-  b.number("/body/surface/scale", body.scale, positive(), "", "Metres per unit of the file.").applies =
+  b.number("/body/surface/scale", body.scale, size_range(), "", "Metres per unit of the file.").applies =
       only(BodyKind::surface);
   b.path("/body/surface/cage", body.cage_file, folder, "Cage made before by `argil cage`; empty: made now.")
       .applies = only(BodyKind::surface);
@@ -253,12 +264,13 @@ void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
                       {ToolKind::stylus, "stylus"},
                       {ToolKind::mesh, "mesh"}},
                      "Tool's surface; the hand's point is its origin, its tip points to −z.");
-  b.number("/tool/shape/radius_m", t.radius, positive(), "m",
+  b.number("/tool/shape/radius_m", t.radius, size_range(), "m",
            "sphere, capsule: radius; stylus: at its upper end.")
       .applies = [&t] { return t.kind != ToolKind::mesh; };
-  b.number("/tool/shape/tip_radius_m", t.tip_radius, positive(), "m", "stylus: radius of the tip.").applies =
-      only(ToolKind::stylus);
-  b.number("/tool/shape/length_m", t.length, positive(), "m", "capsule, stylus: length of the straight part.")
+  b.number("/tool/shape/tip_radius_m", t.tip_radius, size_range(), "m", "stylus: radius of the tip.")
+      .applies = only(ToolKind::stylus);
+  b.number("/tool/shape/length_m", t.length, size_range(), "m",
+           "capsule, stylus: length of the straight part.")
       .applies = [&t] { return t.kind == ToolKind::capsule || t.kind == ToolKind::stylus; };
   b.integer("/tool/shape/subdivisions", t.subdivisions, between(0, 6),
             "sphere: times an icosahedron is split.")
@@ -266,7 +278,7 @@ void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
   b.integer("/tool/shape/segments", t.segments, between(6, 256), "capsule, stylus: around the axis.")
       .applies = [&t] { return t.kind == ToolKind::capsule || t.kind == ToolKind::stylus; };
   b.path("/tool/shape/file", t.file, folder, "mesh: closed triangle surface.").applies = only(ToolKind::mesh);
-  b.number("/tool/shape/scale", t.scale, positive(), "", "mesh: metres per unit of the file.").applies =
+  b.number("/tool/shape/scale", t.scale, size_range(), "", "mesh: metres per unit of the file.").applies =
       only(ToolKind::mesh);
   b.choice<ModeChoice>("/tool/mode", t.mode,
                        {{ModeChoice::trace, "trace"},
@@ -417,7 +429,8 @@ void bind_hand(Binder& b, HandSpec& hand) {
 
 void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
   sim::RateParams& r = s.params.rates;
-  b.number("/haptics/period_s", r.haptic_period, inside(0, 1), "s", "δ: one haptic tick.");
+  b.number("/haptics/period_s", r.haptic_period, {kShortestTick, 1.0, false, true}, "s",
+           "δ: one haptic tick.");
   b.integer("/haptics/physics_period_ticks", r.physics_period_ticks, between(1, 100000),
             "Physics once in so many ticks; 14 is the paper's 71 Hz.");
   b.integer("/haptics/water_period_ticks", r.water_period_ticks, between(1, 1e6),
@@ -447,7 +460,7 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
            "Live: age of the device's last sample at which the hand is let go.");
   b.number("/haptics/device/watchdog/max_physics_age_s", w.max_physics_age, positive(), "s",
            "Live: age of the surface that the hand feels at which it is let go.");
-  b.number("/haptics/device/watchdog/release_s", w.release_s, not_negative(), "s",
+  b.number("/haptics/device/watchdog/release_s", w.release_s, between(0.0, kLongestRelease), "s",
            "In which the force falls to zero then, and comes back; 0: at once.");
   TraceSpec& t = s.trace;
   b.path("/trace/file", t.file, folder, "Recorded motion (CSV or HDF5).").required = true;
