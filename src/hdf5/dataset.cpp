@@ -50,6 +50,11 @@ Element internal::element_of_type(hid_t type, const std::string& file, const std
   throw IoError(file, where + " has a type that argil does not read (not a number, not text)");
 }
 
+bool internal::is_same_type(hid_t a, hid_t b) {
+  if (H5Tget_class(a) == H5T_STRING && H5Tget_class(b) == H5T_STRING) return true;
+  return H5Tequal(a, b) > 0;
+}
+
 Shape Dataset::shape() const {
   const Handle space = dataspace(H5Dget_space(id()));
   if (space.id() < 0) fail("cannot read the shape of", "");
@@ -59,6 +64,12 @@ Shape Dataset::shape() const {
 Element Dataset::element() const {
   const Handle type = datatype(H5Dget_type(id()));
   return element_of_type(type.id(), m_file, m_path);
+}
+
+bool Dataset::has_same_type(const Dataset& other) const {
+  const Handle a = datatype(H5Dget_type(id()));
+  const Handle b = datatype(H5Dget_type(other.id()));
+  return is_same_type(a.id(), b.id());
 }
 
 void Dataset::append_raw(const void* data, Element element, std::uint64_t rows) {

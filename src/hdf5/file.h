@@ -94,6 +94,8 @@ class Object {
   std::pair<std::uint64_t, std::uint64_t> find_identity() const;
   std::vector<std::string> attribute_names() const;  ///< sorted
   Element attribute_element(const std::string& name) const;
+  /// Are both stored in the same type: kind, width, sign, byte order? Texts of any length are one type.
+  bool has_same_attribute_type(const Object& other, const std::string& name) const;
   std::string read_text(const std::string& name) const;
   std::vector<std::string> read_texts(const std::string& name) const;      ///< of any shape, flattened
   double read_real(const std::string& name) const;                         ///< any number type
@@ -120,6 +122,8 @@ class Dataset : public Object {
   using Object::Object;
   Shape shape() const;
   Element element() const;
+  /// As for attributes.
+  bool has_same_type(const Dataset& other) const;
   /// Adds `rows` rows at the end of the first dimension; `data` holds them row by row. Extendible datasets
   /// only.
   template <class T>

@@ -27,6 +27,9 @@ hid_t file_type(Element element);
 /// Element of an HDF5 type; throws IoError naming `where` when the project has none for it.
 Element element_of_type(hid_t type, const std::string& file, const std::string& where);
 
+/// Of the same kind, width, sign and byte order; texts of any length are alike.
+bool is_same_type(hid_t a, hid_t b);
+
 /// Lengths of a dataspace; one without values has {0}.
 Shape read_shape(Id space);
 

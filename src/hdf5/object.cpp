@@ -114,6 +114,14 @@ Element Object::attribute_element(const std::string& name) const {
   return element_of_type(type.id(), m_file, "attribute " + name + " of " + m_path);
 }
 
+bool Object::has_same_attribute_type(const Object& other, const std::string& name) const {
+  const Handle opened = open_attribute(*this, name);
+  const Handle opened_other = open_attribute(other, name);
+  const Handle a = datatype(H5Aget_type(opened.id()));
+  const Handle b = datatype(H5Aget_type(opened_other.id()));
+  return is_same_type(a.id(), b.id());
+}
+
 std::vector<std::string> Object::read_texts(const std::string& name) const {
   const Handle opened = open_attribute(*this, name);
   const Handle type = datatype(H5Aget_type(opened.id()));

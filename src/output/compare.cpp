@@ -13,20 +13,79 @@
 namespace argil::output {
 namespace {
 
+constexpr const char* kAttribute = " attribute ";  // between an object's path and its attribute's name
+constexpr const char* kStateHash = "state_hash";
+
 using hdf5::Dataset;
 using hdf5::Element;
 using hdf5::Group;
 using hdf5::Object;
 using hdf5::Shape;
 
-// Does `text` fit `pattern`, where * stands for any text, also none?
+// Does `text` fit `pattern`, where * stands for any text, also none? What an earlier * stands for need never
+// be looked at again once the text up to the next * was found: the first place leaves the most behind it.
 bool fits(std::string_view pattern, std::string_view text) {
-  if (pattern.empty()) return text.empty();
-  if (pattern.front() != '*')
-    return !text.empty() && pattern.front() == text.front() && fits(pattern.substr(1), text.substr(1));
-  for (std::size_t skip = 0; skip <= text.size(); ++skip)
-    if (fits(pattern.substr(1), text.substr(skip))) return true;
-  return false;
+  std::size_t p = 0, t = 0;
+  std::optional<std::size_t> star;  // place of the last * met
+  std::size_t star_end = 0;         // where the text it stands for ends
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      star_end = t;
+    } else if (p < pattern.size() && pattern[p] == text[t]) {
+      ++p, ++t;
+    } else if (star) {
+      p = *star + 1;
+      t = ++star_end;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+bool loosens(const Tolerance& tolerance) {
+  return tolerance.relative > 0.0 || tolerance.absolute > 0.0 || tolerance.of_largest > 0.0;
+}
+
+/// Calls `visit(path, is_group)` for all that lies below a group; groups with several names once.
+template <class Visit>
+void for_paths(const Group& group, std::set<std::pair<std::uint64_t, std::uint64_t>>& visited,
+               const Visit& visit) {
+  if (!visited.insert(group.find_identity()).second) return;
+  for (const std::string& name : group.names()) {
+    const std::string path = (group.path() == "/" ? "/" : group.path() + "/") + name;
+    const bool is_group = group.is_group(name);
+    visit(path, is_group);
+    if (is_group) for_paths(group.open_group(name), visited, visit);
+  }
+}
+
+/// A rule that fits nothing is a slip of the pen, and what it should have loosened or left out is not.
+void require_use_of_rules(const ResultReader& a, const ResultReader& b, const CompareOptions& options) {
+  if (options.tolerances.empty() && options.ignore.empty()) return;
+  std::vector<bool> is_used(options.tolerances.size(), false);
+  std::vector<bool> is_ignore_used(options.ignore.size(), false);
+  for (const ResultReader* reader : {&a, &b}) {
+    std::set<std::pair<std::uint64_t, std::uint64_t>> visited;
+    for_paths(reader->root(), visited, [&](const std::string& path, bool is_group) {
+      for (std::size_t i = 0; i < is_used.size() && !is_group; ++i)
+        is_used[i] = is_used[i] || fits(options.tolerances[i].dataset, path);
+      for (std::size_t i = 0; i < is_ignore_used.size(); ++i)
+        is_ignore_used[i] = is_ignore_used[i] || fits(options.ignore[i], path);
+    });
+  }
+  const auto refuse = [&](const std::string& place, const std::string& pattern, const char* what) {
+    throw InputError(options.file, place,
+                     "\"" + pattern + "\" fits no " + what + " of " + a.file() + " or " + b.file(),
+                     "correct it or leave it out; argil compare names paths as /frames/000003/position");
+  };
+  for (std::size_t i = 0; i < is_used.size(); ++i)
+    if (!is_used[i])
+      refuse("/tolerances/" + std::to_string(i) + "/dataset", options.tolerances[i].dataset, "dataset");
+  for (std::size_t i = 0; i < is_ignore_used.size(); ++i)
+    if (!is_ignore_used[i] && options.ignore[i].find(kAttribute) == std::string::npos)
+      refuse("/ignore/" + std::to_string(i), options.ignore[i], "dataset or group");
 }
 
 std::string print(double value) {
@@ -121,16 +180,31 @@ class Comparison {
                        [&](const std::string& pattern) { return fits(pattern, path); });
   }
 
-  // With what a share of the largest value comes to counted in.
-  template <class T>
-  std::optional<Tolerance> find_tolerance(const std::string& path, const std::vector<T>& values) const {
+  const Tolerance* find_rule(const std::string& path) const {
     const auto found =
         std::find_if(m_options.tolerances.begin(), m_options.tolerances.end(),
                      [&](const Tolerance& tolerance) { return fits(tolerance.dataset, path); });
-    if (found == m_options.tolerances.end()) return std::nullopt;
+    return found == m_options.tolerances.end() ? nullptr : &*found;
+  }
+
+  // May a dataset directly in the group differ? Then what is a hash of it and more says nothing.
+  bool is_loosened(const Group& group) const {
+    if (m_options.tolerances.empty() || !group.has_attribute(kStateHash)) return false;
+    const std::vector<std::string> names = group.names();
+    return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      const Tolerance* rule = find_rule(group.path() + "/" + name);
+      return rule != nullptr && loosens(*rule);
+    });
+  }
+
+  // With what a share of the largest value comes to counted in.
+  template <class T>
+  std::optional<Tolerance> find_tolerance(const std::string& path, const std::vector<T>& values) const {
+    const Tolerance* rule = find_rule(path);
+    if (rule == nullptr) return std::nullopt;
     double largest = 0.0;
     for (const T value : values) largest = std::max(largest, std::abs(static_cast<double>(value)));
-    Tolerance tolerance = *found;
+    Tolerance tolerance = *rule;
     if (std::isfinite(largest)) tolerance.absolute += tolerance.of_largest * largest;
     return tolerance;
   }
@@ -152,13 +226,15 @@ class Comparison {
     return both;
   }
 
-  void compare_attributes(const Object& a, const Object& b, std::optional<Tick> tick) {
-    const std::string prefix = a.path() + " attribute ";
+  void compare_attributes(const Object& a, const Object& b, std::optional<Tick> tick,
+                          bool without_hash = false) {
+    const std::string prefix = a.path() + kAttribute;
     for (const std::string& name : common(a.attribute_names(), b.attribute_names(), prefix, tick)) {
-      if (name == "state_hash" && !m_options.tolerances.empty()) continue;
+      if ((name == kStateHash && without_hash) || is_ignored(prefix + name)) continue;
       ++m_report.num_compared;
+      m_report.num_hashes += name == kStateHash;
       const Element element = a.attribute_element(name);
-      if (element != b.attribute_element(name))
+      if (!a.has_same_attribute_type(b, name))
         add(prefix + name, "has another type", tick);
       else if (element == Element::text)
         compare_attribute(prefix + name, a.read_texts(name), b.read_texts(name), tick);
@@ -206,7 +282,7 @@ class Comparison {
     const Shape shape_a = a.shape();
     const Shape shape_b = b.shape();
     const Element element = a.element();
-    if (element != b.element()) return add(a.path(), "has another type", tick);
+    if (!a.has_same_type(b)) return add(a.path(), "has another type", tick);
     if (element == Element::text) {
       if (a.read_string() != b.read_string()) add(a.path(), "the texts differ", tick);
       return;
@@ -232,7 +308,7 @@ class Comparison {
   void compare_groups(const Group& a, const Group& b, std::optional<Tick> tick) {
     if (!m_visited.insert({a.find_identity(), b.find_identity()}).second) return;  // by another of its names
     if (a.has_attribute("tick")) tick = a.read_integer("tick");
-    compare_attributes(a, b, tick);
+    compare_attributes(a, b, tick, is_loosened(a));
     std::vector<std::int64_t> ticks;  // of the longer file, so that missing rows have a tick, too
     for (const Group* group : {&a, &b})
       if (group->has("tick")) {
@@ -271,12 +347,14 @@ CompareReport compare_results(const std::string& file_a, const std::string& file
                        "give numbers that are not negative");
   const ResultReader a(file_a);
   const ResultReader b(file_b);
+  require_use_of_rules(a, b, options);
   return Comparison(a, b, options).take_report();
 }
 
 std::string to_string(const CompareReport& report) {
   if (report.is_equal())
-    return "equal: " + std::to_string(report.num_compared) + " datasets and attributes\n";
+    return "equal: " + std::to_string(report.num_compared) + " datasets and attributes, " +
+           std::to_string(report.num_hashes) + " hashes of the state among them\n";
   std::ostringstream text;
   const auto timed = std::find_if(report.differences.begin(), report.differences.end(),
                                   [](const Difference& difference) { return difference.tick.has_value(); });

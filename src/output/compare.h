@@ -19,11 +19,14 @@ struct Tolerance {
 };
 
 struct CompareOptions {
-  /// The first that fits a dataset counts; without one, values must have the same bits. With any tolerance
-  /// the frames' state_hash is not compared, because it tells of every bit.
+  /// The first that fits a dataset counts; without one, values must have the same bits. A frame's state_hash,
+  /// which tells of every bit of the state, is left out only when a tolerance above 0 counts for a dataset of
+  /// that frame.
   std::vector<Tolerance> tolerances;
-  /// Paths that are left out, * as above, with everything in them. /timing and /checkpoint always are.
+  /// Paths that are left out, * as above, with everything in them; of an attribute "/frames/* attribute
+  /// time". /timing and /checkpoint always are.
   std::vector<std::string> ignore;
+  std::string file;  ///< that these rules are from, to be named in errors; empty: none
 };
 
 /// One dataset, attribute or group that is not the same in both files.
@@ -37,11 +40,14 @@ struct Difference {
 struct CompareReport {
   std::vector<Difference> differences;  ///< what does not change with time first, then by tick, then by path
   std::uint64_t num_compared = 0;       ///< datasets and attributes looked at
+  std::uint64_t num_hashes = 0;         ///< state hashes among them
   bool is_equal() const { return differences.empty(); }
 };
 
 /// Compares everything in two result files except /timing and /checkpoint: names, shapes, types, attributes,
-/// values. NaN equals nothing, not even itself. Throws IoError or InputError when a file cannot be used.
+/// values. NaN equals nothing, not even itself. Without tolerances that is exact twice: every value and every
+/// frame's hash of the whole state, the last frame's being that of the end. Throws IoError or InputError when
+/// a file cannot be used, InputError for a rule that fits nothing in either file.
 CompareReport compare_results(const std::string& file_a, const std::string& file_b,
                               const CompareOptions& options);
 

@@ -20,6 +20,7 @@ output::CompareOptions load_tolerances(const std::string& file) {
   const Json json = read_json(file);
   JsonReader reader(json, file, "");
   output::CompareOptions options;
+  options.file = file;
   if (const Json* ignore = reader.find("ignore"))
     for (const Json& path : require_list(reader, "ignore", *ignore)) {
       if (!path.is_string())

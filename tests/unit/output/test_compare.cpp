@@ -220,6 +220,85 @@ TEST(CompareResults, FindsAChangedStateHashUnlessATolerancePermitsChanges) {
   EXPECT_TRUE(pair.compare(options).is_equal());
 }
 
+TEST(CompareResults, KeepsTheStateHashWhereNoToleranceLoosensItsFrame) {
+  Pair pair;
+  pair.change_frame = [](sim::Frame& frame) { frame.state_hash[0] = 'b'; };
+  CompareOptions options;
+  options.tolerances = {{"/haptic/force", 1e-9, 0.0}};  // of no frame
+  EXPECT_EQ(pair.compare(options).differences.size(), 4U);
+  options.tolerances = {{"/frames/*", 0.0, 0.0}};  // of frames, and allows nothing
+  EXPECT_EQ(pair.compare(options).differences.size(), 4U);
+  options.tolerances = {{"/frames/000002/position", 1e-9, 0.0}};  // of one frame
+  EXPECT_EQ(pair.compare(options).differences.size(), 3U);
+  options.tolerances = {{"/frames/*/position", 0.0, 0.0}, {"/frames/*/position", 1e-9, 0.0}};  // first counts
+  EXPECT_EQ(pair.compare(options).differences.size(), 4U);
+  options.tolerances.clear();
+  options.ignore = {"/frames/* attribute state_hash"};
+  EXPECT_TRUE(pair.compare(options).is_equal());
+}
+
+TEST(CompareResults, SaysHowManyHashesItCompared) {
+  const Pair pair;
+  EXPECT_EQ(pair.compare().num_hashes, 4U);  // frames of the ticks 0, 10, 20, 30
+  CompareOptions options;
+  options.tolerances = {{"/frames/*/position", 1e-9, 0.0}};
+  EXPECT_EQ(pair.compare(options).num_hashes, 0U);
+}
+
+TEST(CompareResults, RefusesARuleThatFitsNothing) {
+  const Pair pair;
+  CompareOptions options;
+  options.file = "near.json";
+  options.tolerances = {{"/haptic/*", 1.0}, {"/haptic/farce", 1.0}};
+  ARGIL_EXPECT_THROW_WITH(pair.compare(options), InputError, "\"/haptic/farce\" fits no dataset");
+  ARGIL_EXPECT_THROW_WITH(pair.compare(options), InputError, "near.json: /tolerances/1/dataset");
+  options.tolerances = {{"/haptic", 1.0}};  // a group has no values
+  ARGIL_EXPECT_THROW_WITH(pair.compare(options), InputError, "\"/haptic\" fits no dataset");
+  options.tolerances.clear();
+  options.ignore = {"/haptic", "/provenence"};
+  ARGIL_EXPECT_THROW_WITH(pair.compare(options), InputError, "/ignore/1");
+}
+
+TEST(CompareResults, ARuleMayFitInTheSecondFileAlone) {
+  Pair pair;
+  pair.compare();
+  {
+    const hdf5::File file = hdf5::File::open_for_writing(pair.b);
+    const double one = 1.0;
+    file.root().write_array("extra", &one, {}, false, {"1", "a number"});
+  }
+  CompareOptions options;
+  options.tolerances = {{"/extra", 1.0}};
+  EXPECT_EQ(compare_results(pair.a, pair.b, options).differences.size(), 1U);
+}
+
+TEST(CompareResults, MatchesAPatternOfManyStarsAtOnce) {
+  const Pair pair;
+  CompareOptions options;
+  options.tolerances = {{std::string(60, '*') + "x", 1.0}};
+  ARGIL_EXPECT_THROW_WITH(pair.compare(options), InputError, "fits no dataset");  // none ends in x
+  std::string stars;
+  for (int i = 0; i < 30; ++i) stars += "*a";
+  options.tolerances = {{stars + "*", 1.0}};
+  ARGIL_EXPECT_THROW_WITH(pair.compare(options), InputError, "fits no dataset");
+}
+
+TEST(CompareResults, AStarStandsForAnyTextAlsoNone) {
+  Pair pair;
+  pair.change_haptic = [](sim::HapticRecord& record) { record.force.y() += 1.0; };
+  const auto accepts = [&](const std::string& pattern) {
+    CompareOptions options;
+    options.tolerances = {{pattern, 0.0, 2.0}, {"*", 0.0, 0.0}};
+    return pair.compare(options).is_equal();
+  };
+  for (const char* fits : {"/haptic/force", "*", "**", "/haptic/force*", "*/haptic/force", "/h*c/f*e",
+                           "*force", "/*/*", "/haptic/*rce", "/haptic/f*o*r*c*e", "*c*c*"})
+    EXPECT_TRUE(accepts(fits)) << fits;
+  // Each fits another dataset, so that it is not refused.
+  for (const char* other : {"/haptic/tor*", "*torque", "*/position", "/physics/*"})
+    EXPECT_FALSE(accepts(other)) << other;
+}
+
 TEST(CompareResults, FindsChangedMeshAndProvenanceAndLeavesOutWhatIsIgnored) {
   Pair pair;
   pair.header_b.tets(0, 0) = 4;

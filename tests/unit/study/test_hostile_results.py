@@ -72,6 +72,41 @@ class HostileResults(unittest.TestCase):
         self.change("loop.h5", link)
         self.assertEqual(self.call("compare", "loop.h5", "loop.h5")[0], 0)
 
+    def test_the_same_numbers_in_another_type_are_a_difference(self):
+        def store(kind):
+            def change(file):
+                file["haptic/whole"] = np.arange(5, dtype=kind)
+                file["haptic"].attrs.create("half", 0.5, dtype=kind)
+            return change
+
+        self.change("f8.h5", store("<f8"))
+        for kind in ["<f4", ">f8", "<i4"]:
+            self.change("other.h5", store(kind))
+            code, said, _ = self.call("compare", "f8.h5", "other.h5")
+            self.assertEqual(code, 5, kind)
+            self.assertIn("/haptic/whole: has another type", said)
+            self.assertIn("/haptic attribute half: has another type", said)
+        self.assertEqual(self.call("compare", "f8.h5", "f8.h5")[0], 0)
+
+    def test_a_forged_state_hash_is_found_whatever_tolerances_fit(self):
+        def forge(file):
+            file["frames/000001"].attrs["state_hash"] = "0" * 64
+
+        self.change("forged.h5", forge)
+        (self.folder / "none.json").write_text("{}")
+        (self.folder / "haptic.json").write_text('{"tolerances": [{"dataset": "/haptic/*", "relative": 0.5}]}')
+        (self.folder / "frames.json").write_text('{"tolerances": [{"dataset": "/frames/*", "relative": 0.5}]}')
+        for rules, code in [("none", 5), ("haptic", 5), ("frames", 0)]:
+            found, said, error = self.call("compare", self.result, "forged.h5", "--tolerances", f"{rules}.json")
+            self.assertEqual(found, code, rules + said + error)
+
+    def test_a_tolerance_that_fits_nothing_is_refused(self):
+        for rules, place in [({"tolerances": [{"dataset": "*" * 60 + "x"}]}, "/tolerances/0/dataset"),
+                             ({"ignore": ["/provenence"]}, "/ignore/0")]:
+            (self.folder / "rules.json").write_text(json.dumps(rules))
+            self.refuse(["rules.json", place, "fits no"], "compare", self.result, self.result, "--tolerances", "rules.json",
+                        code=2)
+
     def test_vertices_that_are_not_there(self):
         def name_vertex(file):
             file["mesh/tets"][5, 2] = 255 << 16
