@@ -123,5 +123,7 @@ class ResultFile {
 /// skin with saturation and region of influence, one time step a frame. It names the result file relative to
 /// itself. Throws IoError.
 void write_xdmf(const std::string& result_file, const std::string& xdmf_file);
+/// Is it there, and was it written to its end?
+bool has_whole_xdmf(const std::string& xdmf_file);
 
 }  // namespace argil::output

@@ -58,12 +58,20 @@ std::string with_prefix(double value, const std::string& unit) {
 }
 
 void write_file(const std::string& file, const std::string& content) {
+  write_file(file, [&](std::ostream& out) { out << content; });
+}
+
+void write_file(const std::string& file, const std::function<void(std::ostream&)>& write) {
   errno = 0;
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << content;
-  stream.close();
-  if (!stream)
+  try {
+    std::ofstream stream;
+    stream.exceptions(std::ios::failbit | std::ios::badbit);  // at once, while errno is that of the failure
+    stream.open(file, std::ios::binary | std::ios::trunc);
+    write(stream);
+    stream.close();
+  } catch (const std::ios_base::failure&) {
     throw IoError(file, std::string("cannot be written: ") + std::strerror(errno != 0 ? errno : EIO));
+  }
 }
 
 }  // namespace argil::output

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <ostream>
 #include <string>
 
 namespace argil::output {
@@ -16,5 +18,7 @@ std::string with_prefix(double value, const std::string& unit);
 
 /// Writes a whole file. Throws IoError with the system's reason.
 void write_file(const std::string& file, const std::string& content);
+/// The same, piece by piece: memory does not grow with the file.
+void write_file(const std::string& file, const std::function<void(std::ostream&)>& write);
 
 }  // namespace argil::output

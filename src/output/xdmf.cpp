@@ -1,5 +1,8 @@
 #include <filesystem>
-#include <sstream>
+#include <fstream>
+#include <locale>
+#include <ostream>
+#include <string_view>
 
 #include "hdf5/file.h"
 #include "output/result_file.h"
@@ -12,9 +15,11 @@ using hdf5::Dataset;
 using hdf5::Element;
 using hdf5::Group;
 
+constexpr std::string_view kEnd = "</Xdmf>\n";
+
 // Whole datasets only: a part of a dataset (HyperSlab) is not opened by ParaView's readers.
 struct Writer {
-  std::ostringstream text;
+  std::ostream& text;
   std::string file;  // as the XDMF names it, escaped
 
   void data_item(const Dataset& dataset) {
@@ -85,16 +90,24 @@ std::string relative_name(const std::string& result_file, const std::string& xdm
 void write_xdmf(const std::string& result_file, const std::string& xdmf_file) {
   const hdf5::File file = hdf5::File::open_for_reading(result_file);
   const Group root = file.root();
-  Writer out;
-  out.text.precision(17);
-  out.text.imbue(std::locale::classic());
-  out.file = escape_xml(relative_name(result_file, xdmf_file));
-  out.text << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
-  write_collection(out, "cage", root, write_cage);
-  const bool has_skin = root.open_group("mesh").open_dataset("skin_triangles").shape()[0] > 0;
-  if (has_skin) write_collection(out, "skin", root, write_skin);
-  out.text << "  </Domain>\n</Xdmf>\n";
-  write_file(xdmf_file, out.text.str());
+  write_file(xdmf_file, [&](std::ostream& text) {
+    text.precision(17);
+    text.imbue(std::locale::classic());
+    Writer out{text, escape_xml(relative_name(result_file, xdmf_file))};
+    text << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
+    write_collection(out, "cage", root, write_cage);
+    const bool has_skin = root.open_group("mesh").open_dataset("skin_triangles").shape()[0] > 0;
+    if (has_skin) write_collection(out, "skin", root, write_skin);
+    text << "  </Domain>\n" << kEnd;
+  });
+}
+
+bool has_whole_xdmf(const std::string& xdmf_file) {
+  std::ifstream file(xdmf_file, std::ios::binary);
+  std::string end(kEnd.size(), '\0');
+  file.seekg(-static_cast<std::streamoff>(kEnd.size()), std::ios::end);
+  file.read(end.data(), static_cast<std::streamsize>(end.size()));
+  return file && end == kEnd;
 }
 
 }  // namespace argil::output

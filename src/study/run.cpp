@@ -27,7 +27,9 @@ int print_ready(const scenario::Scenario& s, const sim::Simulation& simulation, 
   return kDone;
 }
 
-int print_done_before(const std::string& result, const RunOptions& options) {
+int end_done_before(const std::string& result, const RunOptions& options) {
+  if (options.writes_xdmf && !output::has_whole_xdmf(name_xdmf(result)))  // killed before its end, or removed
+    output::write_xdmf(result, name_xdmf(result));
   if (!options.quiet) std::printf("%s: complete already\n", result.c_str());
   return kDone;
 }
@@ -163,7 +165,7 @@ int run(const RunOptions& options) {
   HandMotion hand(s, scene.trace);
   ResumePoint from;
   if (options.resume) from = find_resume_point(result, identity);
-  if (from.kind == ResumePoint::Kind::done) return print_done_before(result, options);
+  if (from.kind == ResumePoint::Kind::done) return end_done_before(result, options);
   if (from.kind == ResumePoint::Kind::checkpoint) {
     simulation.restore(from.state, result);
     if (full) full->restore(from.state, result);

@@ -195,6 +195,14 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(self.call("run", "scene.json", "-o", "out.h5")[0], 0)
         code, out, _ = self.call("run", "scene.json", "-o", "out.h5", "--resume")
         self.assertEqual((code, out), (0, "out.h5: complete already\n"))
+        xdmf = self.folder / "out.xdmf"
+        whole = xdmf.read_bytes()
+        for left in (None, whole[:len(whole) // 2], b"x"):  # killed before the XDMF was there, or while it was written
+            xdmf.unlink()
+            if left is not None:
+                xdmf.write_bytes(left)
+            self.assertEqual(self.call("run", "scene.json", "-o", "out.h5", "--resume")[0], 0)
+            self.assertEqual(xdmf.read_bytes(), whole)
         code, _, error = self.call("run", "scene.json", "-o", "out.h5", "--resume", "--set", "/water/porosity=0.31")
         self.assertEqual(code, 2)
         self.assertIn("out.h5: /provenance/scenario_sha256: was written by another scenario", error)
