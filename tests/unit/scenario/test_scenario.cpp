@@ -139,7 +139,7 @@ TEST_F(ScenarioFile, ValuesOutsideTheirRangeNamePointerValueRangeAndUnit) {
   expect_refused("/material/youngs_modulus_Pa=0",
                  {"/material/youngs_modulus_Pa", "0 is outside (0.0, ∞) Pa", "give a value in that range"});
   expect_refused("/water/porosity=1", {"/water/porosity", "1 is outside (0.0, 1.0)"});
-  expect_refused("/haptics/period_s=1", {"/haptics/period_s", "1 is outside (0.0, 1.0) s"});
+  expect_refused("/haptics/period_s=1", {"/haptics/period_s", "1 is outside [1e-06, 1.0) s"});
   expect_refused("/tool/shape/subdivisions=7", {"/tool/shape/subdivisions", "7 is outside [0, 6]; give"});
   expect_refused("/body/loads/gravity_m_per_s2=[0,0]",
                  {"/body/loads/gravity_m_per_s2", "[0,0] is not a list of 3 numbers in m/s²"});
