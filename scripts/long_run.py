@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 """Runs an hour of ticks on a small ball, with frames, checkpoints and a hand that comes and goes, and prints what memory the
-process has at several times. Exit code 1 when it still grows: more in the last half than --growth MB.
+process has at several times and at its very end. Exit code 1 when memory grows by more than what the library keeps of a file's structure,
+--growth kB a second of ticks in the second half (and 2 MB, for the heap grows in steps), or by more than --end MB
+after the last tick.
 
-Usage: long_run.py ARGIL [--seconds 3600] [--growth 10]
+Usage: long_run.py ARGIL [--seconds 3600] [--growth 6] [--end 4]
 """
 import argparse
 import json
@@ -20,6 +22,7 @@ SETTINGS = ["/haptics/physics_period_ticks=10", "/haptics/water_period_ticks=10"
             "/output/checkpoint_period_ticks=1000", "/tool/mode=trace", "/contact/friction=0.3"]
 SHARES = [0.0025, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.99]
 SAMPLES_PER_S = 20
+HEAP_STEP_MB = 2.0
 
 
 def write_motion(file, seconds):
@@ -39,7 +42,8 @@ def read_memory(pid):
 
 
 def watch(command, folder, seconds):
-    """Prints a line when each share of the run is over, by the program's own progress bar. Returns what it had each time."""
+    """Prints a line when each share of the run is over, by the program's own progress bar. Returns the largest memory that it had each
+    time and at the end."""
     try:
         screen, terminal = pty.openpty()
     except OSError as missing:
@@ -60,26 +64,31 @@ def watch(command, folder, seconds):
                 print(f"{shares.pop(0) * seconds:8.0f} s of ticks   {now:6.1f} MB resident, {most:6.1f} MB at most, file {size:8.1f} MB",
                       flush=True)
                 seen.append(most)
-        if run.wait() != 0:
+        _, status, used = os.wait4(run.pid, 0)
+        run.returncode = os.waitstatus_to_exitcode(status)
+        if run.returncode != 0:
             raise SystemExit(f"argil run ended with {run.returncode}: {text}")
-    return seen
+    return seen, used.ru_maxrss / 1024
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("argil")
     parser.add_argument("--seconds", type=float, default=3600.0)
-    parser.add_argument("--growth", type=float, default=10.0)
+    parser.add_argument("--growth", type=float, default=6.0)
+    parser.add_argument("--end", type=float, default=4.0)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as temp:
         folder = Path(temp)
         write_motion(folder / "long.csv", options.seconds)
         sets = [word for setting in SETTINGS for word in ("--set", setting)]
-        seen = watch([str(Path(options.argil).resolve()), "run", SCENE, "--trace", "long.csv", "-o", "long.h5", *sets], folder,
+        seen, end = watch([str(Path(options.argil).resolve()), "run", SCENE, "--trace", "long.csv", "-o", "long.h5", *sets], folder,
                      options.seconds)
+    half = options.seconds * (SHARES[-1] - 0.5)
     growth = seen[-1] - seen[SHARES.index(0.5)]
-    print(f"{options.seconds * 1000:.0f} ticks; {growth:.1f} MB more in the second half")
-    return not growth <= options.growth
+    print(f"{options.seconds * 1000:.0f} ticks; {growth:.1f} MB more in the second half, {1024 * growth / half:.1f} kB a second of ticks; "
+          f"{end:.1f} MB at most with the end, when the XDMF is written")
+    return not (growth <= options.growth * half / 1024 + HEAP_STEP_MB and end - seen[-1] <= options.end)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <locale>
 #include <ostream>
 #include <string_view>
+#include <vector>
 
 #include "hdf5/file.h"
 #include "output/result_file.h"
@@ -17,65 +19,75 @@ using hdf5::Group;
 
 constexpr std::string_view kEnd = "</Xdmf>\n";
 
-// Whole datasets only: a part of a dataset (HyperSlab) is not opened by ParaView's readers.
+// Whole datasets only: a part of a dataset (HyperSlab) is not opened by ParaView's readers. Arrays of a name
+// have the same shape in all frames, so only those of the first are opened: opening costs memory that stays.
 struct Writer {
   std::ostream& text;
   std::string file;  // as the XDMF names it, escaped
 
-  void data_item(const Dataset& dataset) {
+  /// The dataset `path`, of the shape and type of `like`.
+  void data_item(const Dataset& like, const std::string& path) {
     text << "<DataItem Format=\"HDF\" Dimensions=\"";
     const char* gap = "";
-    for (const std::uint64_t length : dataset.shape()) {
+    for (const std::uint64_t length : like.shape()) {
       text << gap << length;
       gap = " ";
     }
-    const bool is_real = dataset.element() == Element::real64;
+    const bool is_real = like.element() == Element::real64;
     text << "\" NumberType=\"" << (is_real ? "Float\" Precision=\"8" : "Int\" Precision=\"4") << "\">" << file
-         << ":" << escape_xml(dataset.path()) << "</DataItem>";
+         << ":" << escape_xml(path) << "</DataItem>";
   }
-
-  void attribute(const Dataset& dataset, const char* name, const char* type, const char* centre) {
-    text << "        <Attribute Name=\"" << name << "\" AttributeType=\"" << type << "\" Center=\"" << centre
-         << "\">";
-    data_item(dataset);
-    text << "</Attribute>\n";
-  }
-
-  void begin_grid(const char* name, double time, const char* topology, const Dataset& elements,
-                  const Dataset& position) {
-    text << "      <Grid Name=\"" << name << "\" GridType=\"Uniform\">\n        <Time Value=\"" << time
-         << "\"/>\n        <Topology TopologyType=\"" << topology << "\" NumberOfElements=\""
-         << elements.shape()[0] << "\">";
-    data_item(elements);
-    text << "</Topology>\n        <Geometry GeometryType=\"XYZ\">";
-    data_item(position);
-    text << "</Geometry>\n";
-  }
-  void end_grid() { text << "      </Grid>\n"; }
 };
 
-void write_cage(Writer& out, const Group& mesh, const Group& frame) {
-  out.begin_grid("cage", frame.read_real("time"), "Tetrahedron", mesh.open_dataset("tets"),
-                 frame.open_dataset("position"));
-  out.attribute(frame.open_dataset("saturation"), "saturation", "Scalar", "Cell");
-  out.attribute(frame.open_dataset("plastic_strain_norm"), "plastic_strain_norm", "Scalar", "Cell");
-  out.end_grid();
-}
+/// One of the body's two surfaces and what it shows.
+struct Picture {
+  struct Attribute {
+    const char* name;
+    const char* dataset;
+  };
+  const char* name;
+  const char* elements;  // in /mesh
+  const char* topology;
+  const char* position;
+  const char* centre;
+  std::array<Attribute, 2> attributes;
+};
 
-void write_skin(Writer& out, const Group& mesh, const Group& frame) {
-  out.begin_grid("skin", frame.read_real("time"), "Triangle", mesh.open_dataset("skin_triangles"),
-                 frame.open_dataset("skin_position"));
-  out.attribute(frame.open_dataset("skin_saturation"), "saturation", "Scalar", "Node");
-  out.attribute(frame.open_dataset("skin_influence"), "influence", "Scalar", "Node");
-  out.end_grid();
-}
+constexpr Picture kCage = {
+    "cage",     "tets", "Tetrahedron",
+    "position", "Cell", {{{"saturation", "saturation"}, {"plastic_strain_norm", "plastic_strain_norm"}}}};
+constexpr Picture kSkin = {
+    "skin",     "skin_triangles",
+    "Triangle", "skin_position",
+    "Node",     {{{"saturation", "skin_saturation"}, {"influence", "skin_influence"}}}};
 
-template <class WriteGrid>
-void write_collection(Writer& out, const char* name, const Group& root, WriteGrid write_grid) {
-  const Group mesh = root.open_group("mesh");
+void write_collection(Writer& out, const Picture& picture, const Group& root) {
+  const Dataset elements = root.open_group("mesh").open_dataset(picture.elements);
   const Group frames = root.open_group("frames");
-  out.text << "    <Grid Name=\"" << name << "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  for (const std::string& frame : frames.names()) write_grid(out, mesh, frames.open_group(frame));
+  out.text << "    <Grid Name=\"" << picture.name
+           << "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  std::vector<Dataset> first;  // position, then the attributes
+  for (const std::string& number : frames.names()) {
+    const Group frame = frames.open_group(number);
+    if (first.empty()) {
+      first.push_back(frame.open_dataset(picture.position));
+      for (const auto& attribute : picture.attributes) first.push_back(frame.open_dataset(attribute.dataset));
+    }
+    out.text << "      <Grid Name=\"" << picture.name << "\" GridType=\"Uniform\">\n        <Time Value=\""
+             << frame.read_real("time") << "\"/>\n        <Topology TopologyType=\"" << picture.topology
+             << "\" NumberOfElements=\"" << elements.shape()[0] << "\">";
+    out.data_item(elements, elements.path());
+    out.text << "</Topology>\n        <Geometry GeometryType=\"XYZ\">";
+    out.data_item(first[0], frame.path() + "/" + picture.position);
+    out.text << "</Geometry>\n";
+    for (std::size_t i = 0; i < picture.attributes.size(); ++i) {
+      out.text << "        <Attribute Name=\"" << picture.attributes[i].name
+               << "\" AttributeType=\"Scalar\" Center=\"" << picture.centre << "\">";
+      out.data_item(first[i + 1], frame.path() + "/" + picture.attributes[i].dataset);
+      out.text << "</Attribute>\n";
+    }
+    out.text << "      </Grid>\n";
+  }
   out.text << "    </Grid>\n";
 }
 
@@ -95,9 +107,9 @@ void write_xdmf(const std::string& result_file, const std::string& xdmf_file) {
     text.imbue(std::locale::classic());
     Writer out{text, escape_xml(relative_name(result_file, xdmf_file))};
     text << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
-    write_collection(out, "cage", root, write_cage);
+    write_collection(out, kCage, root);
     const bool has_skin = root.open_group("mesh").open_dataset("skin_triangles").shape()[0] > 0;
-    if (has_skin) write_collection(out, "skin", root, write_skin);
+    if (has_skin) write_collection(out, kSkin, root);
     text << "  </Domain>\n" << kEnd;
   });
 }
