@@ -15,6 +15,9 @@ namespace {
 // of either stay countable.
 constexpr double kShortestTick = 1e-6;
 constexpr double kLongestRelease = 100.0;
+// Of clay, water and all that is stiffer, diamond (1e12 Pa) by far: ratios and products of two stay numbers.
+constexpr double kLeastModulus = 1e-9;
+constexpr double kLargestModulus = 1e18;
 
 /// Of a body or tool, and, as wide, of metres per unit of a file.
 Range size_range() {
@@ -129,8 +132,8 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
 }
 
 void bind_material(Binder& b, sim::Params& p) {
-  b.number("/material/youngs_modulus_Pa", p.elastic.youngs_modulus, positive(), "Pa",
-           "Young's modulus E of the dry clay.")
+  b.number("/material/youngs_modulus_Pa", p.elastic.youngs_modulus, between(kLeastModulus, kLargestModulus),
+           "Pa", "Young's modulus E of the dry clay.")
       .required = true;
   b.number("/material/poissons_ratio", p.elastic.poissons_ratio, inside(-1, 0.5), "",
            "Poisson's ratio ν of the dry clay.")
@@ -139,10 +142,10 @@ void bind_material(Binder& b, sim::Params& p) {
   material::Moisture& m = p.moisture;
   b.choice("/material/effective_medium/scheme", m.medium.scheme, scheme_names(),
            "Effective stiffness of clay with water (eq. 6 and relatives); `dilute` is the paper's.");
-  b.number("/material/effective_medium/fluid_bulk_modulus_Pa", m.medium.fluid_bulk_modulus, not_negative(),
-           "Pa", "K_I of the water; 0: drained, 2.2e9: undrained.");
-  b.number("/material/effective_medium/fluid_shear_modulus_Pa", m.medium.fluid_shear_modulus, not_negative(),
-           "Pa", "G_I of the water.");
+  b.number("/material/effective_medium/fluid_bulk_modulus_Pa", m.medium.fluid_bulk_modulus,
+           between(0, kLargestModulus), "Pa", "K_I of the water; 0: drained, 2.2e9: undrained.");
+  b.number("/material/effective_medium/fluid_shear_modulus_Pa", m.medium.fluid_shear_modulus,
+           between(0, kLargestModulus), "Pa", "G_I of the water.");
   b.number("/material/effective_medium/aspect", m.medium.aspect, between(1e-4, 1e4), "",
            "Pores' length along their axis over their width; 1: spheres.");
   b.choice<material::Orientation>(
@@ -182,8 +185,8 @@ void bind_material(Binder& b, sim::Params& p) {
   b.numbers("/material/moisture/table_saturation", m.table_saturation, between(0, 1), "",
             "table: increasing, from 0 to 1.")
       .applies = table_only;
-  b.numbers("/material/moisture/table_youngs_modulus_Pa", m.table_youngs_modulus, positive(), "Pa",
-            "table: Young's modulus at each.")
+  b.numbers("/material/moisture/table_youngs_modulus_Pa", m.table_youngs_modulus,
+            between(kLeastModulus, kLargestModulus), "Pa", "table: Young's modulus at each.")
       .applies = table_only;
   b.numbers("/material/moisture/table_yield", m.table_yield, not_negative(), "",
             "table: yield strain at each.")

@@ -69,6 +69,20 @@ TEST_F(ExtremeNumbers, OfOtherToolsHandsAndLawsAreRefusedOrMakeAScene) {
             400);
 }
 
+TEST_F(ExtremeNumbers, OfClayAndWaterTogetherAreRefusedOrMakeAScene) {
+  test::write_text(folder / "scene.json", test::make_ball_scenario(trace));
+  for (const std::string scheme :
+       {"dilute", "dilute_strain", "mori_tanaka", "self_consistent", "differential", "hs_lower", "hs_upper"})
+    for (const std::string clay : {"1e-300", "1e-9", "1e5", "1e18", "1e300"})
+      for (const std::string water : {"0", "1e-300", "2.2e9", "1e18", "1e300"})
+        for (const std::string shear : {"0", "1e-300", "1e18"})
+          try_setting(
+              "/material/effective_medium/scheme=" + scheme,
+              {"/material/youngs_modulus_Pa=" + clay, "/body/initial_saturation=0.8",
+               "/material/effective_medium/fluid_bulk_modulus_Pa=" + water,
+               "/material/effective_medium/fluid_shear_modulus_Pa=" + shear, "/dynamics/allow_locking=true"});
+}
+
 TEST_F(ExtremeNumbers, OfBodyToolAndClockAreRefusedByTheirRange) {
   const auto expect_range = [&](const std::string& setting, const std::string& range) {
     const std::string pointer = setting.substr(0, setting.find('='));
