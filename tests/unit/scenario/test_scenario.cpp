@@ -137,7 +137,7 @@ TEST_F(ScenarioFile, DuplicateKeysAreRefusedAtAnyDepthAndInSettings) {
 
 TEST_F(ScenarioFile, ValuesOutsideTheirRangeNamePointerValueRangeAndUnit) {
   expect_refused("/material/youngs_modulus_Pa=0",
-                 {"/material/youngs_modulus_Pa", "0 is outside (0.0, ∞) Pa", "give a value in that range"});
+                 {"/material/youngs_modulus_Pa", "0 is outside [1e-09, 1e+18] Pa", "give a value in that range"});
   expect_refused("/water/porosity=1", {"/water/porosity", "1 is outside (0.0, 1.0)"});
   expect_refused("/haptics/period_s=1", {"/haptics/period_s", "1 is outside [1e-06, 1.0) s"});
   expect_refused("/tool/shape/subdivisions=7", {"/tool/shape/subdivisions", "7 is outside [0, 6]; give"});
