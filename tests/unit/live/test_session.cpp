@@ -170,7 +170,9 @@ TEST_P(EveryWay, AlsoWhereThePhysicsIsSlow) {
   const Recorded recorded = record(params, options, hand);
   ASSERT_EQ(recorded.ticks.size(), 300U);
   EXPECT_LE(recorded.steps.size(), 101U);  // three ticks a step
-  for (std::size_t i = 1; i < recorded.steps.size(); ++i) EXPECT_GT(recorded.steps[i].timing.late, 0) << i;
+  // The last one may begin after a wait that the session's end cut short.
+  for (std::size_t i = 1; i + 1 < recorded.steps.size(); ++i)
+    EXPECT_GT(recorded.steps[i].timing.late, 0) << i;
   expect_replays(params, recorded);
 }
 
