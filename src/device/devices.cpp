@@ -84,8 +84,7 @@ std::string describe_devices(const std::vector<std::string>& names, double patie
   const DeviceSample somewhere;
   options.intent.time = {0.0, 1.0};
   options.intent.samples = {somewhere, somewhere};
-  std::vector<std::unique_ptr<HapticDevice>>
-      devices;  // all of them, so that it refuses before it looks for any
+  std::vector<std::unique_ptr<HapticDevice>> devices;  // all: it refuses before it looks for any
   for (const std::string& name : names) devices.push_back(make_device(name, options));
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -73,10 +73,8 @@ std::vector<Row> run_rows(const scenario::ChartStudy& study, const CaseOptions& 
     row.result = results[i];
     if (!row.result.file.empty() && row.result.exit_code <= 128) {
       const output::ResultReader reader(row.result.file);
-      row.figures = compute_figures(reader);
       const Settings settings = join(study.settings, row.settings);
-      if (!works_by_hand_alone(load(make_run_options(study.scenario, settings))))
-        row.figures.energy_gain = kUnknown;
+      row.figures = compute_figures(reader, load(make_run_options(study.scenario, settings)));
       const auto& other = i == kReference ? refined : truth;  // the reference's own error: to the finer one
       if (row.result.exit_code == kDone && i != kRefined && other) compare(row, reader, *other);
     }

@@ -158,6 +158,13 @@ double compute_chatter(const std::vector<sim::HapticRecord>& haptic) {
   return compute_share_above(force, haptic.back().time / static_cast<double>(haptic.size()), kChatterHz);
 }
 
+/// Does nothing but the hand work on the body: no gravity, load, support that moves, or clay that swells?
+bool works_by_hand_alone(const scenario::Scenario& s) {
+  const auto moves = [](const solid::Support& support) { return !support.displacement.isZero(0.0); };
+  return s.params.solid.gravity.isZero(0.0) && s.body.loads.nodal.empty() && s.body.loads.pressure.empty() &&
+         std::none_of(s.body.fixed.begin(), s.body.fixed.end(), moves) && s.params.water.swelling == 0.0;
+}
+
 }  // namespace
 
 RunErrors compute_errors(const output::ResultReader& run, const output::ResultReader& truth) {
@@ -203,13 +210,19 @@ double compute_share_above(const Points& force, double period, double frequency)
   return all > 0.0 ? std::sqrt(above / all) : 0.0;
 }
 
-RunFigures compute_figures(const output::ResultReader& run) {
+double compute_peak_force(const std::vector<sim::HapticRecord>& haptic) {
+  double peak = 0.0;
+  for (const sim::HapticRecord& record : haptic) peak = std::max(peak, record.force.norm());
+  return peak;
+}
+
+RunFigures compute_figures(const output::ResultReader& run, const scenario::Scenario& s) {
   RunFigures figures;
   const auto haptic = run.read_haptic();
-  for (const sim::HapticRecord& record : haptic)
-    figures.peak_force = std::max(figures.peak_force, record.force.norm());
+  figures.peak_force = compute_peak_force(haptic);
   figures.simulated_seconds = haptic.empty() ? 0.0 : haptic.back().time;
   figures.chatter = compute_chatter(haptic);
+  if (!works_by_hand_alone(s)) figures.energy_gain = kUnknown;
   const auto physics = run.read_physics();
   if (physics.empty()) return figures;
   const auto energy = [](const sim::PhysicsRecord& r) {
@@ -226,14 +239,8 @@ RunFigures compute_figures(const output::ResultReader& run) {
   }
   figures.steps = static_cast<double>(physics.size());
   figures.factorisations = physics.back().factorisations;
-  figures.energy_gain = scale > 0.0 ? gain / scale : 0.0;
+  if (!std::isnan(figures.energy_gain)) figures.energy_gain = scale > 0.0 ? gain / scale : 0.0;
   return figures;
-}
-
-bool works_by_hand_alone(const scenario::Scenario& s) {
-  const auto moves = [](const solid::Support& support) { return !support.displacement.isZero(0.0); };
-  return s.params.solid.gravity.isZero(0.0) && s.body.loads.nodal.empty() && s.body.loads.pressure.empty() &&
-         std::none_of(s.body.fixed.begin(), s.body.fixed.end(), moves) && s.params.water.swelling == 0.0;
 }
 
 }  // namespace argil::study

@@ -34,16 +34,18 @@ struct RunFigures {
   double solves = 0.0;      ///< linearisations, one a step without Newton
   double iterations = 0.0;  ///< of the linear solver
   double factorisations = 0.0;
-  double peak_force = 0.0;   ///< [N]
-  double energy_gain = 0.0;  ///< largest K + W + D − contact work since the start, over the largest |contact
-                             ///< work| or K + W at the start; says something where works_by_hand_alone
+  double peak_force = 0.0;  ///< [N]
+  double energy_gain =
+      0.0;  ///< largest K + W + D − contact work since the start, over the largest |contact
+            ///< work| or K + W at the start; no number where more than the hand works on the body
   double chatter = 0.0;  ///< rms of the hand force above 50 Hz over its rms
 };
 
-RunFigures compute_figures(const output::ResultReader& run);
+/// `s` is what was run.
+RunFigures compute_figures(const output::ResultReader& run, const scenario::Scenario& s);
 
-/// Does nothing but the hand work on the body: no gravity, load, support that moves, or clay that swells?
-bool works_by_hand_alone(const scenario::Scenario& s);
+/// Largest |F| at the hand [N].
+double compute_peak_force(const std::vector<sim::HapticRecord>& haptic);
 
 /// Rms of a series of forces (3×n) above `frequency` [Hz] over its rms, Hann windowed; `period` [s] apart.
 double compute_share_above(const Points& force, double period, double frequency);

@@ -80,12 +80,11 @@ void StabilityMap::judge(Place& place) const {
   std::optional<output::ResultReader> truth;
   if (!place.truth.file.empty() && place.truth.exit_code == kDone) {
     truth.emplace(place.truth.file);
-    place.true_peak_force = compute_figures(*truth).peak_force;
+    place.true_peak_force = compute_peak_force(truth->read_haptic());
   }
   if (place.result.exit_code == kDone) {
     const output::ResultReader reader(place.result.file);
-    place.figures = compute_figures(reader);
-    if (!works_by_hand_alone(load_place(place, {}))) place.figures.energy_gain = kUnknown;
+    place.figures = compute_figures(reader, load_place(place, {}));
     try {
       if (truth) place.errors = compute_errors(reader, *truth);
     } catch (const InputError& error) {
