@@ -44,9 +44,10 @@ std::vector<Row> list_rows(const scenario::ChartStudy& study) {
 }
 
 /// What cannot be compared is a row of the table, too.
-void compare(Row& row, const output::ResultReader& run, const output::ResultReader& truth) {
+void compare(Row& row, const output::ResultReader& run, const output::ResultReader& truth,
+             const ComparedElements& elements) {
   try {
-    row.errors = compute_errors(run, truth);
+    row.errors = compute_errors(run, truth, elements);
   } catch (const InputError& error) {
     row.result.reason = error.what();
   }
@@ -68,15 +69,20 @@ std::vector<Row> run_rows(const scenario::ChartStudy& study, const CaseOptions& 
   std::optional<output::ResultReader> truth, refined;
   if (results[kReference].exit_code == kDone) truth.emplace(results[kReference].file);
   if (results[kRefined].exit_code == kDone) refined.emplace(results[kRefined].file);
+  std::vector<scenario::Scenario> scenes(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (!results[i].file.empty()) scenes[i] = load(make_run_options(study.scenario, cases[i].settings));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Row& row = rows[i];
     row.result = results[i];
     if (!row.result.file.empty() && row.result.exit_code <= 128) {
       const output::ResultReader reader(row.result.file);
-      const Settings settings = join(study.settings, row.settings);
-      row.figures = compute_figures(reader, load(make_run_options(study.scenario, settings)));
-      const auto& other = i == kReference ? refined : truth;  // the reference's own error: to the finer one
-      if (row.result.exit_code == kDone && i != kRefined && other) compare(row, reader, *other);
+      row.figures = compute_figures(reader, scenes[i]);
+      const std::size_t other = i == kReference ? kRefined : kReference;  // its own error: to the finer one
+      const auto& other_reader = i == kReference ? refined : truth;
+      if (row.result.exit_code == kDone && i != kRefined && other_reader)
+        compare(row, reader, *other_reader,
+                {scenes[i].params.solid.element, scenes[other].params.solid.element});
     }
     OutcomeBounds bounds;
     bounds.compares = i != kRefined;

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "embed/tet_locator.h"
+#include "study/displacement_field.h"
 
 namespace argil::study {
 namespace {
@@ -74,9 +75,12 @@ void compare_forces(const std::vector<sim::HapticRecord>& run, const std::vector
 /// The truth's tets, and where their centroids lie in a run's mesh.
 class Samples {
  public:
-  Samples(const output::ResultHeader& run, const output::ResultHeader& truth)
+  Samples(const output::ResultHeader& run, const output::ResultHeader& truth,
+          const ComparedElements& elements)
       : m_run(run),
         m_truth(truth),
+        m_run_field(run.rest_position, run.tets, elements.run),
+        m_true_field(truth.rest_position, truth.tets, elements.truth),
         m_volume(truth.tets.cols()),
         m_place(static_cast<std::size_t>(truth.tets.cols())) {
     const embed::TetLocator locator({run.rest_position, run.tets, {}});
@@ -92,19 +96,14 @@ class Samples {
   }
   bool is_comparable() const { return m_is_comparable; }
 
-  void compare(const sim::Frame& run, const sim::Frame& truth, Squares& displacement,
-               Squares& saturation) const {
+  void compare(const sim::Frame& run, const sim::Frame& truth, Squares& displacement, Squares& saturation) {
+    m_run_field.set(run.position - m_run.rest_position);
+    m_true_field.set(truth.position - m_truth.rest_position);
     for (Eigen::Index t = 0; t < m_volume.size(); ++t) {
       const embed::TetLocator::Place& place = m_place[static_cast<std::size_t>(t)];
       if (place.tet < 0) continue;
-      Vec3 u = Vec3::Zero();
-      Vec3 u_true = Vec3::Zero();
-      for (int i = 0; i < 4; ++i) {
-        const int v = m_run.tets(i, place.tet);
-        const int w = m_truth.tets(i, t);
-        u += place.weights(i) * (run.position.col(v) - m_run.rest_position.col(v));
-        u_true += 0.25 * (truth.position.col(w) - m_truth.rest_position.col(w));
-      }
+      const Vec3 u = m_run_field.find(place.tet, place.weights);
+      const Vec3 u_true = m_true_field.find(static_cast<int>(t), Vec4::Constant(0.25));
       displacement.add(m_volume(t), (u - u_true).squaredNorm(), u_true.squaredNorm());
       const double S = truth.saturation(t);
       saturation.add(m_volume(t), std::pow(run.saturation(place.tet) - S, 2), S * S);
@@ -114,6 +113,8 @@ class Samples {
  private:
   const output::ResultHeader& m_run;
   const output::ResultHeader& m_truth;
+  DisplacementField m_run_field;
+  DisplacementField m_true_field;
   Field m_volume;
   std::vector<embed::TetLocator::Place> m_place;
   bool m_is_comparable = false;
@@ -125,10 +126,16 @@ std::optional<output::FrameInfo> find_frame(const std::vector<output::FrameInfo>
   return {};
 }
 
-void compare_frames(const output::ResultReader& run, const output::ResultReader& truth, RunErrors& errors) {
+bool is_same_skin(const Triangles& a, const Triangles& b) {
+  return a.cols() == b.cols() && a.cols() > 0 && a == b;
+}
+
+void compare_frames(const output::ResultReader& run, const output::ResultReader& truth,
+                    const ComparedElements& elements, RunErrors& errors) {
   const output::ResultHeader run_header = run.read_header();
   const output::ResultHeader true_header = truth.read_header();
-  const Samples samples(run_header, true_header);
+  Samples samples(run_header, true_header, elements);
+  const bool has_same_skin = is_same_skin(run_header.skin_triangles, true_header.skin_triangles);
   const std::vector<output::FrameInfo> frames = run.read_frame_list();
   Squares displacement, saturation, skin;
   std::optional<Points> rest_run, rest_true;
@@ -142,7 +149,7 @@ void compare_frames(const output::ResultReader& run, const output::ResultReader&
       rest_true = b.skin_position;
     }
     if (samples.is_comparable()) samples.compare(a, b, displacement, saturation);
-    if (rest_run->cols() == rest_true->cols() && rest_true->cols() > 0)
+    if (has_same_skin && a.skin_position.cols() == b.skin_position.cols())
       skin.add(1.0, (a.skin_position - *rest_run - b.skin_position + *rest_true).squaredNorm(),
                (b.skin_position - *rest_true).squaredNorm());
   }
@@ -167,7 +174,8 @@ bool works_by_hand_alone(const scenario::Scenario& s) {
 
 }  // namespace
 
-RunErrors compute_errors(const output::ResultReader& run, const output::ResultReader& truth) {
+RunErrors compute_errors(const output::ResultReader& run, const output::ResultReader& truth,
+                         const ComparedElements& elements) {
   RunErrors errors;
   const auto haptic = run.read_haptic();
   const auto records = find_records(haptic, truth.read_haptic());
@@ -176,7 +184,7 @@ RunErrors compute_errors(const output::ResultReader& run, const output::ResultRe
                      "compare runs of one motion, the truth's period a whole part of the other's");
   compare_forces(haptic, records, errors);
   errors.true_chatter = compute_chatter(records);
-  compare_frames(run, truth, errors);
+  compare_frames(run, truth, elements, errors);
   const auto run_physics = run.read_physics();
   const auto true_physics = truth.read_physics();
   if (!run_physics.empty() && !true_physics.empty() && true_physics.back().plastic_dissipation > 0.0)

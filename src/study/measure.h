@@ -4,6 +4,7 @@
 
 #include "output/result_reader.h"
 #include "scenario/scenario.h"
+#include "solid/parameters.h"
 
 namespace argil::study {
 
@@ -15,7 +16,8 @@ struct RunErrors {
   double peak_force = kUnknown;        ///< of max |F|
   double above_7_percent = kUnknown;   ///< share of the ticks in touch where |F − F₀| > 7 % of |F₀| …
   double above_10_percent = kUnknown;  ///< … 10 %: the range of the just noticeable difference of force
-  double displacement = kUnknown;      ///< L² over the truth's tets and all frames that both have
+  double displacement = kUnknown;      ///< L² over the truth's body and all frames that both have, by the
+                                       ///< centroids of its tets, each with its volume (DisplacementField)
   double skin = kUnknown;              ///< the same over skin vertices; both must have the same skin
   double saturation = kUnknown;        ///< L² over the truth's tets and all common frames
   double true_chatter =
@@ -23,9 +25,17 @@ struct RunErrors {
   double dissipation = kUnknown;  ///< of the plastic dissipation at the end
 };
 
-/// Compares two results at the times of the run's ticks and frames. Throws InputError when the truth lacks a
-/// tick.
-RunErrors compute_errors(const output::ResultReader& run, const output::ResultReader& truth);
+/// Of what elements the bodies of two results are.
+struct ComparedElements {
+  solid::ElementKind run = solid::ElementKind::p1;
+  solid::ElementKind truth = solid::ElementKind::p1;
+};
+
+/// Compares two results at the times of the run's ticks and frames. Displacement and saturation stay unknown
+/// where less than nine tenths of the truth's body lie in the run's mesh, and every error of what the truth
+/// has none of. Throws InputError when the truth lacks a tick.
+RunErrors compute_errors(const output::ResultReader& run, const output::ResultReader& truth,
+                         const ComparedElements& elements = {});
 
 /// What a run's own records say about it.
 struct RunFigures {

@@ -57,7 +57,7 @@ std::vector<Place> StabilityMap::run_places(const std::vector<std::pair<double, 
     place.y = points[i].second;
     place.result = results[stride * i];
     if (stride == 2) place.truth = results[stride * i + 1];
-    judge(place);
+    judge(place, extra);
   }
   return places;
 }
@@ -76,7 +76,7 @@ std::vector<std::size_t> StabilityMap::visit(const std::vector<std::pair<double,
   return list;
 }
 
-void StabilityMap::judge(Place& place) const {
+void StabilityMap::judge(Place& place, const Settings& extra) const {
   std::optional<output::ResultReader> truth;
   if (!place.truth.file.empty() && place.truth.exit_code == kDone) {
     truth.emplace(place.truth.file);
@@ -84,9 +84,13 @@ void StabilityMap::judge(Place& place) const {
   }
   if (place.result.exit_code == kDone) {
     const output::ResultReader reader(place.result.file);
-    place.figures = compute_figures(reader, load_place(place, {}));
+    const scenario::Scenario s = load_place(place, extra);
+    place.figures = compute_figures(reader, s);
     try {
-      if (truth) place.errors = compute_errors(reader, *truth);
+      if (truth)
+        place.errors = compute_errors(
+            reader, *truth,
+            {s.params.solid.element, load_place(place, join(extra, m_study.reference)).params.solid.element});
     } catch (const InputError& error) {
       place.result.reason = error.what();  // of this place alone
     }

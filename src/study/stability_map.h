@@ -50,7 +50,7 @@ class StabilityMap {
   std::vector<Place> run_places(const std::vector<std::pair<double, double>>& points,
                                 const Settings& extra) const;
   std::vector<std::size_t> visit(const std::vector<std::pair<double, double>>& points);
-  void judge(Place& place) const;
+  void judge(Place& place, const Settings& extra) const;
   bool turns(std::size_t a, std::size_t b) const;
   std::optional<double> find_middle(const Boundary& boundary) const;
   bool bisect();
