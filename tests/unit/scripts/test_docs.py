@@ -2,7 +2,8 @@
 """Types every command of the documentation, as a newcomer does who reads from top to bottom.
 
 Usage: test_docs.py BUILD. Every block of ```sh in every page runs in order under `bash -euo pipefail`, a page in a
-temporary folder of its own, which sees the project through links; what the commands write stays in it. A command that
+temporary folder of its own, which sees the project through links; what the commands write stays in it, and the project
+is afterwards as it was. A command that
 takes many minutes is typed in a shorter form, and every such form stands in SHORTENED. A command within the running
 text is held against the program's own help: the program is there and has the options that are named; those of INLINE
 are typed besides, or by the other test that stands there. Exit code 77 (skipped) where a figure cannot be drawn because
@@ -26,7 +27,7 @@ INLINE = {  # outside of blocks, as written → as typed, or the test that types
     "ctest --test-dir build -L quick": "ctest --test-dir build -L quick -N",
     "cmake --preset release": "cmake --list-presets | grep --quiet release",
     "scripts/build argil viewer": "scripts/build argil viewer",
-    "scripts/reproduce": "scripts/reproduce limits",  # of its items the one that runs no scene
+    "scripts/reproduce": "scripts/reproduce limits",  # of its items the one with the shortest runs
     "argil --version": "build/bin/argil --version",
     "cmake --install build": ("install.find_package",),
     "man argil": ("install.find_package",),
@@ -42,6 +43,12 @@ def find_pages():
         return [Path(name) for name in listed.stdout.split()]
     return [page.relative_to(ROOT) for folder in (".", "src", "results", "viewer", "tests")
             for page in sorted((ROOT / folder).glob("*.md" if folder == "." else "**/*.md"))]
+
+
+def find_changes():
+    """What git sees changed in the project, names and contents; nothing where there is no git."""
+    return [subprocess.run(["git", "-C", ROOT, *words], capture_output=True).stdout
+            for words in (("status", "--porcelain"), ("diff", "HEAD", "--binary"))]
 
 
 def split_page(page):
@@ -133,9 +140,11 @@ def main(build):
         print(f"skipped: {missing}")
         return 77
     newcomer = Newcomer(build)
-    pages = find_pages()
+    pages, changes = find_pages(), find_changes()
     counts = [newcomer.read(page) for page in pages]
     blocks, commands = (sum(count) for count in zip(*counts))
+    if find_changes() != changes:
+        newcomer.failures.append("the commands of the pages changed files of the project")
     print("\n".join(newcomer.failures))
     print(f"{len(pages)} pages: {blocks} blocks were typed, {commands} commands in the text held against their help")
     return 1 if newcomer.failures or blocks < 7 or commands < 50 else 0
