@@ -11,6 +11,7 @@
 #include "material/effective_medium.h"
 #include "scenario/medium_check.h"
 #include "scenario/parameter_table.h"
+#include "scenario/setting.h"
 
 namespace argil::scenario {
 namespace {
@@ -27,43 +28,6 @@ constexpr const char* kPaperPreset = R"({
   "dynamics": {"model": "linear", "implicit_contact": false},
   "haptics": {"physics_period_ticks": 14, "water_period_ticks": 14, "frame_period_ticks": 98, "between_frames": "hold"}
 })";
-
-/// Where a pointer that cannot be followed through `document` ends, in words.
-std::string find_dead_end(const Json& document, const std::string& pointer) {
-  const Json* at = &document;
-  std::size_t begin = 0;
-  while (begin < pointer.size()) {
-    const std::size_t end = std::min(pointer.find('/', begin + 1), pointer.size());
-    const std::string key = pointer.substr(begin + 1, end - begin - 1);
-    const std::string above = pointer.substr(0, begin);
-    if (at->is_array()) {
-      const bool is_number = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
-      if (!is_number || (key.size() > 1 && key[0] == '0') || key.size() > 9)
-        return above + " is a list, and \"" + key + "\" is no number of an element, from 0 on";
-      const std::size_t i = std::stoul(key);
-      if (i >= at->size()) break;
-      at = &(*at)[i];
-    } else if (at->is_object()) {
-      if (!at->contains(key)) break;
-      at = &(*at)[key];
-    } else {
-      return above + " is " + at->dump() + ", which holds nothing";
-    }
-    begin = end;
-  }
-  return "it is no JSON pointer (~ is written ~0, / in a key ~1)";
-}
-
-void apply_setting(Json& document, const Setting& setting, const std::string& file) {
-  Json value = setting.value;  // what is not JSON is a word
-  if (Json::accept(setting.value)) value = parse_json(setting.value, "--set " + setting.pointer);
-  try {
-    document[Json::json_pointer(setting.pointer)] = value;
-  } catch (const Json::exception&) {
-    throw InputError(file, setting.pointer, "cannot be set: " + find_dead_end(document, setting.pointer),
-                     "give a pointer such as /material/youngs_modulus_Pa or /body/fixed/0/offset_m");
-  }
-}
 
 void choose_body(Scenario& s, const Json& document) {
   if (!document.contains("body") || !document["body"].is_object())
@@ -315,14 +279,6 @@ void check_combinations(Scenario& s) {
 }
 
 }  // namespace
-
-Setting parse_setting(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (text.empty() || text[0] != '/' || equals == std::string::npos)
-    throw InputError("--set", text, "is not of the form /json/pointer=value",
-                     "write for instance --set /material/youngs_modulus_Pa=2e5");
-  return {text.substr(0, equals), text.substr(equals + 1)};
-}
 
 Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings) {
   Json document = read_json(file);

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "scenario/json_reader.h"
+#include "scenario/setting.h"
 
 namespace argil::scenario {
 namespace {
@@ -17,29 +18,103 @@ std::string resolve(const std::string& study, const std::string& scenario) {
   return (std::filesystem::path(study).parent_path() / scenario).lexically_normal().string();
 }
 
+std::string read_name(Reader& reader, const std::string& meaning) {
+  std::string name = reader.text("name", meaning);
+  if (name.find_first_not_of(" \t\n") == std::string::npos)
+    reader.refuse("name", "is empty", "give " + meaning);
+  return name;
+}
+
+bool has_pointer(const std::vector<Setting>& settings, const std::string& pointer) {
+  return std::any_of(settings.begin(), settings.end(),
+                     [&](const Setting& setting) { return setting.pointer == pointer; });
+}
+
 Curve read_curve(const Json& json, const std::string& file, const std::string& place) {
   Reader reader(json, file, place);
   Curve curve;
-  curve.name = reader.text("name", "what the legend calls it");
+  curve.name = read_name(reader, "what the legend calls it");
   curve.settings = reader.settings("settings");
   const Json* along = reader.find("along");
   curve.points = along ? reader.zip("along", *along) : std::vector<std::vector<Setting>>(1);
+  for (const Setting& setting : curve.points.front())
+    if (has_pointer(curve.settings, setting.pointer))
+      reader.refuse("settings", "\"" + setting.pointer + "\" is set by along, too",
+                    "leave it out of one of them");
   reader.finish();
   return curve;
+}
+
+/// Rows of a table are told apart by the name of their curve.
+void check_names(const ChartStudy& study) {
+  for (std::size_t i = 0; i < study.curves.size(); ++i) {
+    const std::string& name = study.curves[i].name;
+    const auto refuse = [&](const std::string& owner) {
+      throw InputError(study.file, "/curves/" + std::to_string(i) + "/name",
+                       "\"" + name + "\" is the name of " + owner, "give each curve a name of its own");
+    };
+    if (name == kReferenceName || name == kRefinedName) refuse("a run of the reference");
+    for (std::size_t k = 0; k < i; ++k)
+      if (study.curves[k].name == name) refuse("/curves/" + std::to_string(k) + ", too");
+  }
+}
+
+/// Settings put into the scene's document, later ones on top: what has no place there is refused by the
+/// study that sets it.
+class Scene {
+ public:
+  Scene(const std::string& study, const std::string& scenario) : m_study(study), m_scenario(scenario) {
+    std::error_code error;
+    if (!std::filesystem::exists(scenario, error))
+      throw InputError(study, "/scenario", "\"" + scenario + "\" does not exist",
+                       "check the path, which begins at the study's folder");
+    m_document = read_json(scenario);
+    if (!m_document.is_object())
+      throw InputError(scenario, "", "is not a JSON object", "a scenario is {\"about\": …}");
+  }
+  /// With settings that stand at `place` of the study.
+  [[nodiscard]] Scene with(const std::string& place, const std::vector<Setting>& settings) const {
+    Scene more = *this;
+    for (const Setting& setting : settings)
+      if (const auto obstacle = apply_setting(more.m_document, setting))
+        throw InputError(m_study, place,
+                         setting.pointer + " cannot be set in " + m_scenario + ": " + obstacle->problem,
+                         obstacle->remedy);
+    return more;
+  }
+
+ private:
+  std::string m_study;
+  std::string m_scenario;
+  Json m_document;
+};
+
+void check_settings(const ChartStudy& study) {
+  const Scene scene = Scene(study.file, study.scenario).with("/settings", study.settings);
+  static_cast<void>(scene.with("/reference", study.reference).with("/refined", study.refined));
+  for (std::size_t i = 0; i < study.curves.size(); ++i) {
+    const std::string place = "/curves/" + std::to_string(i);
+    const Scene curve = scene.with(place + "/settings", study.curves[i].settings);
+    for (const std::vector<Setting>& point : study.curves[i].points)
+      static_cast<void>(curve.with(place + "/along", point));
+  }
 }
 
 MapAxis read_axis(const Json& json, const std::string& file, const std::string& place) {
   Reader reader(json, file, place);
   MapAxis axis;
-  axis.name = reader.text("name", "what the axis is called, with its unit");
+  axis.name = read_name(reader, "what the axis is called, with its unit");
   const Json& pointers = reader.get("pointers", "the keys that take the value");
   if (!pointers.is_array() || pointers.empty())
     reader.refuse("pointers", "is not a list", "give [\"/json/pointer\", …]");
   for (const Json& pointer : pointers) {
     if (!pointer.is_string())
       reader.refuse("pointers", pointer.dump() + " is not a text", "give JSON pointers");
-    axis.pointers.push_back(pointer.get<std::string>());
-    reader.check_pointer("pointers", axis.pointers.back());
+    const std::string text = pointer.get<std::string>();
+    reader.check_pointer("pointers", text);
+    if (std::find(axis.pointers.begin(), axis.pointers.end(), text) != axis.pointers.end())
+      reader.refuse("pointers", "\"" + text + "\" stands twice", "leave it out once");
+    axis.pointers.push_back(text);
   }
   axis.is_logarithmic = reader.flag("logarithmic", false);
   axis.is_integer = reader.flag("integers", false);
@@ -59,13 +134,46 @@ MapAxis read_axis(const Json& json, const std::string& file, const std::string& 
 MapLimit read_limit(const Json& json, const std::string& file, const std::string& place, bool has_y) {
   Reader reader(json, file, place);
   MapLimit limit;
-  limit.name = reader.text("name", "what the limit is called, and its source");
+  limit.name = read_name(reader, "what the limit is called, and its source");
   limit.x = reader.numbers("x", reader.get("x", "places of the line's points"));
   if (has_y) limit.y = reader.numbers("y", reader.get("y", "places of the line's points"));
   if (has_y && limit.x.size() != limit.y.size())
     reader.refuse("y", "has another length than x", "give a pair for every point");
   reader.finish();
   return limit;
+}
+
+/// No key is of both axes.
+void check_axes(const StabilityStudy& study) {
+  for (const std::string& pointer : study.y.pointers)
+    if (std::find(study.x.pointers.begin(), study.x.pointers.end(), pointer) != study.x.pointers.end())
+      throw InputError(study.file, "/y/pointers", "\"" + pointer + "\" is set by /x, too",
+                       "leave it out of one of them");
+}
+
+/// What the study says to no effect.
+std::vector<std::string> list_notes(const StabilityStudy& study) {
+  std::vector<std::string> notes;
+  for (const auto& [axis, place] : {std::pair(&study.x, "/x"), std::pair(&study.y, "/y")})
+    for (const std::string& pointer : axis->pointers)
+      if (has_pointer(study.settings, pointer))
+        notes.push_back(study.file + ": /settings: \"" + pointer + "\" is set by " + place +
+                        ", too, whose values count; leave it out here");
+  return notes;
+}
+
+void check_settings(const StabilityStudy& study) {
+  const auto make_settings =
+      [](const MapAxis& axis) {  // any value shows whether the scene has a place for it
+        std::vector<Setting> settings;
+        for (const std::string& pointer : axis.pointers) settings.push_back({pointer, "0"});
+        return settings;
+      };
+  static_cast<void>(Scene(study.file, study.scenario)
+                        .with("/settings", study.settings)
+                        .with("/x/pointers", make_settings(study.x))
+                        .with("/y/pointers", make_settings(study.y))
+                        .with("/reference", study.reference));
 }
 
 }  // namespace
@@ -90,6 +198,8 @@ ChartStudy read_chart_study(const std::string& file) {
   for (std::size_t i = 0; i < curves.size(); ++i)
     study.curves.push_back(read_curve(curves[i], file, reader.place("curves") + "/" + std::to_string(i)));
   reader.finish();
+  check_names(study);
+  check_settings(study);
   return study;
 }
 
@@ -113,6 +223,9 @@ StabilityStudy read_stability_study(const std::string& file) {
                                         !study.y.values.empty()));
   }
   reader.finish();
+  check_axes(study);
+  study.notes = list_notes(study);
+  check_settings(study);
   return study;
 }
 

@@ -7,10 +7,14 @@
 
 namespace argil::scenario {
 
+/// What a chart's table calls the runs of its reference; no curve may have these names.
+inline constexpr const char* kReferenceName = "reference";
+inline constexpr const char* kRefinedName = "reference refined";
+
 /// Runs that differ in a few settings, one curve of a chart.
 struct Curve {
-  std::string name;
-  std::vector<Setting> settings;             ///< of all its points
+  std::string name;                          ///< not empty, and of this curve alone
+  std::vector<Setting> settings;             ///< of all its points; none that `points` set
   std::vector<std::vector<Setting>> points;  ///< what each point adds, in the file's order
 };
 
@@ -30,7 +34,7 @@ struct ChartStudy {
 /// One direction of a stability map.
 struct MapAxis {
   std::string name;                   ///< as drawn, with its unit
-  std::vector<std::string> pointers;  ///< keys that take the value
+  std::vector<std::string> pointers;  ///< keys that take the value; none of the other axis
   bool is_logarithmic = false;
   bool is_integer = false;
   std::vector<double> values;  ///< increasing
@@ -51,14 +55,16 @@ struct StabilityStudy {
   std::vector<Setting> settings;
   MapAxis x;
   MapAxis y;                       ///< without values: a line
-  std::vector<Setting> reference;  ///< makes of each point a run that counts as the truth; empty: none
+  std::vector<Setting> reference;  ///< makes of each point a run that counts as the truth, also in what an
+                                   ///< axis sets; empty: none
   double wrong_above = 0.1;        ///< relative L² error of the hand force beyond which a run is wrong [–]
   double bisect_to = 0.02;         ///< relative width to which boundaries along x are found; 0: not at all
   std::vector<MapLimit> limits;
+  std::vector<std::string> notes;  ///< what the user should know of it
 };
 
 /// Read and check a study file. Throw InputError naming file, pointer, value and remedy, IoError. Settings
-/// are checked when the scenario is loaded with them.
+/// must have a place in the scene; their values are checked when it is loaded with them.
 ChartStudy read_chart_study(const std::string& file);
 StabilityStudy read_stability_study(const std::string& file);
 

@@ -35,8 +35,8 @@ constexpr std::size_t kRefined = 1;
 
 std::vector<Row> list_rows(const scenario::ChartStudy& study) {
   std::vector<Row> rows(2);
-  rows[kReference] = {"reference", study.reference, {}, {}, {}, {}, {}};
-  rows[kRefined] = {"reference refined", join(study.reference, study.refined), {}, {}, {}, {}, {}};
+  rows[kReference] = {scenario::kReferenceName, study.reference, {}, {}, {}, {}, {}};
+  rows[kRefined] = {scenario::kRefinedName, join(study.reference, study.refined), {}, {}, {}, {}, {}};
   for (const scenario::Curve& curve : study.curves)
     for (const Settings& point : curve.points)
       rows.push_back({curve.name, join(curve.settings, point), point, {}, {}, {}, {}});
@@ -167,6 +167,9 @@ int print_reference_failure(const Row& row) {
 /// Runs the study and writes its table; the rows.
 std::vector<Row> make_chart(const scenario::ChartStudy& study, StudyOptions& options) {
   name_outputs(options);
+  std::vector<Settings> all;
+  for (const Row& row : list_rows(study)) all.push_back(join(study.settings, row.settings));
+  check_outputs(options, study.scenario, all);
   const std::vector<Row> rows = run_rows(study, options.cases);
   const output::StudyTable table = make_table(study, rows);
   output::write_csv(table, options.output + ".csv");
@@ -198,7 +201,7 @@ int chart(StudyOptions options) {
     std::printf("%s.csv: %zu runs, the reference's own force error %.2g\n", options.output.c_str(),
                 rows.size(), rows[kReference].errors.force);
   std::vector<Outcome> outcomes;
-  for (const Row& row : rows) outcomes.push_back(row.outcome);
+  for (std::size_t i = kRefined + 1; i < rows.size(); ++i) outcomes.push_back(rows[i].outcome);
   return print_accidents(options.study, outcomes);
 }
 

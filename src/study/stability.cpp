@@ -62,6 +62,9 @@ output::StudyTable make_table(const StabilityMap& map) {
 int map_stability(StudyOptions options, const std::string& failures) {
   const scenario::StabilityStudy study = scenario::read_stability_study(options.study);
   name_outputs(options);
+  check_outputs(options, study.scenario, {study.settings, join(study.settings, study.reference)});
+  if (!options.cases.quiet)
+    for (const std::string& note : study.notes) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
   StabilityMap map(study, options.cases);
   map.run();
   const output::StudyTable table = make_table(map);

@@ -123,15 +123,19 @@ std::optional<double> StabilityMap::find_middle(const Boundary& boundary) const 
 /// One round over all boundaries; false when all are found. Where the middle is neither as the one side nor
 /// as the other, there are two boundaries.
 bool StabilityMap::bisect() {
-  std::vector<std::pair<double, double>> middles;
-  for (const Boundary& boundary : m_boundaries)
-    if (const auto middle = find_middle(boundary)) middles.emplace_back(*middle, m_places[boundary.below].y);
-  if (middles.empty()) return false;
-  const std::vector<std::size_t> places = visit(middles);
+  std::vector<std::optional<double>> middles;
+  std::vector<std::pair<double, double>> points;
+  for (const Boundary& boundary : m_boundaries) {
+    middles.push_back(find_middle(boundary));
+    if (middles.back()) points.emplace_back(*middles.back(), m_places[boundary.below].y);
+  }
+  if (points.empty()) return false;
+  const std::vector<std::size_t> places = visit(points);
   std::vector<Boundary> halves;
   auto place = places.begin();
-  for (const Boundary& boundary : m_boundaries) {
-    if (!find_middle(boundary)) {
+  for (std::size_t i = 0; i < m_boundaries.size(); ++i) {
+    const Boundary& boundary = m_boundaries[i];
+    if (!middles[i]) {
       halves.push_back(boundary);
       continue;
     }

@@ -4,10 +4,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <thread>
 
+#include "base/error.h"
 #include "study/files.h"
 #include "study/identity.h"
 #include "study/run.h"
@@ -64,6 +66,24 @@ std::vector<std::pair<std::string, std::string>> describe_study(const std::strin
            find_processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads"}};
 }
 
+void check_outputs(const StudyOptions& options, const std::string& scenario,
+                   const std::vector<Settings>& settings) {
+  for (const char* ending : {".csv", ".h5"}) {
+    const std::string table = options.output + ending;
+    if (!std::filesystem::exists(table)) continue;
+    require_other_file(table, options.study, "the study");
+    for (const Settings& some : settings) {
+      std::optional<scenario::Scenario> s;
+      try {
+        s = load(make_run_options(scenario, some));
+      } catch (const InputError&) {  // a run that is refused reads nothing
+        continue;
+      }
+      require_no_input(*s, table);
+    }
+  }
+}
+
 int print_accidents(const std::string& study, const std::vector<Outcome>& outcomes) {
   const auto killed = std::count(outcomes.begin(), outcomes.end(), Outcome::killed);
   const auto unknown = std::count(outcomes.begin(), outcomes.end(), Outcome::unknown);
@@ -74,7 +94,13 @@ int print_accidents(const std::string& study, const std::vector<Outcome>& outcom
     std::fprintf(stderr,
                  "argil: %td runs of %s have no reference to compare with: see their reason in the table\n",
                  unknown, study.c_str());
-  return killed + unknown > 0 ? kRunFailed : kDone;
+  const bool is_all_refused =
+      !outcomes.empty() && std::count(outcomes.begin(), outcomes.end(), Outcome::refused) ==
+                               static_cast<std::ptrdiff_t>(outcomes.size());
+  if (is_all_refused)
+    std::fprintf(stderr, "argil: all %zu runs of %s were refused: see their reason in the table\n",
+                 outcomes.size(), study.c_str());
+  return killed + unknown > 0 || is_all_refused ? kRunFailed : kDone;
 }
 
 Settings join(const Settings& a, const Settings& b) {

@@ -30,8 +30,13 @@ std::vector<std::pair<std::string, std::string>> describe_study(const std::strin
                                                                 const Settings& settings,
                                                                 const std::vector<CaseResult>& results);
 
-/// Rows that say nothing of a method make a study one to be run again: says how many there are. kDone without
-/// any.
+/// Refuses a table under whose name the study lies, or a file that the scene reads with one of these
+/// settings. Throws InputError.
+void check_outputs(const StudyOptions& options, const std::string& scenario,
+                   const std::vector<Settings>& settings);
+
+/// Rows that say nothing of a method make a study one to be run again: says how many there are, and when all
+/// were refused, which leaves nothing to look at. kDone without any, else kRunFailed.
 int print_accidents(const std::string& study, const std::vector<Outcome>& outcomes);
 
 /// a, then b, which wins.

@@ -120,6 +120,8 @@ TEST_F(ScenarioFile, BadSetPointersNameTheNearestKey) {
                  {"/about/first", "cannot be set: /about is \"a ball", "which holds nothing; give"});
   expect_refused("/body/fixed/one/offset_m=1",
                  {"cannot be set: /body/fixed is a list", "\"one\" is no number"});
+  expect_refused("/body/loads/gravity_m_per_s2/0=1", {"cannot be set: /body/loads/gravity_m_per_s2 is not set, "
+                                                      "so it has no element 0; set the whole list"});
   expect_refused("/wa~ter=1", {"/wa~ter: cannot be set", "~ is written ~0"});
   expect_refused("/water/a~1b=1", {"/water/a~1b: is not a known key"});
   expect_refused("porosity=0.3", {"--set: porosity=0.3", "/json/pointer=value"});

@@ -102,6 +102,14 @@ class ExitCodes(unittest.TestCase):
             self.assertTrue(error.startswith("argil: "), error)
         self.assertEqual(sorted(self.folder.iterdir()), before)
 
+    def test_2_a_study_without_its_scene(self):
+        (self.folder / "study.json").write_text(json.dumps({
+            "about": "none", "scenario": "nowhere.json", "refined": {"/haptics/period_s": 5e-4}, "curves": [{"name": "a"}]}))
+        code, out, error = self.call("chart", "study.json")
+        self.assertEqual((code, out, error.count("\n")), (2, "", 1), error)
+        self.assertIn("study.json: /scenario: \"nowhere.json\" does not exist; ", error)
+        self.assertFalse((self.folder / "study.runs").exists())
+
     def test_2_an_input_is_never_written_over(self):
         corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
         (self.folder / "body.obj").write_text(corners)
