@@ -117,6 +117,10 @@ SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
   }
   tick.session.feed = device::judge_feed(m_simulation.params().device.watchdog, poll.number, poll.age,
                                          woken_at - m_surface_time);
+  if (const StepStatus status = hand.watch_force(); !status.is_ok()) {
+    m_tick_failure = status.failure();
+    return SessionEnd::failed;
+  }
   hand.render(tick.session.feed);
   m_device.send({hand.gated().force, hand.gated().torque});
 

@@ -40,6 +40,7 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
       m_detector(surface.triangles(), surface.num_vertices(), tool, params.contact),
       m_compliance(surface, elements.num_nodes()),
       m_load(elements.num_nodes()),
+      m_chatter(params.chatter_limit, params.rates.haptic_period),
       m_gate(params.device, params.rates.haptic_period) {
   m_clock.period = params.rates.haptic_period;
   begin_at(start);
@@ -255,6 +256,13 @@ void HandSide::make_springs() {
     m_springs.push_back({c.vertex, c.weight, c.normal, c.end_stiffness, c.end_force, c.point});
     m_spring_contact.push_back(i);
   }
+}
+
+StepStatus HandSide::watch_force() {
+  if (!m_chatter.see(m_state.hand_force)) return StepStatus::ok();
+  return StepStatus::failed({m_clock.tick + 1, "hand", -1,
+                             "share of the force that trembles above 50 Hz for half a second",
+                             m_chatter.share(), m_params.chatter_limit});
 }
 
 /// The last force, old or new, less what would generate energy, through the device's limits.

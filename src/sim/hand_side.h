@@ -4,6 +4,7 @@
 
 #include "base/archive.h"
 #include "contact/contact.h"
+#include "device/chatter_watch.h"
 #include "device/gate.h"
 #include "device/sample.h"
 #include "sim/clock.h"
@@ -43,6 +44,8 @@ class HandSide {
   StepStatus touch(bool begins_step, const BodyAtFrame* body);
   /// Exchanges what was gathered since the last step for `empty`.
   void give(ContactLoad& empty);
+  /// Fails when the force has trembled for too long.
+  StepStatus watch_force();
   /// The force, old or new, through the passivity controller and the device's limits; ends the tick.
   void render(device::HandFeed feed);
 
@@ -109,6 +112,7 @@ class HandSide {
   int m_ticks_since_step = 0;
   Tick m_steps_begun = 0;
   bool m_has_felt_anew = false;  // some detection since the last step
+  device::ChatterWatch m_chatter;
   device::OutputGate m_gate;
   device::GatedForce m_gated;
   StageObserver* m_observer = nullptr;

@@ -48,6 +48,7 @@ struct Params {
   FidelityParams fidelity;
   device::DeviceLimits device;
   device::Passivity passivity = device::Passivity::none;
+  double chatter_limit = 0.3;  ///< of device::ChatterWatch; 1: none
   /// Speed of the fastest node [m/s] at which a body that nothing touches counts as at rest for two steps: it
   /// is then stopped and not solved for until something acts. 0: only a body that has not moved yet.
   double rest_speed = 0.0;

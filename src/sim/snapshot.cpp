@@ -85,6 +85,7 @@ void HandSide::exchange_contacts(Archive& archive) {
   archive.array("hand/gated_force", m_gated.force);
   archive.array("hand/gated_torque", m_gated.torque);
   archive.number("hand/gate_events", m_gated.events);
+  m_chatter.exchange_state(archive);
   Tick gate_count = m_gate.count();
   Vec3 gate_force = m_gate.last_force();
   archive.number("hand/gate_count", gate_count);

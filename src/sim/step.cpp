@@ -25,6 +25,7 @@ StepStatus Simulation::tick(const device::DeviceSample& sample) {
   }
 
   // Hand: the last force, old or new, as the device renders it.
+  ARGIL_TRY(m_hand.watch_force());
   m_hand.render(device::HandFeed::fresh);
   return StepStatus::ok();
 }
@@ -41,6 +42,7 @@ StepStatus Simulation::tick(const device::DeviceSample& sample, const TickPlan& 
     m_hand.give(m_load);
     m_step_status = m_body_side.step(m_load, m_answer);
   }
+  ARGIL_TRY(m_hand.watch_force());
   m_hand.render(plan.feed);
   return StepStatus::ok();
 }

@@ -12,6 +12,7 @@ namespace {
 Outcome classify_failure(const std::string& reason) {
   const auto says = [&](const char* words) { return reason.find(words) != std::string::npos; };
   if (says("volume ratio")) return Outcome::inverted;
+  if (says("trembles")) return Outcome::chatter;
   if (says("energy")) return Outcome::growing_energy;
   if (says("residual") || says("line search") || says("positive definite")) return Outcome::not_converged;
   return Outcome::failed;

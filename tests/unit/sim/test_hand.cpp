@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "support/one_node.h"
 
@@ -62,6 +63,7 @@ TEST(HandForce, NeverDrawsOnABodyThatLeaves) {
   // m (v' − v)/h = max(0, f − k (d' − d)) − K d', d' = d + h v', f = k (D − d) at the depth D of the plate.
   // A force that fell in proportion would draw in such steps.
   Params params = test::make_one_node_params();
+  params.chatter_limit = 1.0;  // it is the hand that trembles
   const double K = test::compute_apex_stiffness(params.elastic);
   for (const int period : {1, 14}) {
     params.rates.physics_period_ticks = period;
@@ -266,6 +268,30 @@ TEST(PortEnergy, OfAPlasticPressIsLostToTheClay) {
   const PhysicsRecord body = simulation.physics_record();
   EXPECT_GT(body.plastic_dissipation, -0.1 * lowest);
   EXPECT_NEAR(-record.port_energy, body.plastic_dissipation + body.elastic_energy, -0.01 * lowest);
+}
+
+TEST(HandForce, ThatTremblesEndsTheRun) {
+  // A force of the surface as it was, on a body without inertia: u ← k (d − u)/K, whose next error is the
+  // last one times −k/K. It swings ever wider from k = K on, and dies out below.
+  for (const auto& [ratio, implicit, ends] :
+       {std::tuple(0.8, false, false), {1.2, false, true}, {10.0, true, false}}) {
+    Params params = test::make_one_node_params();
+    params.solid.implicit_contact = implicit;
+    params.contact.vertex_face_stiffness = ratio * test::compute_apex_stiffness(params.elastic);
+    params.energy_limit = 0.0;
+    Simulation simulation = test::make_one_node_simulation(params);
+    StepStatus status = StepStatus::ok();
+    int k = 0;
+    while (status.is_ok() && ++k <= 2000) status = simulation.tick(press_apex(1e-4));
+    ASSERT_EQ(status.is_ok(), !ends) << ratio;
+    if (!ends) continue;
+    EXPECT_EQ(status.failure().stage, "hand");
+    EXPECT_EQ(status.failure().tick, k);
+    EXPECT_LE(k, 700);
+    EXPECT_GT(status.failure().value, 0.3);
+    EXPECT_EQ(status.failure().bound, 0.3);
+    EXPECT_EQ(simulation.clock().tick, k - 1);  // the last good one
+  }
 }
 
 }  // namespace
