@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "cli/commands.h"
 #include "study/identity.h"
+#include "study/interrupt.h"
 #include "study/run.h"
 
 int main(int argc, char** argv) {
@@ -29,6 +30,9 @@ int main(int argc, char** argv) {
   } catch (const argil::InputError& error) {
     std::fprintf(stderr, "argil: %s\n", error.what());
     return ExitCode::kInputRefused;
+  } catch (const argil::study::Interrupted& signal) {
+    std::fprintf(stderr, "argil: %s\n", signal.what());
+    return ExitCode::kInterrupted;
   } catch (const argil::IoError& error) {
     std::fprintf(stderr, "argil: %s\n", error.what());
     return ExitCode::kIoFailed;

@@ -17,11 +17,13 @@
 #include <map>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "base/error.h"
 #include "output/result_reader.h"
 #include "study/files.h"
 #include "study/identity.h"
+#include "study/interrupt.h"
 #include "study/run.h"
 
 namespace argil::study {
@@ -89,11 +91,12 @@ bool is_whole(const std::string& file) {
 }
 
 /// Replaces this process by the program, which dies with its parent; only what is allowed after a fork.
-[[noreturn]] void become(char* const* arguments, int log, pid_t parent) {
+[[noreturn]] void become(char* const* arguments, int log, pid_t parent, const SignalPause& pause) {
   const int nothing = open("/dev/null", O_WRONLY);
   dup2(nothing, STDOUT_FILENO);
   dup2(log, STDERR_FILENO);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  pause.end_in_child();
   if (getppid() == parent) execv(arguments[0], arguments);
   constexpr std::string_view kWhy = "argil: the program could not be started\n";
   if (::write(STDERR_FILENO, kWhy.data(), kWhy.size()) < 0) _exit(126);
@@ -119,15 +122,19 @@ class Runner {
     remove_what_died();
     for (const Case& c : m_cases) m_repeats.push_back(c.repeats);
     std::vector<std::size_t> accepted, waiting;
-    for (std::size_t i = 0; i < m_cases.size(); ++i)
+    for (std::size_t i = 0; i < m_cases.size(); ++i) {
+      check_interrupt(m_options);
       if (prepare(i)) accepted.push_back(i);
+    }
     std::copy_if(accepted.begin(), accepted.end(), std::back_inserter(waiting),
                  [this](std::size_t i) { return must_run(i); });
     for (const std::size_t i : waiting) {
       while (m_running.size() >= static_cast<std::size_t>(m_options.jobs)) await();
+      if (is_interrupted()) break;
       start({i, 0});
     }
     while (!m_running.empty()) await();
+    check_interrupt(m_options);
     for (std::size_t i = 0; i < m_cases.size(); ++i)  // what stands twice in the list has run once
       if (const auto first = m_first.find(m_results[i].id); first != m_first.end() && first->second != i)
         m_results[i] = m_results[first->second];
@@ -216,8 +223,9 @@ class Runner {
     const int out = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (out < 0) throw IoError(log, std::string("could not be written (") + std::strerror(errno) + ")");
     const pid_t parent = getpid();
+    const SignalPause pause;  // a child that still had our handlers would not end
     const pid_t child = fork();
-    if (child == 0) become(arguments.data(), out, parent);
+    if (child == 0) become(arguments.data(), out, parent, pause);
     const int error = errno;
     close(out);
     if (child < 0)
@@ -225,11 +233,21 @@ class Runner {
     m_running.emplace(child, job);
   }
 
+  /// Of the next one that ends. When the study is to end, all are told to.
+  pid_t wait_for_child(int& status, rusage& usage) {
+    const SignalPause pause;
+    while (true) {
+      if (is_interrupted() && !std::exchange(m_is_ending, true))
+        for (const auto& [child, job] : m_running) kill(child, SIGTERM);
+      if (const pid_t child = wait4(-1, &status, WNOHANG, &usage); child != 0) return child;
+      pause.sleep();
+    }
+  }
+
   void await() {
     int status = 0;
     rusage usage = {};
-    const pid_t child = wait4(-1, &status, 0, &usage);
-    if (child < 0 && errno == EINTR) return;
+    const pid_t child = wait_for_child(status, usage);
     const auto found = m_running.find(child);
     if (found == m_running.end()) return;
     const Job job = found->second;
@@ -238,10 +256,11 @@ class Runner {
     result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     result.peak_memory_MiB = static_cast<double>(usage.ru_maxrss) / 1024.0;
     take(job, result);
-    const bool is_over = result.exit_code == kInputRefused || is_accident(result.exit_code) ||
-                         job.repeat + 1 >= m_repeats[job.place];
-    if (!is_over) return start({job.place, job.repeat + 1});
-    if (!is_accident(result.exit_code)) write_result(result, path(job.place, ".case"));
+    const bool is_whole = !is_accident(result.exit_code) &&
+                          (result.exit_code == kInputRefused || job.repeat + 1 >= m_repeats[job.place]);
+    if (!is_whole && !is_accident(result.exit_code) && !is_interrupted())
+      return start({job.place, job.repeat + 1});
+    if (is_whole) write_result(result, path(job.place, ".case"));
     std::error_code ignored;
     fs::remove(log_of(job.place), ignored);
     print(job.place);
@@ -271,7 +290,7 @@ class Runner {
       result.reason = "interrupted";
     else if (result.exit_code > 128)
       result.reason = "killed by signal " + std::to_string(result.exit_code - 128);
-    if (job.repeat > 0) {
+    if (job.repeat > 0 || (is_interrupted() && is_accident(result.exit_code))) {
       fs::remove(file, error);
       return;
     }
@@ -295,6 +314,7 @@ class Runner {
   std::map<std::string, std::size_t> m_first;  // place of each id's first case
   std::map<pid_t, Job> m_running;
   int m_ended = 0;
+  bool m_is_ending = false;  // all that run were told to end
 };
 
 }  // namespace
@@ -311,7 +331,14 @@ bool is_accident(int exit_code) {
   return exit_code != kDone && exit_code != kInputRefused && exit_code != kRunFailed;
 }
 
+void check_interrupt(const CaseOptions& options) {
+  if (is_interrupted())
+    throw Interrupted("interrupted; what has ended is kept in " + options.folder +
+                      ", and the same command goes on from there");
+}
+
 std::vector<CaseResult> run_cases(const std::vector<Case>& cases, const CaseOptions& options) {
+  watch_signals();
   return Runner(cases, options).run();
 }
 

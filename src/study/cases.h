@@ -43,8 +43,12 @@ bool is_accident(int exit_code);
 /// Runs cases, each in a process of its own and in one thread, and keeps what comes out under the case's id:
 /// one that was finished before is not run again, but for accidents. Processes end with this one. Results
 /// stand in the order of the cases, whatever order they ended in. Throws IoError when the folder cannot be
-/// written; a case that fails is a result.
+/// written, and Interrupted after SIGINT or SIGTERM, when all that ran have been told to end and have ended;
+/// a case that fails is a result.
 std::vector<CaseResult> run_cases(const std::vector<Case>& cases, const CaseOptions& options);
+
+/// Throws Interrupted when the study was told to end: between its runs.
+void check_interrupt(const CaseOptions& options);
 
 /// Median of the CPU seconds of a case; 0 when it has none.
 double compute_median_cpu(const CaseResult& result);

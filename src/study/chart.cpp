@@ -73,6 +73,7 @@ std::vector<Row> run_rows(const scenario::ChartStudy& study, const CaseOptions& 
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (!results[i].file.empty()) scenes[i] = load(make_run_options(study.scenario, cases[i].settings));
   for (std::size_t i = 0; i < rows.size(); ++i) {
+    check_interrupt(options);
     Row& row = rows[i];
     row.result = results[i];
     if (!row.result.file.empty() && row.result.exit_code <= 128) {
@@ -114,7 +115,7 @@ output::StudyTable make_table(const scenario::ChartStudy& study, const std::vect
       {"iterations", "1", "of the linear solver"},
       {"factorisations", "1", "of its matrix"},
       {"instructions", "1", "in user mode, of the ticks; empty: not counted on this machine"},
-      {"peak_memory_MiB", "MiB", "of the process"},
+      {"peak_memory_MiB", "MiB", "of the process; this and all costs are empty where none ran"},
       {"peak_force_N", "N", "largest hand force"},
       {"energy_gain", "1", "mechanical energy beyond what the hand gave, relative"},
       {"chatter", "1", "rms of the hand force above 50 Hz over its rms"},
@@ -125,7 +126,9 @@ output::StudyTable make_table(const scenario::ChartStudy& study, const std::vect
   for (const Row& row : rows) {
     const RunErrors& e = row.errors;
     const RunFigures& f = row.figures;
-    const double instructions = row.result.instructions > 0.0 ? row.result.instructions : kUnknown;
+    const bool has_run = row.result.exit_code == kDone || row.result.exit_code == kRunFailed;
+    const auto figure = [has_run](double value) { return has_run ? value : kUnknown; };
+    const auto counted = [](double value) { return value > 0.0 ? value : kUnknown; };
     table.rows.push_back({row.curve,
                           print_settings(row.point),
                           to_string(row.outcome),
@@ -137,17 +140,17 @@ output::StudyTable make_table(const scenario::ChartStudy& study, const std::vect
                           e.skin,
                           e.saturation,
                           e.dissipation,
-                          row.cost(),
-                          f.simulated_seconds,
-                          f.steps,
-                          f.solves,
-                          f.iterations,
-                          f.factorisations,
-                          instructions,
-                          row.result.peak_memory_MiB,
-                          f.peak_force,
-                          f.energy_gain,
-                          f.chatter,
+                          figure(row.cost()),
+                          figure(f.simulated_seconds),
+                          figure(f.steps),
+                          figure(f.solves),
+                          figure(f.iterations),
+                          figure(f.factorisations),
+                          counted(row.result.instructions),
+                          counted(row.result.peak_memory_MiB),
+                          figure(f.peak_force),
+                          figure(f.energy_gain),
+                          figure(f.chatter),
                           print_settings(row.settings),
                           row.result.id,
                           row.result.reason});

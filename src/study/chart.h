@@ -5,7 +5,8 @@
 namespace argil::study {
 
 /// Accuracy against cost: runs every point of a chart study and writes STEM.csv and STEM.h5, a row a run.
-/// Returns kDone, or kRunFailed when the reference did not come to its end. Throws InputError, IoError.
+/// Returns kDone, or kRunFailed when the reference did not come to its end. Throws InputError, IoError,
+/// Interrupted.
 int chart(StudyOptions options);
 
 /// Prints, as a patch of the scenario (RFC 7396), the settings of the most accurate run whose cost is at most

@@ -8,7 +8,7 @@ namespace argil::study {
 /// wrong or unstable, and writes STEM.csv and STEM.h5, a row a run and a row a boundary. With `failures`, a
 /// folder, each way to fail leaves its smallest scenario there (failures.h). Returns kDone, or
 /// kRunFailed where runs say nothing of the method (print_accidents). Throws
-/// InputError, IoError.
+/// InputError, IoError, Interrupted.
 int map_stability(StudyOptions options, const std::string& failures);
 
 }  // namespace argil::study

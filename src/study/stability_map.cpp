@@ -52,6 +52,7 @@ std::vector<Place> StabilityMap::run_places(const std::vector<std::pair<double, 
   const std::size_t stride = m_study.reference.empty() ? 1 : 2;
   std::vector<Place> places;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    check_interrupt(m_options);
     Place& place = places.emplace_back();
     place.x = points[i].first;
     place.y = points[i].second;
