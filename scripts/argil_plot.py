@@ -105,9 +105,12 @@ def save(figure, stem):
     stem.parent.mkdir(parents=True, exist_ok=True)
     # Once more than by savefig: the first layout does not know the ticks yet, and a label grew out of the picture.
     figure.draw_without_rendering()
+    # An axis' own extent leaves out how far its label goes past it.
+    words = [axis.label for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) if axes.axison]
     for suffix, metadata in ((".png", {"Software": None}), (".pdf", {"CreationDate": None})):
         file = stem.with_name(stem.name + suffix)
         # Cut to what is there: words that the layout has no room for would be cut off.
-        figure.savefig(file, metadata=metadata, bbox_inches="tight", pad_inches=0.03)
+        figure.savefig(file, metadata=metadata, bbox_inches="tight", pad_inches=0.03,
+                       bbox_extra_artists=figure.get_default_bbox_extra_artists() + words)
         print(file)
     plt.close(figure)

@@ -6,8 +6,9 @@ Usage: paper_measures.py ARGIL --works DRY.h5 WET.h5 --hands ON.h5 OFF.h5 --dela
 
 Force on or off: what a hand that yields gives the clay with the force and without; and the work that a hand
 which is put along its trace does against it. Delay: age of the force that the hand feels while it touches, and its lag behind the picture. Realism:
-strength of the clay against its water, beside measured clays, each over its strength at the liquid limit; the
-water's axis is the liquidity index, which the law takes for the saturation.
+strength of the clay against its water, beside measured clays, each over its strength at the liquid limit, and what the
+clay has in pascals beside what was measured; the water's axis is the liquidity index, which the law takes for the
+saturation.
 """
 import argparse
 import json
@@ -19,6 +20,19 @@ from argil_plot import np, plt
 
 SCENARIO = Path(__file__).resolve().parent.parent / "scenarios/demo_dino_wet.json"
 PLASTIC_OVER_LIQUID_LIMIT = 0.5  # of water contents; Cochin clay's law is given in w/w_L, and needs it
+
+
+def cochin_strength(water):
+    """Of Cochin clay [kPa], at a water content over that at the liquid limit: log10 c_u = 2.720 − 2.585 w/w_L."""
+    return 10.0 ** (2.720 - 2.585 * water)
+
+
+SOFTER_OR_STIFFER = "clays, at half strength 2 to 0.5 % of strain"
+MEASURED = (  # lowest, highest, of what: for the rows of compare_sizes
+    (cochin_strength(PLASTIC_OVER_LIQUID_LIMIT), 180.0, "Cochin clay; Kayabali & Tufenkci 2010"),
+    (cochin_strength(1.0), 2.3, "Cochin clay; Kayabali & Tufenkci 2010"),
+    (50.0, 200.0, SOFTER_OR_STIFFER), (50.0, 200.0, SOFTER_OR_STIFFER),
+    (0.5, 3.8, "plastic clay"), (0.5, 3.8, "plastic clay"), (19.5, 22.5, "pottery body when it is modelled"))
 
 
 def touch(file):
@@ -53,10 +67,14 @@ def lag(felt, now, pictures):
     return np.abs(felt - seen)
 
 
-def strength(argil, saturation):
-    """Undrained shear strength [Pa] = yield strain · 2G/√2, both as the scenario's clay has them when so wet."""
+def read_scene(argil):
+    """The demonstration's clay with every default."""
     show = subprocess.run([argil, "show", SCENARIO], capture_output=True, text=True, check=True).stdout
-    scene = json.loads(show)
+    return json.loads(show)
+
+
+def moduli(argil, scene, saturation):
+    """Bulk and shear modulus [Pa] of the scene's clay when so wet, as its effective medium has them."""
     material, porosity = scene["material"], scene["water"]["porosity"]
     medium = material["effective_medium"]
     cases = [{"youngs_modulus_Pa": material["youngs_modulus_Pa"],
@@ -65,19 +83,49 @@ def strength(argil, saturation):
               "scheme": medium["scheme"], "aspect": medium["aspect"]} for s in saturation]
     answer = subprocess.run([argil, "probe", "effective_medium"], input=json.dumps({"cases": cases}),
                             capture_output=True, text=True, check=True).stdout
-    shear = np.array([row["shear_modulus_Pa"] for row in json.loads(answer)["results"]])
+    return (np.array([row[f"{name}_modulus_Pa"] for row in json.loads(answer)["results"]]) for name in ("bulk", "shear"))
+
+
+def strength(scene, shear, saturation):
+    """Undrained shear strength [Pa] = yield strain · 2G/√2 of the scene's clay when so wet."""
+    material = scene["material"]
     yielding = material["plasticity"]["yield"] * material["moisture"]["saturated_yield_ratio"] ** saturation
     return yielding * 2.0 * shear / np.sqrt(2.0)
+
+
+def outside(value, low, high):
+    """By what factor a value lies outside a range; 1 within it."""
+    return max(1.0, low / value, value / high)
+
+
+def compare_sizes(argil):
+    """Rows of what the clay has, at the plastic limit (dry) and the liquid limit (saturated), and what was measured."""
+    scene, ends = read_scene(argil), np.array([0.0, 1.0])
+    bulk, shear = moduli(argil, scene, ends)
+    young, strengths = 9.0 * bulk * shear / (3.0 * bulk + shear), strength(scene, shear, ends)
+    one_dimensional = bulk + 4.0 / 3.0 * shear
+    water = scene["water"]["density_kg_per_m3"] * scene["water"]["porosity"]  # [kg/m³] when saturated
+    share = 100.0 * water / (water + scene["material"]["density_kg_per_m3"])
+    values = {"strength at the plastic limit [kPa]": 1e-3 * strengths[0], "strength at the liquid limit [kPa]": 1e-3 * strengths[1],
+              "modulus over strength, plastic limit [–]": young[0] / strengths[0],
+              "modulus over strength, liquid limit [–]": young[1] / strengths[1],
+              "one-dimensional modulus, dry [MPa]": 1e-6 * one_dimensional[0],
+              "one-dimensional modulus, saturated [MPa]": 1e-6 * one_dimensional[1],
+              "water when saturated, of the damp weight [%]": share}
+    return [{"quantity": name, "argil": float(value), "low": low, "high": high, "source": source,
+             "factor": float(outside(value, low, high))}
+            for (name, value), (low, high, source) in zip(values.items(), MEASURED)]
 
 
 def draw_strength(argil):
     """The figure, and the rms distance of log10 of the strength from each measured clay."""
     index = np.linspace(0.0, 1.0, 41)
-    ours = strength(argil, index)
+    scene = read_scene(argil)
+    ours = strength(scene, list(moduli(argil, scene, index))[1], index)
     share = PLASTIC_OVER_LIQUID_LIMIT + (1.0 - PLASTIC_OVER_LIQUID_LIMIT) * index
     measured = {"641 tests on 101 soils (Vardanega & Haigh 2014)": 35.0 ** (1.0 - index),
                 "remoulded (Kayabali & Tufenkci 2010)": (180.0 / 2.3) ** (1.0 - index),
-                f"Cochin clay, w_P/w_L = {PLASTIC_OVER_LIQUID_LIMIT:g}": 10.0 ** (2.585 * (1.0 - share))}
+                f"Cochin clay, w_P/w_L = {PLASTIC_OVER_LIQUID_LIMIT:g}": cochin_strength(share) / cochin_strength(1.0)}
     figure, axes = plt.subplots(figsize=(120 * ap.MILLIMETRES, 75 * ap.MILLIMETRES))
     axes.semilogy(index, ours / ours[-1], color=ap.COLOURS[0], label="argil, the demonstration's clay")
     distances = {}
@@ -102,7 +150,7 @@ def main():
     figures = {"press": {Path(file).stem: touch(file) for file in options.works},
                "yielding_hand": {name: touch(file) for name, file in zip(("on", "off"), options.hands)},
                "delay": {Path(file).stem.replace("delay_", ""): delay(file) for file in options.delays},
-               "rms_log10_distance_from_measured_clay": distances}
+               "rms_log10_distance_from_measured_clay": distances, "beside_measured_clay": compare_sizes(options.argil)}
     Path(f"{options.output}.json").write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
     print(f"{options.output}.json")
     ap.save(figure, options.output)

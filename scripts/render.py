@@ -5,10 +5,10 @@ Usage: render.py A.h5 [B.h5 ...] [--labels A B ...] [--frames before,during,afte
                  [-o FILE.png]
        render.py A.h5 --movie FILE.mp4|FILE.gif [--field saturation]
 
-One row a run, one column a moment. A moment is before (the first frame), wetting or drying (the frame in the
+One row a run, one column a moment; of one moment all runs beside each other. A moment is before (the first frame), wetting or drying (the frame in the
 middle of that contact), push, pull, during (nearest to the largest force of that mode; of either), after (the
 last frame), or a time in seconds. Fields: saturation, displacement, normal (displacement along the outward normal),
-on the skin influence, on the cage plastic_strain; shape is the body alone. A movie has one picture a frame of the file, in real time. The pictures are made by VTK
+plastic_strain, on a skin alone influence; shape is the body alone. The skin is drawn where there is one, else the cage. A movie has one picture a frame of the file, in real time. The pictures are made by VTK
 without a window; where there is no display the script starts a virtual one (Xvfb).
 """
 import argparse
@@ -79,6 +79,8 @@ def draw_sheet(options, labels):
                  for shot, moment in zip(row, moments)] for row, label in zip(rows, labels)]
     with render_vtk.display():
         images, top = render_vtk.render_rows(rows, options.field, options.zoom, options.cage)
+    if len(moments) == 1:
+        images, captions = [sum(images, [])], [sum(captions, [])]
     figure = compose(images, captions, options.field, top)
     # Cut to what is there: words that the layout has no room for would be cut off.
     figure.draw_without_rendering()  # as in argil_plot.save

@@ -22,7 +22,6 @@ class Field(NamedTuple):
     scale: float = 1.0  # from SI to the title's unit
     top: float = None  # of the colour bar; the largest size of all panels when None
     is_signed: bool = False  # the bar goes from -top to top
-    on_cage_only: bool = False
     on_skin_only: bool = False
     shows_scene: bool = True  # tool, force and bar; else the body alone
 
@@ -42,7 +41,7 @@ FIELDS = {
     "displacement": Field("displacement [mm]", STRAINED, scale=1e3),
     "normal": Field("moved along the normal,\noutwards > 0 [mm]", SIGNED, scale=1e3, is_signed=True),
     "influence": Field("region of influence [–]", STRAINED, top=1.0, on_skin_only=True),
-    "plastic_strain": Field("plastic strain ‖ε_p‖ [–]", STRAINED, on_cage_only=True),
+    "plastic_strain": Field("plastic strain ‖ε_p‖ [–]", STRAINED),
     "shape": Field("", LinearSegmentedColormap.from_list("clay", (CLAY, CLAY)), top=1.0, shows_scene=False),
 }
 
@@ -50,16 +49,16 @@ FIELDS = {
 class Shot:
     """One moment of a run: surface, field, tool (None where there is none) and force. SI units."""
 
-    def __init__(self, result, frame, field):
+    def __init__(self, result, frame, field, skin_tets=None):
         self.time = float(frame.attrs["time"])
         mesh, haptic = result["mesh"], result["haptic"]
-        skinned = len(mesh["skin_triangles"]) > 0 and not FIELDS[field].on_cage_only
+        skinned = len(mesh["skin_triangles"]) > 0
         if FIELDS[field].on_skin_only and not skinned:
             ap.refuse(f"{result.filename}: has no skin, so there is no field '{field}'")
         self.points = frame["skin_position" if skinned else "position"][:]
         self.triangles = mesh["skin_triangles" if skinned else "surface_triangles"][:]
         self.cage, self.cage_triangles = frame["position"][:], mesh["surface_triangles"][:]
-        self.values = FIELDS[field].scale * point_values(result, frame, field, skinned)
+        self.values = FIELDS[field].scale * point_values(result, frame, field, skinned, skin_tets)
         self.force, self.tool_points = np.zeros(3), None
         self.tool_triangles = mesh["tool_triangles"][:]
         if len(haptic["time"]) > 0 and len(self.tool_triangles) > 0:
@@ -106,6 +105,14 @@ def find_weights(points, tets, skin):
     return nearest[rows, best], weights[rows, best]
 
 
+def find_skin_tets(result, field):
+    """The tet around each skin vertex, for a field that only tets have; None for the others and without a skin."""
+    if field != "plastic_strain" or len(result["mesh/skin_triangles"]) == 0:
+        return None
+    first = ap.frames_of(result)[0]
+    return find_weights(first["position"][:], result["mesh/tets"][:], first["skin_position"][:])[0]
+
+
 def vertex_normals(points, triangles):
     """Outward unit normals, the mean of the triangles around by area; 0 where there are none."""
     corners = points[triangles]
@@ -115,8 +122,9 @@ def vertex_normals(points, triangles):
     return sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300)
 
 
-def point_values(result, frame, field, skinned):
-    """The field at the vertices that are drawn. What is held per tet is averaged around each vertex."""
+def point_values(result, frame, field, skinned, skin_tets=None):
+    """The field at the vertices that are drawn. What is held per tet is averaged around each vertex of the cage; a vertex of
+    the skin has what the tet around it has, `skin_tets`."""
     if field == "shape":
         return np.zeros(len(frame["skin_position" if skinned else "position"]))
     if field in ("displacement", "normal"):
@@ -126,6 +134,8 @@ def point_values(result, frame, field, skinned):
             return np.linalg.norm(moved, axis=1)
         triangles = result["mesh/skin_triangles" if skinned else "mesh/surface_triangles"][:]
         return np.einsum("vi,vi->v", moved, vertex_normals(rest, triangles))
+    if skinned and field == "plastic_strain":
+        return frame["plastic_strain_norm"][:][skin_tets]
     if skinned:
         return frame["skin_influence" if field == "influence" else "skin_saturation"][:]
     per_tet = frame["plastic_strain_norm" if field == "plastic_strain" else "saturation"][:]
@@ -165,7 +175,8 @@ def default_moments(file):
 
 def read_all_shots(file, field):
     with ap.open_result(file) as result:
-        return [Shot(result, frame, field) for frame in ap.frames_of(result)]
+        skin_tets = find_skin_tets(result, field)
+        return [Shot(result, frame, field, skin_tets) for frame in ap.frames_of(result)]
 
 
 def read_shots(file, moments, field):
@@ -173,4 +184,5 @@ def read_shots(file, moments, field):
         frames = ap.frames_of(result)
         times = np.array([frame.attrs["time"] for frame in frames])
         nearest = [frames[np.argmin(np.abs(times - find_time(result, moment)))] for moment in moments]
-        return [Shot(result, frame, field) for frame in nearest]
+        skin_tets = find_skin_tets(result, field)
+        return [Shot(result, frame, field, skin_tets) for frame in nearest]

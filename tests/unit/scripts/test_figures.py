@@ -15,6 +15,7 @@ MISSING = [name for name in ("numpy", "h5py", "matplotlib") if importlib.util.fi
 if not MISSING:
     sys.path.insert(0, str(SCRIPTS))
     sys.dont_write_bytecode = True
+    import argil_plot
     import h5py
     import matplotlib.image
     import numpy as np
@@ -162,6 +163,18 @@ class Figures(unittest.TestCase):
         # Vertex 4 has the wet tet and one dry, vertex 0 and 7 all six, vertex 6 the wet and one dry, the others none.
         np.testing.assert_allclose(values, [0.15, 0, 0, 0, 0.45, 0, 0.45, 0.15])
 
+    def test_a_skin_has_the_plastic_strain_of_the_tets_around_its_vertices(self):
+        with h5py.File(self.file("wet.h5"), "r+") as result:
+            tets, rest = result["mesh/tets"][:], result["mesh/rest_position"][:]
+            del result["mesh/skin_triangles"]
+            result["mesh/skin_triangles"] = np.array([(0, 1, 2)])
+            for name in result["frames"]:
+                result[f"frames/{name}/skin_position"] = rest[tets[[4, 0, 3]]].mean(axis=1)  # the middles of three
+            result["frames/000009/plastic_strain_norm"][...] = 0.1 * np.arange(6)
+        shot = render_shots.read_shots(self.file("wet.h5"), ["after"], "plastic_strain")[0]
+        np.testing.assert_allclose(shot.values, [0.4, 0.0, 0.3])
+        self.assertEqual(len(shot.points), 3)
+
     def test_displacement_is_measured_from_rest_and_along_the_outward_normal(self):
         with h5py.File(self.file("wet.h5"), "r+") as result:
             for name in list(result["frames"])[1:]:  # one frame is left, which is not at rest: as of a static result
@@ -226,6 +239,13 @@ class Figures(unittest.TestCase):
             edge = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
             self.assertEqual(edge[:, :3].min(), 1.0, script)  # white all around
 
+    def test_a_label_wider_than_its_axes_is_whole(self):
+        figure, (left, right) = argil_plot.plt.subplots(1, 2, figsize=(5, 2), gridspec_kw={"width_ratios": [8, 1]})
+        right.set_xlabel("a label that is much wider than its axes")
+        argil_plot.save(figure, self.file("wide"))
+        pixels = matplotlib.image.imread(self.file("wide.png"))
+        self.assertEqual(pixels[:, -1, :3].min(), 1.0)
+
     def test_what_is_no_result_is_refused(self):
         self.folder.joinpath("text.h5").write_text("no HDF5")
         with h5py.File(self.file("other.h5"), "w"):
@@ -249,6 +269,13 @@ class Figures(unittest.TestCase):
         self.assertEqual(self.draw("render.py", "dry.h5", "--field", "shape", "-o", "new/dry.png").returncode, 0)
         self.expect_refusal("its folder cannot be made", "render.py", "dry.h5", "-o", "dry.png/no.png")
         self.expect_refusal("moment 'soon'", "render.py", "dry.h5", "--frames", "soon")
+
+    @unittest.skipUnless(importlib.util.find_spec("vtk") and shutil.which("Xvfb"), "needs python3-vtk9 and xvfb")
+    def test_runs_at_one_moment_stand_beside_each_other(self):
+        self.assertEqual(self.draw("render.py", "dry.h5", "wet.h5", "--frames", "after", "--field", "shape", "-o",
+                                   "two.png").returncode, 0)
+        height, width = matplotlib.image.imread(self.file("two.png")).shape[:2]
+        self.assertGreater(width, 1.2 * height)
 
     @unittest.skipUnless(importlib.util.find_spec("vtk") and shutil.which("Xvfb") and shutil.which("ffprobe"),
                          "needs python3-vtk9, xvfb and ffmpeg")

@@ -4,11 +4,15 @@
 Usage: test_paper.py ARGIL. Skipped (77) without numpy, h5py, matplotlib and scipy.
 """
 import csv
+import hashlib
 import importlib.util
 import json
+import os
+import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -21,7 +25,7 @@ sys.dont_write_bytecode = True
 import h5py
 import numpy as np
 import paper_measures
-import paper_skin
+import paper_runs
 
 ARGIL = str(Path(sys.argv.pop(1)).resolve())
 
@@ -49,6 +53,99 @@ class Page(Folder):
         self.assertEqual((self.folder / "page.md").read_text(), (ROOT / "results/paper/README.md").read_text())
 
 
+class StandIns(Folder):
+    """scripts/reproduce among programs that only write down how they were called: which runs and items are made, and when."""
+
+    PROGRAM = """#!/usr/bin/env bash
+        case "$1" in
+          info) printf 'outcome     %s\\n' "$(<"$2")" ;;
+          run) printf '%s\\n' "$*" >>runs.log
+            if [[ $* == *_m=100* ]]; then echo failed >"$4"; exit 3; fi
+            echo done >"$4" ;;
+        esac"""
+    SCRIPT = """#!/usr/bin/env bash
+        printf '%s\\n' "$(basename "$0") $*" >>scripts.log
+        [[ -z ${FAILS:-} || $* != *"$FAILS"* ]]"""
+    DEMONSTRATION = """#!/usr/bin/env bash
+        echo run >>scripts.log; mkdir -p results/demo
+        for name in dry wet wet_elasticity_only wet_yield_only; do echo done >results/demo/$name.h5; done"""
+
+    def setUp(self):
+        super().setUp()
+        for name in ("scripts", "build/bin", "scenarios"):
+            (self.folder / name).mkdir(parents=True)
+        shutil.copy(ROOT / "scripts/reproduce", self.folder / "scripts")
+        for name in ("demo_figure_push_pull", "demo_dino_dry", "demo_dino_wet"):
+            self.write(f"scenarios/{name}.json", "{}")
+        self.write("build/bin/argil", self.PROGRAM)
+        for name in ("build", "render.py", "plot_force.py", *(f"paper_{it}.py" for it in ("cages", "rates", "measures", "limits", "runs",
+                                                                                         "page"))):
+            self.write(f"scripts/{name}", self.SCRIPT)
+        self.write("scripts/run", self.DEMONSTRATION)
+
+    def write(self, name, text):
+        file = self.folder / name
+        file.write_text("\n".join(line.strip() for line in text.splitlines()) + "\n")
+        file.chmod(0o755)
+        old = time.time() - 100  # of files that are there before
+        os.utime(file, (old, old))
+
+    def reproduce(self, *items, fails=""):
+        """Exit code and words, the runs and the scripts that were called."""
+        for log in ("runs.log", "scripts.log"):
+            (self.folder / log).unlink(missing_ok=True)
+        done = subprocess.run([self.folder / "scripts/reproduce", *items], capture_output=True, text=True, check=False,
+                              env={**os.environ, "FAILS": fails})
+        logs = [file.read_text().splitlines() if file.is_file() else []
+                for file in (self.folder / "runs.log", self.folder / "scripts.log")]
+        return done, *logs
+
+    def test_everything_is_made_once_and_its_times_are_written(self):
+        done, runs, scripts = self.reproduce()
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(len(runs), 3 + 2 + 2 + 8 + 4)
+        self.assertEqual(scripts[-1].split()[0], "paper_page.py")
+        times = (self.folder / "results/paper/times.csv").read_text().splitlines()
+        self.assertIn("With the program built before on ", times[0])
+        self.assertEqual([row.split(",")[0] for row in times[1:]],
+                         ["item", "build", "push_pull", "dry_wet", "sculpted", "cages", "rates", "measures", "limits"])
+        (self.folder / "results/paper/times.csv").unlink()
+        done, runs, scripts = self.reproduce()
+        self.assertEqual(done.returncode, 0)
+        self.assertEqual(len(runs), 1)  # the one that failed is tried again
+        self.assertIn("_m=100", runs[0])
+        self.assertNotIn("run", scripts)
+        self.assertFalse((self.folder / "results/paper/times.csv").exists())  # not of all that it takes
+
+    def test_a_run_of_another_program_scenario_or_command_is_made_anew(self):
+        self.reproduce("push_pull", "measures")
+        os.utime(self.folder / "scenarios/demo_dino_dry.json")  # now
+        time.sleep(0.02)
+        _, runs, scripts = self.reproduce("push_pull", "measures")
+        self.assertEqual(len([words for words in runs if "demo_dino_dry" in words]), 4)
+        self.assertEqual(len([words for words in runs if "figure" in words and "_m=100" not in words]), 0)
+        self.assertIn("run", scripts)
+        (self.folder / "build/paper/figure.command").write_text("argil run with other words\n")
+        self.assertEqual(len(self.reproduce("push_pull")[1]), 1 + 1)
+        os.utime(self.folder / "build/bin/argil")
+        time.sleep(0.02)
+        self.assertEqual(len(self.reproduce("push_pull")[1]), 3)
+
+    def test_a_failing_item_is_named_and_the_others_are_made(self):
+        done, _, scripts = self.reproduce(fails="sculpted.png")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("not made: sculpted;", done.stderr)
+        called = [words.split()[0] for words in scripts]
+        for name in ("paper_cages.py", "paper_rates.py", "paper_measures.py", "paper_limits.py", "paper_page.py"):
+            self.assertIn(name, called)
+        self.assertFalse((self.folder / "results/paper/times.csv").exists())
+
+    def test_an_item_alone_makes_the_runs_that_it_needs(self):
+        done, _, scripts = self.reproduce("measures")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("run", scripts)
+
+
 class Reproduce(Folder):
     def test_an_unknown_item_is_refused_with_those_that_there_are(self):
         done = subprocess.run([ROOT / "scripts/reproduce", "push_pull", "teapot"], capture_output=True, text=True, check=False)
@@ -58,7 +155,7 @@ class Reproduce(Folder):
     def test_the_rates_of_all_bodies_and_modes_are_measured(self):
         call(ROOT / "scripts/paper_rates.py", ARGIL, "--repeats", "1", "-o", self.folder / "rates.csv")
         lines = (self.folder / "rates.csv").read_text().splitlines()
-        self.assertIn("one thread; ticks in a second, best of 1", lines[0])
+        self.assertIn("one thread; ticks in a second of processor time, best of 1", lines[0])
         rows = list(csv.DictReader(lines[1:]))
         self.assertEqual([row["body"] for row in rows], ["dinosaur", "figure", "sphere", "cylinder"])
         for row in rows:
@@ -67,6 +164,7 @@ class Reproduce(Folder):
             self.assertTrue(0.05 < int(row["nodes_solved_in_push"]) / int(row["tets"]) < 0.4)
             for mode in "push", "pull", "wet", "dry":
                 self.assertGreater(float(row[f"{mode}_Hz"]), 0)
+            self.assertTrue(0 < float(row["wall_share"]) <= 1.05)  # the clock's steps
 
 
 class Limits(Folder):
@@ -101,7 +199,7 @@ class Measures(Folder):
     def test_the_scripts_of_the_page_measure_small_runs(self):
         ball = simulate("tests/golden/ball.json", self.folder / "cage_ball_1.h5", "/haptics/frame_period_ticks=7")
         call(ROOT / "scripts/paper_cages.py", ball, "-o", self.folder / "cages")
-        call(ROOT / "scripts/paper_skin.py", ball, "-o", self.folder / "skin.json")
+        call(ROOT / "scripts/paper_runs.py", ball, "-o", self.folder / "run.json")
         call(ROOT / "scripts/paper_measures.py", ARGIL, "--works", ball, ball, "--hands", ball, ball, "--delays", ball,
              "-o", self.folder / "measures")
         figures = json.loads((self.folder / "measures.json").read_text())
@@ -109,7 +207,32 @@ class Measures(Folder):
             self.assertEqual(figures["press"]["cage_ball_1"]["contact_work_J"], result["physics/contact_work"][-1])
             pressed = np.linalg.norm(result["haptic/force"][:], axis=1).max()
         self.assertIn(f"{pressed:.4g}", (self.folder / "cages.csv").read_text())
-        self.assertGreater(json.loads((self.folder / "skin.json").read_text())["cage_ball_1"]["deepest_dent_m"], 0.0)
+        run = json.loads((self.folder / "run.json").read_text())["cage_ball_1"]
+        self.assertGreater(run["deepest_dent_m"], 0.0)
+        self.assertEqual((run["outcome"], run["peak_N"]), ("done", float(f"{pressed:.4g}")))
+        trace = json.loads((ROOT / "tests/golden/ball.json").read_text())["trace"]["file"]
+        self.assertEqual(run["trace_sha256"], hashlib.sha256((ROOT / "tests/golden" / trace).read_bytes()).hexdigest())
+
+    def test_a_run_that_failed_says_so_and_what_is_known_of_others_stays(self):
+        ball = simulate("tests/golden/ball.json", self.folder / "ball.h5", "/haptics/frame_period_ticks=7")
+        with h5py.File(ball, "r+") as result:
+            result.attrs["outcome"], result.attrs["complete"] = b"failed", 0
+        (self.folder / "run.json").write_text('{"other": {"outcome": "done"}}')
+        call(ROOT / "scripts/paper_runs.py", ball, "-o", self.folder / "run.json")
+        runs = json.loads((self.folder / "run.json").read_text())
+        self.assertEqual({name: run["outcome"] for name, run in runs.items()}, {"ball": "failed", "other": "done"})
+
+    def test_the_clay_beside_measured_ones_is_as_formulas_have_it(self):
+        rows = {row["quantity"]: row for row in paper_measures.compare_sizes(ARGIL)}
+        shear = 1.4e5 / 2.6  # [Pa]; the clay of the scenario, dry
+        dry = rows["strength at the plastic limit [kPa]"]
+        self.assertAlmostEqual(dry["argil"], 1e-3 * 0.02 * 2**0.5 * shear, places=9)
+        self.assertAlmostEqual(dry["low"], 10 ** (2.720 - 2.585 / 2))
+        self.assertAlmostEqual(dry["factor"], dry["low"] / dry["argil"])
+        self.assertAlmostEqual(rows["one-dimensional modulus, dry [MPa]"]["argil"], 0.14 * 0.7 / (1.3 * 0.4), places=9)
+        self.assertAlmostEqual(rows["water when saturated, of the damp weight [%]"]["argil"], 100 * 400 / 1900)
+        self.assertEqual(rows["modulus over strength, plastic limit [–]"]["factor"], 1.0)
+        self.assertAlmostEqual(rows["modulus over strength, plastic limit [–]"]["argil"], 2.6 / (0.02 * 2**0.5))
 
     def test_the_lag_is_between_the_felt_moment_and_the_last_picture(self):
         felt, now = np.array([1, 10, 14, 29]), np.array([1, 10, 20, 29])
@@ -134,7 +257,8 @@ class Measures(Folder):
 class Figure(Folder):
     def test_the_pushed_and_pulled_figure_has_the_dent_and_the_bump_that_its_scenario_tells(self):
         result = simulate("scenarios/demo_figure_push_pull.json", self.folder / "figure.h5")
-        skin = paper_skin.measure(result)
+        with h5py.File(result) as run:
+            skin = paper_runs.measure_skin(run)
         self.assertAlmostEqual(skin["deepest_dent_m"], 2.8e-3, delta=0.1e-3)  # the digits that `about` gives
         self.assertAlmostEqual(skin["highest_bump_m"], 2.7e-3, delta=0.1e-3)
         self.assertGreater(skin["dent_left_m"], 0.5 * skin["deepest_dent_m"])
