@@ -2,8 +2,8 @@
 """Types every command of the documentation, as a newcomer does who reads from top to bottom.
 
 Usage: test_docs.py BUILD. Every block of ```sh in every page runs in order under `bash -euo pipefail`, a page in a
-temporary folder of its own, which sees the project through links; what the commands write stays in it, and the project
-is afterwards as it was. A command that
+temporary folder of its own, which sees the project through links; what the commands write stays in it, and the project's
+results, scenarios and traces are afterwards as they were. A command that
 takes many minutes is typed in a shorter form, and every such form stands in SHORTENED. A command within the running
 text is held against the program's own help: the program is there and has the options that are named; those of INLINE
 are typed besides, or by the other test that stands there. Exit code 77 (skipped) where a figure cannot be drawn because
@@ -46,8 +46,8 @@ def find_pages():
 
 
 def find_changes():
-    """What git sees changed in the project, names and contents; nothing where there is no git."""
-    return [subprocess.run(["git", "-C", ROOT, *words], capture_output=True).stdout
+    """What git sees changed of the files that scripts make, names and contents; nothing where there is no git."""
+    return [subprocess.run(["git", "-C", ROOT, *words, "--", "results", "scenarios", "traces"], capture_output=True).stdout
             for words in (("status", "--porcelain"), ("diff", "HEAD", "--binary"))]
 
 
@@ -144,7 +144,7 @@ def main(build):
     counts = [newcomer.read(page) for page in pages]
     blocks, commands = (sum(count) for count in zip(*counts))
     if find_changes() != changes:
-        newcomer.failures.append("the commands of the pages changed files of the project")
+        newcomer.failures.append("the commands of the pages changed results, scenarios or traces of the project")
     print("\n".join(newcomer.failures))
     print(f"{len(pages)} pages: {blocks} blocks were typed, {commands} commands in the text held against their help")
     return 1 if newcomer.failures or blocks < 7 or commands < 50 else 0
