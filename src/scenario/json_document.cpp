@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kMaxDepth = 64;
 constexpr std::uintmax_t kMaxBytes = 64u << 20;
+constexpr std::size_t kMaxKeys = 10000;  // of one object; each is compared with those before
 
 /// "line L, column C" of a byte offset.
 std::string describe_place(const std::string& text, std::size_t byte) {
@@ -63,6 +64,8 @@ class PlaceWatcher {
     }
     return true;
   }
+  /// Of the object that it is in.
+  std::size_t num_keys() const { return m_levels.empty() ? 0 : m_levels.back().keys.size(); }
   std::string pointer() const {
     std::string text;
     for (const Level& level : m_levels)
@@ -99,6 +102,10 @@ Json parse_json(const std::string& text, const std::string& file) {
                        "flatten it");
     if (!place.follow(event, parsed))
       throw InputError(file, place.pointer(), "stands twice in one object", "keep one of the two");
+    if (place.num_keys() > kMaxKeys)
+      throw InputError(file, place.pointer(),
+                       "is one key more than the " + std::to_string(kMaxKeys) + " that an object may have",
+                       "is this the right file?");
     return true;
   };
   try {

@@ -9,8 +9,8 @@ namespace argil::scenario {
 
 using Json = nlohmann::ordered_json;
 
-/// Parses text strictly: no comments, no duplicate keys, at most 64 levels. Throws InputError with line and
-/// column, or with the pointer of a key that stands twice.
+/// Parses text strictly: no comments, no duplicate keys, at most 64 levels and 10 000 keys an object. Throws
+/// InputError with line and column, or with the pointer of a key that stands twice.
 Json parse_json(const std::string& text, const std::string& file);
 
 /// Reads and parses a file of at most 64 MiB. Throws InputError or IoError.

@@ -120,8 +120,9 @@ TEST_F(ScenarioFile, BadSetPointersNameTheNearestKey) {
                  {"/about/first", "cannot be set: /about is \"a ball", "which holds nothing; give"});
   expect_refused("/body/fixed/one/offset_m=1",
                  {"cannot be set: /body/fixed is a list", "\"one\" is no number"});
-  expect_refused("/body/loads/gravity_m_per_s2/0=1", {"cannot be set: /body/loads/gravity_m_per_s2 is not set, "
-                                                      "so it has no element 0; set the whole list"});
+  expect_refused("/body/loads/gravity_m_per_s2/0=1",
+                 {"cannot be set: /body/loads/gravity_m_per_s2 is not set, "
+                  "so it has no element 0; set the whole list"});
   expect_refused("/wa~ter=1", {"/wa~ter: cannot be set", "~ is written ~0"});
   expect_refused("/water/a~1b=1", {"/water/a~1b: is not a known key"});
   expect_refused("porosity=0.3", {"--set: porosity=0.3", "/json/pointer=value"});
@@ -138,8 +139,9 @@ TEST_F(ScenarioFile, DuplicateKeysAreRefusedAtAnyDepthAndInSettings) {
 }
 
 TEST_F(ScenarioFile, ValuesOutsideTheirRangeNamePointerValueRangeAndUnit) {
-  expect_refused("/material/youngs_modulus_Pa=0",
-                 {"/material/youngs_modulus_Pa", "0 is outside [1e-09, 1e+18] Pa", "give a value in that range"});
+  expect_refused(
+      "/material/youngs_modulus_Pa=0",
+      {"/material/youngs_modulus_Pa", "0 is outside [1e-09, 1e+18] Pa", "give a value in that range"});
   expect_refused("/water/porosity=1", {"/water/porosity", "1 is outside (0.0, 1.0)"});
   expect_refused("/haptics/period_s=1", {"/haptics/period_s", "1 is outside [1e-06, 1.0) s"});
   expect_refused("/tool/shape/subdivisions=7", {"/tool/shape/subdivisions", "7 is outside [0, 6]; give"});
@@ -158,6 +160,18 @@ TEST_F(ScenarioFile, FilesThatCannotBeLookedUpAreNamedWithTheirKeyAndTheReason) 
 TEST_F(ScenarioFile, DuplicateKeyInAListIsNamedWithItsElement) {
   ARGIL_EXPECT_THROW_WITH(parse_json(R"({"a": [1, {"b": 2}, {"c/d": [], "c/d": 3}]})", "f"), InputError,
                           "f: /a/2/c~1d: stands twice");
+}
+
+TEST(ParseJson, RefusesAnObjectOfMoreKeysThanAnyFileHas) {
+  // Each key is compared with all before: a file of 4 MB would be looked at for a minute.
+  const auto object = [](int keys) {
+    std::string text = "{";
+    for (int k = 0; k < keys; ++k) text += (k > 0 ? ",\"" : "\"") + std::to_string(k) + "\":0";
+    return "[" + text + "}]";
+  };
+  EXPECT_EQ(parse_json(object(10000), "f")[0].size(), 10000u);
+  ARGIL_EXPECT_THROW_WITH(parse_json(object(10001), "f"), InputError,
+                          "f: /0/10000: is one key more than the 10000 that an object may have");
 }
 
 TEST_F(ScenarioFile, PeriodThatIsNoMultipleIsToldTheNext) {
