@@ -1,10 +1,14 @@
 #include "study/failures.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <map>
+#include <set>
 #include <sstream>
+#include <utility>
 
 #include "base/error.h"
 #include "output/result_reader.h"
@@ -13,22 +17,58 @@
 namespace argil::study {
 namespace {
 
+constexpr int kMostRuns = 48;             // of a failure, to make it small; with their references
+constexpr double kFewestTets = 100.0;     // that a shape is made of
+constexpr double kLeastChatter = 0.1;     // [s] five periods of the slowest that counts as chatter
+constexpr double kClear = 1.1;            // of its bound, that another machine's digits may see it, too
+constexpr double kLeastForceShare = 0.5;  // of the first force: a touch that begins is another failure
+constexpr const char* kDuration = "/trace/duration_s";
+constexpr const char* kTets = "/body/shape/target_tets";
+
+/// How far a run that reached its end is beyond what is still good: over the bound that it broke.
+double compute_excess(const Place& place, const scenario::StabilityStudy& study) {
+  const OutcomeBounds bounds;
+  switch (place.outcome) {
+    case Outcome::wrong:
+      return place.errors.force / study.wrong_above;
+    case Outcome::chatter:
+      return place.figures.chatter / bounds.chatter_above;
+    case Outcome::growing_energy:
+      return place.figures.energy_gain / bounds.growing_above;
+    default:
+      return kClear;
+  }
+}
+
+/// Steps that a run took times tets.
+double compute_work(const Place& place) {
+  const output::ResultReader reader(place.result.file);
+  return static_cast<double>(reader.read_physics().size()) *
+         static_cast<double>(reader.read_header().tets.cols());
+}
+
 /// The failure of a map's place, made smaller and smaller.
 class Shrinking {
  public:
-  Shrinking(const StabilityMap& map, const Place& place) : m_map(map), m_place(place) {}
+  Shrinking(const StabilityMap& map, const Place& place) : m_map(map), m_first(place), m_place(place) {
+    m_work = compute_work(place);
+  }
 
+  /// Each way in turn for as long as it keeps the failure, and all again until none does.
   void shrink() {
-    if (m_place.result.exit_code == kDone && m_place.outcome != Outcome::wrong)
-      halve("/trace/duration_s", m_place.figures.simulated_seconds, 0.0);
-    const scenario::Scenario s = m_map.load_place(m_place, {});
-    if (s.body.kind == scenario::BodyKind::shape)
-      halve("/body/shape/target_tets", s.body.target_tets, kFewestTets);
+    std::vector<std::string> settings;
+    for (const scenario::Setting& setting : m_map.study().settings)
+      if (setting.pointer != kDuration && setting.pointer != kTets) settings.push_back(setting.pointer);
+    for (bool is_smaller = true; is_smaller;) {
+      is_smaller = false;
+      while (shorten()) is_smaller = true;
+      while (coarsen()) is_smaller = true;
+      for (const std::string& pointer : settings) is_smaller = drop(pointer) || is_smaller;
+    }
   }
 
   scenario::Scenario make_scenario() const {
-    scenario::Scenario s = m_map.load_place(m_place, m_extra);
-    if (m_place.result.file.empty()) return s;
+    scenario::Scenario s = m_map.load_place(m_place, m_variation);
     if (const auto failure = output::ResultReader(m_place.result.file).read_failure())
       s.trace.duration = static_cast<double>(failure->tick + 1) * s.params.rates.haptic_period;
     return s;
@@ -36,26 +76,79 @@ class Shrinking {
   const Place& place() const { return m_place; }
 
  private:
-  static constexpr double kFewestTets = 100.0;
-  static constexpr int kHalvings = 5;
+  bool reached_end() const { return m_place.result.exit_code == kDone; }
 
-  void halve(const std::string& pointer, double value, double least) {
-    for (int i = 0; i < kHalvings; ++i) {
-      value *= 0.5;
-      if (value < least) return;
-      char digits[32];
-      std::snprintf(digits, sizeof digits, least > 0.0 ? "%.0f" : "%.3g", value);
-      const Settings smaller = join(m_extra, {{pointer, digits}});
-      Place again = m_map.run_with(m_place, smaller);
-      if (again.outcome != m_place.outcome) return;
-      m_extra = smaller;
-      m_place = std::move(again);
+  /// A run that ends early is cut off there anyway.
+  bool shorten() {
+    if (!reached_end()) return false;
+    const double least = m_place.outcome == Outcome::chatter ? kLeastChatter : 0.0;
+    for (const double share : {0.5, 0.75, 0.875}) {
+      const double seconds = share * m_place.figures.simulated_seconds;
+      if (seconds >= least && add(kDuration, "%.3g", seconds)) return true;
     }
+    return false;
+  }
+
+  bool coarsen() {
+    const scenario::Scenario s = m_map.load_place(m_place, m_variation);
+    if (s.body.kind != scenario::BodyKind::shape) return false;
+    for (const double share : {0.5, 0.75})
+      if (s.body.target_tets > kFewestTets &&
+          add(kTets, "%.0f", std::max(kFewestTets, share * s.body.target_tets)))
+        return true;
+    return false;
+  }
+
+  bool drop(const std::string& pointer) {
+    const auto& dropped = m_variation.dropped;
+    if (std::find(dropped.begin(), dropped.end(), pointer) != dropped.end()) return false;
+    Variation variation = m_variation;
+    variation.dropped.push_back(pointer);
+    return keeps_failure(variation, false);
+  }
+
+  bool add(const std::string& pointer, const char* format, double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, format, value);
+    Variation variation = m_variation;
+    std::erase_if(variation.added,
+                  [&](const scenario::Setting& setting) { return setting.pointer == pointer; });
+    variation.added.push_back({pointer, digits});
+    return keeps_failure(variation, true);
+  }
+
+  /// Does it fail in the same way, in less work? Then it is so from here on.
+  bool keeps_failure(const Variation& variation, bool must_be_less) {
+    std::string words = print_settings(variation.added);
+    for (const std::string& pointer : variation.dropped) words += " -" + pointer;
+    if (m_num_runs == kMostRuns || !m_tried.insert(words).second) return false;
+    ++m_num_runs;
+    Place again = m_map.run_with(m_place, variation, reached_end());
+    if (again.outcome != m_place.outcome || again.result.exit_code != m_place.result.exit_code) return false;
+    if (!is_clear(again)) return false;
+    const double work = compute_work(again);
+    if (must_be_less ? !(work < m_work) : !(work <= m_work)) return false;
+    m_variation = variation;
+    m_place = std::move(again);
+    m_work = work;
+    return true;
+  }
+
+  /// As clear as a failure can be asked to be that was found next to a boundary, and under such a force.
+  bool is_clear(const Place& again) const {
+    if (!(compute_excess(again, m_map.study()) >= std::min(kClear, compute_excess(m_first, m_map.study()))))
+      return false;
+    if (again.outcome != Outcome::wrong && again.outcome != Outcome::chatter) return true;
+    return again.figures.peak_force >= kLeastForceShare * m_first.figures.peak_force;
   }
 
   const StabilityMap& m_map;
+  const Place& m_first;
   Place m_place;
-  Settings m_extra;
+  Variation m_variation;
+  double m_work = 0.0;
+  int m_num_runs = 0;
+  std::set<std::string> m_tried;  // variations that ran
 };
 
 std::string describe(const StabilityMap& map, const Place& place) {

@@ -1,5 +1,6 @@
 #include "study/stability_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -23,8 +24,12 @@ void StabilityMap::run() {
   }
 }
 
-Settings StabilityMap::settings_at(double x, double y) const {
-  Settings settings = m_study.settings;
+Settings StabilityMap::settings_at(double x, double y, const Variation& variation) const {
+  Settings settings;
+  for (const scenario::Setting& setting : m_study.settings)
+    if (std::find(variation.dropped.begin(), variation.dropped.end(), setting.pointer) ==
+        variation.dropped.end())
+      settings.push_back(setting);
   const auto put = [&](const scenario::MapAxis& axis, double value) {
     char digits[32];
     std::snprintf(digits, sizeof digits, axis.is_integer ? "%.0f" : "%.17g", value);
@@ -32,24 +37,24 @@ Settings StabilityMap::settings_at(double x, double y) const {
   };
   put(m_study.x, x);
   if (!m_study.y.values.empty()) put(m_study.y, y);
-  return settings;
+  return join(settings, variation.added);
 }
 
-scenario::Scenario StabilityMap::load_place(const Place& place, const Settings& extra) const {
-  return load(make_run_options(m_study.scenario, join(settings_at(place.x, place.y), extra)));
+scenario::Scenario StabilityMap::load_place(const Place& place, const Variation& variation) const {
+  return load(make_run_options(m_study.scenario, settings_at(place.x, place.y, variation)));
 }
 
-/// With the truth of each where there is one.
+/// With the truth of each where there is to be one.
 std::vector<Place> StabilityMap::run_places(const std::vector<std::pair<double, double>>& points,
-                                            const Settings& extra) const {
+                                            const Variation& variation, bool has_truth) const {
   std::vector<Case> cases;
   for (const auto& [x, y] : points) {
-    const Settings settings = join(settings_at(x, y), extra);
+    const Settings settings = settings_at(x, y, variation);
     cases.push_back({m_study.scenario, settings});
-    if (!m_study.reference.empty()) cases.push_back({m_study.scenario, join(settings, m_study.reference)});
+    if (has_truth) cases.push_back({m_study.scenario, join(settings, m_study.reference)});
   }
   const std::vector<CaseResult> results = run_cases(cases, m_options);
-  const std::size_t stride = m_study.reference.empty() ? 1 : 2;
+  const std::size_t stride = has_truth ? 2 : 1;
   std::vector<Place> places;
   for (std::size_t i = 0; i < points.size(); ++i) {
     check_interrupt(m_options);
@@ -57,27 +62,27 @@ std::vector<Place> StabilityMap::run_places(const std::vector<std::pair<double, 
     place.x = points[i].first;
     place.y = points[i].second;
     place.result = results[stride * i];
-    if (stride == 2) place.truth = results[stride * i + 1];
-    judge(place, extra);
+    if (has_truth) place.truth = results[stride * i + 1];
+    judge(place, variation, has_truth);
   }
   return places;
 }
 
-Place StabilityMap::run_with(const Place& place, const Settings& extra) const {
-  return run_places({{place.x, place.y}}, extra).front();
+Place StabilityMap::run_with(const Place& place, const Variation& variation, bool has_truth) const {
+  return run_places({{place.x, place.y}}, variation, has_truth && !m_study.reference.empty()).front();
 }
 
 /// Where they stand in the list.
 std::vector<std::size_t> StabilityMap::visit(const std::vector<std::pair<double, double>>& points) {
   std::vector<std::size_t> list;
-  for (Place& place : run_places(points, {})) {
+  for (Place& place : run_places(points, {}, !m_study.reference.empty())) {
     list.push_back(m_places.size());
     m_places.push_back(std::move(place));
   }
   return list;
 }
 
-void StabilityMap::judge(Place& place, const Settings& extra) const {
+void StabilityMap::judge(Place& place, const Variation& variation, bool has_truth) const {
   std::optional<output::ResultReader> truth;
   if (!place.truth.file.empty() && place.truth.exit_code == kDone) {
     truth.emplace(place.truth.file);
@@ -85,20 +90,20 @@ void StabilityMap::judge(Place& place, const Settings& extra) const {
   }
   if (place.result.exit_code == kDone) {
     const output::ResultReader reader(place.result.file);
-    const scenario::Scenario s = load_place(place, extra);
+    const scenario::Scenario s = load_place(place, variation);
     place.figures = compute_figures(reader, s);
+    const Variation true_variation{join(variation.added, m_study.reference), variation.dropped};
     try {
       if (truth)
         place.errors = compute_errors(
-            reader, *truth,
-            {s.params.solid.element, load_place(place, join(extra, m_study.reference)).params.solid.element});
+            reader, *truth, {s.params.solid.element, load_place(place, true_variation).params.solid.element});
     } catch (const InputError& error) {
       place.result.reason = error.what();  // of this place alone
     }
   }
   OutcomeBounds bounds;
   bounds.wrong_above = m_study.wrong_above;
-  bounds.compares = !m_study.reference.empty();
+  bounds.compares = has_truth;
   place.outcome = classify(place.result, place.figures, place.errors, bounds);
   if (place.outcome == Outcome::unknown && place.result.reason.empty())
     place.result.reason = "reference: " + (place.truth.reason.empty() ? "no force" : place.truth.reason);

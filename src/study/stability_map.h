@@ -24,6 +24,12 @@ struct Place {
   RunErrors errors;
 };
 
+/// What is changed of every run of a study.
+struct Variation {
+  Settings added;                    ///< on top of axes and settings, below the reference
+  std::vector<std::string> dropped;  ///< pointers of the study's settings that are left out
+};
+
 /// Two neighbouring places of one row of the map between which the outcome turns.
 struct Boundary {
   std::size_t below;  ///< in the list of places
@@ -41,16 +47,16 @@ class StabilityMap {
   const std::vector<Place>& places() const { return m_places; }
   const std::vector<Boundary>& boundaries() const { return m_boundaries; }
   const scenario::StabilityStudy& study() const { return m_study; }
-  Settings settings_at(double x, double y) const;
-  scenario::Scenario load_place(const Place& place, const Settings& extra) const;
-  /// A place anew, with other settings on top; not in the list.
-  Place run_with(const Place& place, const Settings& extra) const;
+  Settings settings_at(double x, double y, const Variation& variation = {}) const;
+  scenario::Scenario load_place(const Place& place, const Variation& variation) const;
+  /// A place anew, varied; not in the list. Without `has_truth` it is not compared with the reference.
+  Place run_with(const Place& place, const Variation& variation, bool has_truth) const;
 
  private:
   std::vector<Place> run_places(const std::vector<std::pair<double, double>>& points,
-                                const Settings& extra) const;
+                                const Variation& variation, bool has_truth) const;
   std::vector<std::size_t> visit(const std::vector<std::pair<double, double>>& points);
-  void judge(Place& place, const Settings& extra) const;
+  void judge(Place& place, const Variation& variation, bool has_truth) const;
   bool turns(std::size_t a, std::size_t b) const;
   std::optional<double> find_middle(const Boundary& boundary) const;
   bool bisect();
