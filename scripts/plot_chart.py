@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Draws a chart of `argil chart`: error against cost, a curve a method, the Pareto front marked, failed runs along the top.
+"""Draws a chart of `argil chart`: error against cost, a curve a method, the Pareto front marked. Every run has its mark: along the
+top those without an error, at the left those without a cost.
 
 Usage: plot_chart.py TABLE.csv [-o STEM] [--error force_error] [--title TITLE]      writes STEM.png, STEM.pdf
 """
@@ -19,6 +20,7 @@ LABELS = {"force_error": "error of the hand force, relative L² [–]",
           "saturation_error": "error of the saturation, relative L² [–]"}
 MARKS = "osD^vP*X"
 STABLE = ("accurate", "wrong")
+SHAKY = ("chatter", "growing_energy")
 JND = (0.07, 0.10)  # just noticeable difference of force
 
 
@@ -40,34 +42,49 @@ def find_front(points):
     return front
 
 
-def draw_curve(axes, rows, name, place, error, corner):
-    """`corner`: the least cost, where a run is drawn that was refused and so has none, and the largest error."""
+def place_runs(rows, error, own_error):
+    """(row, kind, cost, error) of every run, where it is drawn: kind `good` and `shaky` by their error, those without any at the
+    bottom or at the reference's own error, below which none can be told; at the top, `ended` and `alone`, which reached its end but has nothing to be compared with. What has no cost is at the left."""
+    def known(key):
+        return [number(row, key) for row in rows if number(row, key) > 0.0]
+    costs, errors = known("cpu_s_per_s") or [1.0], known(error) or [1.0]
+    left, top = 0.5 * min(costs), 2.0 * max(errors)
+    bottom = min(0.5 * min(errors), own_error if own_error > 0.0 else math.inf)
+    placed = []
+    for row in rows:
+        cost, value, outcome = number(row, "cpu_s_per_s"), number(row, error), row["outcome"]
+        if math.isnan(value):
+            kind, value = ("alone" if outcome in STABLE + ("unknown",) else "ended"), top
+        else:
+            kind, value = ("good" if outcome in STABLE else "shaky"), value if value > 0.0 else bottom
+        placed.append((row, kind, cost if cost > 0.0 else left, value))
+    return placed
+
+
+def draw_curve(axes, placed, name, place):
+    """Of one name, as `place_runs` has it; the points of good runs."""
     style = {"color": COLOURS[place % len(COLOURS)], "marker": MARKS[place % len(MARKS)], "markersize": 4.5}
-    good = [(number(row, "cpu_s_per_s"), number(row, error)) for row in rows if row["outcome"] in STABLE]
-    shaky = [(number(row, "cpu_s_per_s"), number(row, error)) for row in rows
-             if row["outcome"] in ("chatter", "growing_energy")]
-    ended = [number(row, "cpu_s_per_s") for row in rows if row["outcome"] not in STABLE + ("chatter", "growing_energy")]
-    whole = [(number(row, "cpu_s_per_s"), number(row, error)) for row in rows if number(row, error) > 0.0]
+    points = {kind: [(cost, error) for _, its, cost, error in placed if its == kind] for kind in ("good", "shaky", "ended", "alone")}
+    whole = [(cost, error) for _, kind, cost, error in placed if kind in ("good", "shaky")]
     dashes = DASHES[place // len(COLOURS) % 2 * 2]
     axes.loglog(*zip(*whole) if whole else ([], []), linestyle=dashes, linewidth=1.0, color=style["color"])
-    axes.loglog(*zip(*good) if good else ([], []), linestyle="none", label=name, **style)
-    axes.loglog(*zip(*shaky) if shaky else ([], []), linestyle="none", markerfacecolor="white", **style)
-    ended = [cost if cost > 0.0 else corner[0] for cost in ended]
-    axes.loglog(ended, [corner[1]] * len(ended), linestyle="none", color=style["color"], marker="x", clip_on=False)
-    return good
+    for kind, look in (("good", {"label": name, **style}), ("shaky", {"markerfacecolor": "white", **style}),
+                       ("ended", {"color": style["color"], "marker": "x", "clip_on": False}),
+                       ("alone", {"color": style["color"], "marker": "1", "markersize": 8, "clip_on": False})):
+        axes.loglog(*zip(*points[kind]) if points[kind] else ([], []), linestyle="none", **look)
+    return points["good"]
 
 
 def draw(rows, error, title):
     reference, rest = rows[0], rows[2:]
     figure, axes = plt.subplots(figsize=(175 * MILLIMETRES, 105 * MILLIMETRES))
-    top = 2.0 * max(number(row, error) for row in rest if number(row, error) > 0.0)
-    costs = [number(row, "cpu_s_per_s") for row in rest if number(row, "cpu_s_per_s") > 0.0]
+    placed = place_runs(rest, error, number(reference, error))
     names = list(dict.fromkeys(row["curve"] for row in rest))
     points = []
     for place, name in enumerate(names):
-        points += draw_curve(axes, [row for row in rest if row["curve"] == name], name, place, error, (0.5 * min(costs), top))
+        points += draw_curve(axes, [run for run in placed if run[0]["curve"] == name], name, place)
     front = find_front(points)
-    axes.loglog(*zip(*front), color="black", linewidth=3.5, alpha=0.18, zorder=1, label="best at its cost")
+    axes.loglog(*zip(*front) if front else ([], []), color="black", linewidth=3.5, alpha=0.18, zorder=1, label="best at its cost")
     if error.endswith("force_error"):
         axes.axhspan(*JND, color=GREY, alpha=0.15, linewidth=0)
         axes.annotate("just noticeable", (axes.get_xlim()[0], JND[0]), color=GREY, fontsize=7, va="bottom",
@@ -80,9 +97,11 @@ def draw(rows, error, title):
     axes.axvline(1.0, color=GREY, linewidth=0.8)
     axes.annotate("real time", (1.0, axes.get_ylim()[0]), color=GREY, fontsize=7, rotation=90, va="bottom", ha="right",
                   xytext=(-2, 3), textcoords="offset points")
-    axes.plot([], [], linestyle="none", marker="o", markerfacecolor="white", color=GREY, label="hollow: chatters or gains energy")
-    if any(row["outcome"] not in STABLE + ("chatter", "growing_energy") for row in rest):
-        axes.plot([], [], linestyle="none", marker="x", color=GREY, label="ended early; at the left: refused")
+    kinds = {kind for _, kind, _, _ in placed}
+    for kind, marker, words in (("shaky", "o", "hollow: chatters or gains energy"), ("ended", "x", "ended early; at the left: refused"),
+                                ("alone", "1", "has nothing to be compared with")):
+        if kind in kinds:
+            axes.plot([], [], linestyle="none", marker=marker, markerfacecolor="white", color=GREY, label=words)
     axes.set_xlabel("CPU time of a simulated second, one thread [s/s]")
     axes.set_ylabel(LABELS.get(error, error))
     axes.set_title(title)

@@ -19,8 +19,9 @@ OUTCOMES = {
     "growing_energy": ("gains energy", COLOURS[0], "X"), "chatter": ("chatters at the hand", COLOURS[3], "D"),
     "inverted": ("a tet turns inside out", COLOURS[1], "v"), "not_converged": ("no solution found", COLOURS[5], "P"),
     "failed": ("ended for another reason", "black", "x"), "refused": ("refused before the start", GREY, "_"),
-    "killed": ("killed", "black", "+")}
+    "killed": ("killed", "black", "+"), "unknown": ("has nothing to be compared with", GREY, "1")}
 ERROR_TOP = 10.0  # errors above are drawn there
+ERROR_BOTTOM = 1e-6  # and those below there
 
 
 def read_table(file):
@@ -98,7 +99,7 @@ def draw(rows, provenance, title, force_names=None):
     else:
         def height(row):
             error = number(row, "force_error")
-            return ERROR_TOP if math.isnan(error) else min(error, ERROR_TOP)
+            return ERROR_TOP if math.isnan(error) else min(max(error, ERROR_BOTTOM), ERROR_TOP)
         draw_runs(axes, runs, height)
         for k, row in enumerate(boundaries):
             axes.axvline(number(row, "x"), color=GREY, linewidth=1.0, label="boundary found" if k == 0 else None)
@@ -128,6 +129,9 @@ def main():
     rows, provenance = read_table(options.table)
     if not rows or "kind" not in rows[0]:
         ap.refuse(f"{options.table}: is not a table of argil stability")
+    strange = {row["outcome"] for row in rows if row["kind"] == "run"} - set(OUTCOMES)
+    if strange:
+        ap.refuse(f"{options.table}: has outcomes that are not known here: {', '.join(sorted(strange))}")
     if options.forces and not any(row.get("reference_peak_force_N") for row in rows):
         ap.refuse(f"{options.table}: has no forces of a reference, for its study has none; leave out --forces")
     ap.save(draw(rows, provenance, options.title, options.forces), options.output or options.table.with_suffix(""))
