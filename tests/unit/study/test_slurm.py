@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """A sweep as a job array of a real Slurm that is started here: one task killed with SIGKILL, one with SIGTERM, both
-submitted again as `missing` says; the table must be that of a serial run.
+submitted again as `missing` says; the table must be that of a serial run, and of GNU parallel and Snakemake where they are.
 
 Usage: test_slurm.py ARGIL [SWEEP.json] [--keep FOLDER]
 """
@@ -186,9 +186,13 @@ def main():
         if shutil.which("parallel"):
             engines["parallel"] = ["parallel", "--will-cite", "-j2", argil, "sweep", "run", points, "--index", "{}", ":::",
                                    *map(str, range(count))]
+        if shutil.which("snakemake"):
+            engines["Snakemake"] = ["snakemake", "--quiet", "all", "--snakefile", ROOT / "scripts" / "sweep.snakefile", "--cores", "2",
+                                    "--directory", folder, "--config", f"points={points}"]
+        named = {**os.environ, "PATH": f"{Path(argil).parent}:{os.environ['PATH']}"}  # as the Snakefile calls it
         for name, command in engines.items():
             shutil.rmtree(folder / "points")
-            subprocess.run(command, check=True)
+            subprocess.run(command, check=True, env=named)
             sweep("collect", points, "-o", folder / name)
             for suffix in (".csv", ".h5"):
                 if (folder / f"slurm{suffix}").read_bytes() != (folder / f"{name}{suffix}").read_bytes():
