@@ -126,9 +126,14 @@ void remove_unusable(const std::string& part, const std::string& id) {
   fs::remove(part);
 }
 
+/// Where a file is written before it gets its name.
+std::string name_part(const std::string& file) {
+  return file + ".part";
+}
+
 /// The whole file or none.
 void write_published(const std::string& file, const std::string& text) {
-  const std::string part = file + ".part";
+  const std::string part = name_part(file);
   try {
     output::write_file(part, text);
     publish(part, file);
@@ -203,7 +208,8 @@ std::int64_t find_index(const SweepRun& sweep) {
 
 int expand_sweep(const std::string& file, const std::string& points) {
   check_points_name(points);
-  require_other_file(points, file, "the sweep");
+  for (const std::string& written : {points, name_part(points)})
+    require_other_file(written, file, "the sweep");
   const scenario::Sweep sweep = scenario::load_sweep(file);
   const fs::path base = find_folder(sweep.scenario) / fs::path(sweep.scenario).filename();
   const std::string relative = base.lexically_relative(find_folder(points)).string();
@@ -212,7 +218,7 @@ int expand_sweep(const std::string& file, const std::string& points) {
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
     SweepPoint point{static_cast<std::int64_t>(i), "", relative, sweep.points[i]};
     const scenario::Scenario s = load(make_options(point, points));
-    require_no_input(s, points);
+    for (const std::string& written : {points, name_part(points)}) require_no_input(s, written);
     point.id = find_identity(s).id();
     const std::string line = print_point(point);
     const auto [same, is_new] = index_of.emplace(point.id, point.index);
