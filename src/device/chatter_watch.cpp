@@ -6,7 +6,7 @@
 namespace argil::device {
 namespace {
 
-constexpr double kStretch = 0.1;      // [s]
+constexpr double kStretch = 0.06;     // [s]
 constexpr int kStretchesInRow = 5;    // kHeld
 constexpr double kTouchShare = 0.05;  // of the hardest touch: a lighter one says nothing
 

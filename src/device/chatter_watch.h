@@ -10,12 +10,12 @@ namespace argil::device {
 /// Sees the force at the hand tremble: what no hand moves by itself, held for so long that no poke does it.
 ///
 /// The force goes through a high-pass filter [Butterworth1930, fourth order, bilinear] at 50 Hz. A stretch of
-/// 0.1 s trembles when the rms of what is left is more than `limit` of the rms of the force in it, and not
+/// 0.06 s trembles when the rms of what is left is more than `limit` of the rms of the force in it, and not
 /// small beside the hardest touch so far; the hand chatters when five stretches in a row do.
 class ChatterWatch {
  public:
   static constexpr double kFrequency = 50.0;  ///< [Hz]
-  static constexpr double kHeld = 0.5;        ///< [s]
+  static constexpr double kHeld = 0.3;        ///< [s]
 
   /// `limit`: share of the rms, in (0, 1]; 1 sees nothing, nor does a `period` [s] of 10 ms or more, which
   /// has no such frequencies.

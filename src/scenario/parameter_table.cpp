@@ -452,7 +452,7 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
       {{device::Passivity::none, "none"}, {device::Passivity::time_domain, "time_domain"}},
       "Damp the force at the hand where it would give back more energy than the hand gave [Hannaford2002].");
   b.number("/haptics/chatter_limit", s.params.chatter_limit, {0.0, 1.0, false, true}, "",
-           "The run stops when the force at the hand has trembled for half a second: its rms above 50 Hz is "
+           "The run stops when the force at the hand has trembled for 0.3 s: its rms above 50 Hz is "
            "more than this share "
            "of its rms. 1: never.");
   device::DeviceLimits& l = s.params.device;

@@ -261,7 +261,7 @@ void HandSide::make_springs() {
 StepStatus HandSide::watch_force() {
   if (!m_chatter.see(m_state.hand_force)) return StepStatus::ok();
   return StepStatus::failed({m_clock.tick + 1, "hand", -1,
-                             "share of the force that trembles above 50 Hz for half a second",
+                             "share of the force that trembles above 50 Hz for 0.3 s",
                              m_chatter.share(), m_params.chatter_limit});
 }
 

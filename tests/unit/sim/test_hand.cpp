@@ -287,7 +287,7 @@ TEST(HandForce, ThatTremblesEndsTheRun) {
     if (!ends) continue;
     EXPECT_EQ(status.failure().stage, "hand");
     EXPECT_EQ(status.failure().tick, k);
-    EXPECT_LE(k, 700);
+    EXPECT_LE(k, 420);
     EXPECT_GT(status.failure().value, 0.3);
     EXPECT_EQ(status.failure().bound, 0.3);
     EXPECT_EQ(simulation.clock().tick, k - 1);  // the last good one
