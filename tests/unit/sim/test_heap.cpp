@@ -82,6 +82,7 @@ class Tick : public testing::TestWithParam<Case> {};
 
 TEST_P(Tick, TakesNothingFromTheHeapAfterItsWarmUp) {
   Params params = make_params();
+  params.chatter_limit = 0.999;  // the watch looks, but bears a hand that goes round so fast
   GetParam().change(params);
   EXPECT_EQ(count_in_ticks(params, GetParam().mode), 0U);
 }
