@@ -56,7 +56,7 @@ TEST(AttachedDevice, RunsBeforeOrdinaryThreadsWhereThatIsGranted) {
   const auto device = make_device("plugin:" ARGIL_EXAMPLE_PLUGIN, {});
   device->start();
   ASSERT_EQ(wait_until_ready(*device, 60.0), DeviceState::ready);
-  for (const int priority : {kDevicePriority, kHandPriority}) {  // of the device, and who watches it
+  for (const int priority : {kDevicePriority, kHandPriority}) {     // of the device, and who watches it
     for (int k = 0; k < 1000 && count_threads(priority) == 0; ++k)  // it may not have run yet
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     EXPECT_EQ(count_threads(priority), 1);
