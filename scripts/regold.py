@@ -60,7 +60,7 @@ def is_same_machine(a, b):
 
 def run(argil, name, settings, output, threads=1):
     sets = [word for setting in settings for word in ("--set", setting)]
-    done = subprocess.run([argil, "run", GOLDEN / "ball.json", "-q", "-o", output, "--threads", str(threads), *sets],
+    done = subprocess.run([argil, "run", "ball.json", "-q", "-o", output, "--threads", str(threads), *sets], cwd=GOLDEN,
                           capture_output=True, text=True)
     if done.returncode != 0:
         raise SystemExit(f"{name}: argil run ended with {done.returncode}: {done.stderr}")
