@@ -236,8 +236,8 @@ class Live(unittest.TestCase):
     @unittest.skipUnless(shutil.which("spacenavd"), "spacenavd is not installed")
     def test_a_controller_presses_and_replays(self):
         # Its reach ends at y = 0.2 m: there the tool is 2 mm deep in the ball's flank, at y = -0.018 m.
-        socket = self.start_support("spacenav_stand_in.py", "--counts", "350", "--stroke", "1.2")
-        done = self.call("live", "scene.json", "-o", "live.h5", "--device", "spacenav", "--duration", "6",
+        socket = self.start_support("spacenav_stand_in.py", "--counts", "350", "--stroke", "2")
+        done = self.call("live", "scene.json", "-o", "live.h5", "--device", "spacenav", "--duration", "8",
                          "--set", "/trace/device_to_world/translation_m=[0.001, -0.224, 0.02]",
                          environment={"SPNAV_SOCKET": socket})
         if "built without" in done.stderr or "unknown device" in done.stderr:
