@@ -1,13 +1,14 @@
 #include "device/chatter_watch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace argil::device {
 namespace {
 
-constexpr double kStretch = 0.06;     // [s]
-constexpr int kStretchesInRow = 5;    // kHeld
+constexpr int kStretchesInRow = 5;
+constexpr double kStretch = ChatterWatch::kHeld / kStretchesInRow;  // [s]
 constexpr double kTouchShare = 0.05;  // of the hardest touch: a lighter one says nothing
 
 }  // namespace

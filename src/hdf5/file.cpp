@@ -31,9 +31,9 @@ std::string find_real_name(const std::string& name) {
 /// The library keeps what it knows of a file's structure, by default up to 32 MB, and of each open series the
 /// last chunks, by default 1 MB of them.
 bool limit_caches(hid_t access) {
-  constexpr std::size_t kStructure = std::size_t{1} << 20;  // as stored; unpacked it takes some six times as much
-  constexpr std::size_t kChunks = std::size_t{128} << 10;  // some whole chunks of a series
-  constexpr std::size_t kSlots = 521;                      // the library's own number
+  constexpr std::size_t kStructure = std::size_t{1} << 20;  // as stored; some six times as much unpacked
+  constexpr std::size_t kChunks = std::size_t{128} << 10;   // some whole chunks of a series
+  constexpr std::size_t kSlots = 521;                       // the library's own number
   H5AC_cache_config_t config = {};
   config.version = H5AC__CURR_CACHE_CONFIG_VERSION;
   if (H5Pget_mdc_config(access, &config) < 0) return false;

@@ -105,10 +105,11 @@ SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
   const int late = m_ticks_since_step - m_simulation.params().rates.physics_period_ticks;
   const bool begins_step = late >= 0 && m_mailbox.is_free();
   hand.move(m_sample);
-  if (const StepStatus status = hand.touch(begins_step, nullptr); !status.is_ok()) {
-    m_tick_failure = status.failure();
-    return SessionEnd::failed;
-  }
+  const auto has_failed = [this](const StepStatus& status) {
+    if (!status.is_ok()) m_tick_failure = status.failure();
+    return !status.is_ok();
+  };
+  if (has_failed(hand.touch(begins_step, nullptr))) return SessionEnd::failed;
   HandTick tick;
   if (begins_step) {
     m_mailbox.give(hand, late, monotonic_now());
@@ -117,11 +118,7 @@ SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
   }
   tick.session.feed = device::judge_feed(m_simulation.params().device.watchdog, poll.number, poll.age,
                                          woken_at - m_surface_time);
-  if (const StepStatus status = hand.watch_force(); !status.is_ok()) {
-    m_tick_failure = status.failure();
-    return SessionEnd::failed;
-  }
-  hand.render(tick.session.feed);
+  if (has_failed(hand.render(tick.session.feed))) return SessionEnd::failed;
   m_device.send({hand.gated().force, hand.gated().torque});
 
   timing.work = monotonic_now() - woken_at;

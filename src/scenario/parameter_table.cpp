@@ -453,8 +453,7 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
       "Damp the force at the hand where it would give back more energy than the hand gave [Hannaford2002].");
   b.number("/haptics/chatter_limit", s.params.chatter_limit, {0.0, 1.0, false, true}, "",
            "The run stops when the force at the hand has trembled for 0.3 s: its rms above 50 Hz is "
-           "more than this share "
-           "of its rms. 1: never.");
+           "more than this share of its rms. 1: never.");
   device::DeviceLimits& l = s.params.device;
   b.number("/haptics/device/max_force_N", l.max_force, positive(), "N", "Largest force the device is sent.");
   b.number("/haptics/device/max_torque_Nm", l.max_torque, not_negative(), "N m",

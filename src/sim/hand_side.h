@@ -44,10 +44,9 @@ class HandSide {
   StepStatus touch(bool begins_step, const BodyAtFrame* body);
   /// Exchanges what was gathered since the last step for `empty`.
   void give(ContactLoad& empty);
-  /// Fails when the force has trembled for too long.
-  StepStatus watch_force();
-  /// The force, old or new, through the passivity controller and the device's limits; ends the tick.
-  void render(device::HandFeed feed);
+  /// The force, old or new, through the passivity controller and the device's limits; ends the tick. Fails
+  /// before that when the force has trembled for too long.
+  StepStatus render(device::HandFeed feed);
 
   /// After a step of the body and its answer, for `compliant`.
   StepStatus begin_frame(const BodyAtFrame& body, const Points& x_before);

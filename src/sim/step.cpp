@@ -25,9 +25,7 @@ StepStatus Simulation::tick(const device::DeviceSample& sample) {
   }
 
   // Hand: the last force, old or new, as the device renders it.
-  ARGIL_TRY(m_hand.watch_force());
-  m_hand.render(device::HandFeed::fresh);
-  return StepStatus::ok();
+  return m_hand.render(device::HandFeed::fresh);
 }
 
 StepStatus Simulation::tick(const device::DeviceSample& sample, const TickPlan& plan) {
@@ -42,9 +40,7 @@ StepStatus Simulation::tick(const device::DeviceSample& sample, const TickPlan& 
     m_hand.give(m_load);
     m_step_status = m_body_side.step(m_load, m_answer);
   }
-  ARGIL_TRY(m_hand.watch_force());
-  m_hand.render(plan.feed);
-  return StepStatus::ok();
+  return m_hand.render(plan.feed);
 }
 
 StepStatus HandSide::touch(bool begins_step, const BodyAtFrame* body) {
