@@ -9,13 +9,13 @@
 #include <optional>
 
 #include "base/error.h"
+#include "device/chatter_watch.h"
 #include "embed/tet_locator.h"
 #include "study/displacement_field.h"
 
 namespace argil::study {
 namespace {
 
-constexpr double kChatterHz = 50.0;    // above it the hand does not move by itself
 constexpr double kTouchShare = 0.05;   // of the peak force: below, relative errors say nothing
 constexpr double kSameTime = 1e-9;     // [s]
 constexpr double kLeastCovered = 0.9;  // of the truth's volume that a mesh must share with it
@@ -47,16 +47,12 @@ std::vector<sim::HapticRecord> find_records(const std::vector<sim::HapticRecord>
 void compare_forces(const std::vector<sim::HapticRecord>& run, const std::vector<sim::HapticRecord>& truth,
                     RunErrors& errors) {
   Squares all;
-  double peak = 0.0;
-  double true_peak = 0.0;
-  for (std::size_t k = 0; k < truth.size(); ++k) {
+  for (std::size_t k = 0; k < truth.size(); ++k)
     all.add(1.0, (run[k].force - truth[k].force).squaredNorm(), truth[k].force.squaredNorm());
-    peak = std::max(peak, run[k].force.norm());
-    true_peak = std::max(true_peak, truth[k].force.norm());
-  }
+  const double true_peak = compute_peak_force(truth);
   if (!(true_peak > 0.0)) return;
   errors.force = all.relative();
-  errors.peak_force = std::abs(peak - true_peak) / true_peak;
+  errors.peak_force = std::abs(compute_peak_force(run) - true_peak) / true_peak;
   double touched = 0.0;
   double above_7 = 0.0;
   double above_10 = 0.0;
@@ -162,7 +158,8 @@ double compute_chatter(const std::vector<sim::HapticRecord>& haptic) {
   if (haptic.empty()) return 0.0;
   Points force(3, static_cast<Eigen::Index>(haptic.size()));
   for (std::size_t k = 0; k < haptic.size(); ++k) force.col(static_cast<Eigen::Index>(k)) = haptic[k].force;
-  return compute_share_above(force, haptic.back().time / static_cast<double>(haptic.size()), kChatterHz);
+  return compute_share_above(force, haptic.back().time / static_cast<double>(haptic.size()),
+                             device::ChatterWatch::kFrequency);
 }
 
 /// Does nothing but the hand work on the body: no gravity, load, support that moves, or clay that swells?

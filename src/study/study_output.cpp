@@ -68,19 +68,19 @@ std::vector<std::pair<std::string, std::string>> describe_study(const std::strin
 
 void check_outputs(const StudyOptions& options, const std::string& scenario,
                    const std::vector<Settings>& settings) {
-  for (const char* ending : {".csv", ".h5"}) {
-    const std::string table = options.output + ending;
-    if (!std::filesystem::exists(table)) continue;
-    require_other_file(table, options.study, "the study");
-    for (const Settings& some : settings) {
-      std::optional<scenario::Scenario> s;
-      try {
-        s = load(make_run_options(scenario, some));
-      } catch (const InputError&) {  // a run that is refused reads nothing
-        continue;
-      }
-      require_no_input(*s, table);
+  std::vector<std::string> tables;  // that are there and would be overwritten
+  for (const char* ending : {".csv", ".h5"})
+    if (std::filesystem::exists(options.output + ending)) tables.push_back(options.output + ending);
+  if (tables.empty()) return;
+  for (const std::string& table : tables) require_other_file(table, options.study, "the study");
+  for (const Settings& some : settings) {
+    std::optional<scenario::Scenario> s;
+    try {
+      s = load(make_run_options(scenario, some));
+    } catch (const InputError&) {  // a run that is refused reads nothing
+      continue;
     }
+    for (const std::string& table : tables) require_no_input(*s, table);
   }
 }
 
