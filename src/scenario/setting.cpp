@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "base/error.h"
 
@@ -12,14 +13,26 @@ bool is_number(const std::string& key) {
   return !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
 }
 
+/// One step along a pointer: a key, and the pointer to where it is looked up.
+struct Stride {
+  std::string above;
+  std::string key;
+};
+
+std::vector<Stride> split(const std::string& pointer) {
+  std::vector<Stride> strides;
+  for (std::size_t begin = 0; begin < pointer.size();) {
+    const std::size_t end = std::min(pointer.find('/', begin + 1), pointer.size());
+    strides.push_back({pointer.substr(0, begin), pointer.substr(begin + 1, end - begin - 1)});
+    begin = end;
+  }
+  return strides;
+}
+
 /// Where a pointer that cannot be followed through `document` ends, in words.
 std::string find_dead_end(const Json& document, const std::string& pointer) {
   const Json* at = &document;
-  std::size_t begin = 0;
-  while (begin < pointer.size()) {
-    const std::size_t end = std::min(pointer.find('/', begin + 1), pointer.size());
-    const std::string key = pointer.substr(begin + 1, end - begin - 1);
-    const std::string above = pointer.substr(0, begin);
+  for (const auto& [above, key] : split(pointer)) {
     if (at->is_array()) {
       if (!is_number(key) || (key.size() > 1 && key[0] == '0') || key.size() > 9)
         return above + " is a list, and \"" + key + "\" is no number of an element, from 0 on";
@@ -32,7 +45,6 @@ std::string find_dead_end(const Json& document, const std::string& pointer) {
     } else {
       return above + " is " + at->dump() + ", which holds nothing";
     }
-    begin = end;
   }
   return "it is no JSON pointer (~ is written ~0, / in a key ~1)";
 }
@@ -41,11 +53,7 @@ std::string find_dead_end(const Json& document, const std::string& pointer) {
 /// the end is a new element.
 std::string find_missing_list(const Json& document, const std::string& pointer) {
   const Json* at = &document;  // null: past what is there
-  std::size_t begin = 0;
-  while (begin < pointer.size()) {
-    const std::size_t end = std::min(pointer.find('/', begin + 1), pointer.size());
-    const std::string key = pointer.substr(begin + 1, end - begin - 1);
-    const std::string above = pointer.substr(0, begin);
+  for (const auto& [above, key] : split(pointer)) {
     if (at == nullptr && is_number(key)) return above + " is not set, so it has no element " + key;
     if (at != nullptr && at->is_array() && is_number(key) && key.size() <= 9) {
       const std::size_t i = std::stoul(key);
@@ -56,7 +64,6 @@ std::string find_missing_list(const Json& document, const std::string& pointer) 
     } else {
       at = at != nullptr && at->is_object() && at->contains(key) ? &(*at)[key] : nullptr;
     }
-    begin = end;
   }
   return "";
 }
