@@ -44,11 +44,11 @@ bool ChatterWatch::trembles(const Power& stretch) const {
   return stretch.above > m_limit * m_limit * stretch.all && stretch.all > touch;
 }
 
-bool ChatterWatch::see(const Vec3& force) {
-  if (m_stretch_ticks == 0) return false;
+void ChatterWatch::see(const Vec3& force) {
+  if (m_stretch_ticks == 0) return;
   m_stretch.above += m_filter[1].pass(m_filter[0].pass(force)).squaredNorm();
   m_stretch.all += force.squaredNorm();
-  if (++m_ticks < m_stretch_ticks) return false;
+  if (++m_ticks < m_stretch_ticks) return;
   m_hardest = std::max(m_hardest, m_stretch.all);
   if (trembles(m_stretch)) {
     m_row.above += m_stretch.above;
@@ -60,6 +60,9 @@ bool ChatterWatch::see(const Vec3& force) {
   }
   m_stretch = {};
   m_ticks = 0;
+}
+
+bool ChatterWatch::is_chattering() const {
   return m_in_row >= kStretchesInRow;
 }
 

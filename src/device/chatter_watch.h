@@ -21,8 +21,10 @@ class ChatterWatch {
   /// has no such frequencies.
   ChatterWatch(double limit, double period);
 
-  /// Takes the force [N] of the next tick; does the hand chatter?
-  bool see(const Vec3& force);
+  /// Takes the force [N] of the next tick.
+  void see(const Vec3& force);
+  /// Does the hand chatter, by what was seen so far?
+  bool is_chattering() const;
   /// Rms above 50 Hz over rms of the stretches that tremble now, in a row.
   double share() const;
 

@@ -53,6 +53,7 @@ void Session::join() {
 
 std::optional<Failure> Session::failure() const {
   if (m_tick_failure) return m_tick_failure;
+  if (const StepStatus hand = m_simulation.hand().status(); !hand.is_ok()) return hand.failure();
   if (m_mailbox.status().is_ok()) return std::nullopt;
   return m_mailbox.status().failure();
 }
@@ -88,6 +89,7 @@ SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
   if (m_is_asked.load(std::memory_order_relaxed)) return SessionEnd::asked;
   if (!m_ticks.has_room()) return SessionEnd::overflow;  // before the hand feels what no record would have
   sim::HandSide& hand = m_simulation.hand();
+  if (!hand.status().is_ok()) return SessionEnd::failed;
   const device::DevicePoll poll = m_device.poll();
   if (poll.state == device::DeviceState::lost) return SessionEnd::lost;
   if (poll.is_valid()) {
@@ -105,11 +107,10 @@ SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
   const int late = m_ticks_since_step - m_simulation.params().rates.physics_period_ticks;
   const bool begins_step = late >= 0 && m_mailbox.is_free();
   hand.move(m_sample);
-  const auto has_failed = [this](const StepStatus& status) {
-    if (!status.is_ok()) m_tick_failure = status.failure();
-    return !status.is_ok();
-  };
-  if (has_failed(hand.touch(begins_step, nullptr))) return SessionEnd::failed;
+  if (const StepStatus status = hand.touch(begins_step, nullptr); !status.is_ok()) {
+    m_tick_failure = status.failure();
+    return SessionEnd::failed;
+  }
   HandTick tick;
   if (begins_step) {
     m_mailbox.give(hand, late, monotonic_now());
@@ -118,7 +119,7 @@ SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
   }
   tick.session.feed = device::judge_feed(m_simulation.params().device.watchdog, poll.number, poll.age,
                                          woken_at - m_surface_time);
-  if (has_failed(hand.render(tick.session.feed))) return SessionEnd::failed;
+  hand.render(tick.session.feed);
   m_device.send({hand.gated().force, hand.gated().torque});
 
   timing.work = monotonic_now() - woken_at;

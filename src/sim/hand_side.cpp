@@ -259,11 +259,8 @@ void HandSide::make_springs() {
 }
 
 /// The last force, old or new, less what would generate energy, through the device's limits.
-StepStatus HandSide::render(device::HandFeed feed) {
-  if (m_chatter.see(m_state.hand_force))
-    return StepStatus::failed({m_clock.tick + 1, "hand", -1,
-                               "share of the force that trembles above 50 Hz for 0.3 s", m_chatter.share(),
-                               m_params.chatter_limit});
+void HandSide::render(device::HandFeed feed) {
+  m_chatter.see(m_state.hand_force);
   const device::Wrench felt{m_state.hand_force, m_state.hand_torque};
   device::Wrench sent = felt;
   if (m_params.passivity == device::Passivity::time_domain)
@@ -271,7 +268,13 @@ StepStatus HandSide::render(device::HandFeed feed) {
   m_state.withheld = {felt.force - sent.force, felt.torque - sent.torque};
   m_gated = m_gate.apply(sent.force, sent.torque, feed);
   m_clock.advance();
-  return StepStatus::ok();
+}
+
+StepStatus HandSide::status() const {
+  if (!m_chatter.is_chattering()) return StepStatus::ok();
+  return StepStatus::failed({m_clock.tick + 1, "hand", -1,
+                             "share of the force that trembles above 50 Hz for 0.3 s", m_chatter.share(),
+                             m_params.chatter_limit});
 }
 
 HapticRecord HandSide::make_record() const {

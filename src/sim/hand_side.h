@@ -44,9 +44,10 @@ class HandSide {
   StepStatus touch(bool begins_step, const BodyAtFrame* body);
   /// Exchanges what was gathered since the last step for `empty`.
   void give(ContactLoad& empty);
-  /// The force, old or new, through the passivity controller and the device's limits; ends the tick. Fails
-  /// before that when the force has trembled for too long.
-  StepStatus render(device::HandFeed feed);
+  /// The force, old or new, through the passivity controller and the device's limits; ends the tick.
+  void render(device::HandFeed feed);
+  /// Failed when the force has trembled for so long that there may be no further tick.
+  StepStatus status() const;
 
   /// After a step of the body and its answer, for `compliant`.
   StepStatus begin_frame(const BodyAtFrame& body, const Points& x_before);

@@ -6,6 +6,7 @@
 namespace argil::sim {
 
 StepStatus Simulation::tick(const device::DeviceSample& sample) {
+  ARGIL_TRY(m_hand.status());
   const bool physics_due = clock().due(m_params.rates.physics_period_ticks);
 
   // Device: the tool goes to where the hand is at the end of the tick.
@@ -25,11 +26,13 @@ StepStatus Simulation::tick(const device::DeviceSample& sample) {
   }
 
   // Hand: the last force, old or new, as the device renders it.
-  return m_hand.render(device::HandFeed::fresh);
+  m_hand.render(device::HandFeed::fresh);
+  return StepStatus::ok();
 }
 
 StepStatus Simulation::tick(const device::DeviceSample& sample, const TickPlan& plan) {
   ARGIL_ASSERT(m_params.rates.between_frames != BetweenFrames::compliant);
+  ARGIL_TRY(m_hand.status());
   if (plan.sees_step) {
     if (!m_step_status.is_ok()) return m_step_status;
     m_hand.see(m_answer);
@@ -40,7 +43,8 @@ StepStatus Simulation::tick(const device::DeviceSample& sample, const TickPlan& 
     m_hand.give(m_load);
     m_step_status = m_body_side.step(m_load, m_answer);
   }
-  return m_hand.render(plan.feed);
+  m_hand.render(plan.feed);
+  return StepStatus::ok();
 }
 
 StepStatus HandSide::touch(bool begins_step, const BodyAtFrame* body) {

@@ -76,6 +76,7 @@ std::optional<Failure> run_ticks(const scenario::Scenario& s, Tick num_ticks, Ha
       if (is_interrupted()) break;
     }
   }
+  if (const StepStatus status = simulation.hand().status(); !status.is_ok()) return status.failure();
   return {};
 }
 

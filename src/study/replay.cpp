@@ -78,8 +78,9 @@ std::optional<Failure> replay(const output::Session& session, sim::Simulation& s
     if (plan.begins_step && simulation.step_status().is_ok()) append_step(ticks_before, simulation, file);
   }
   end_session(simulation, file);
-  if (simulation.step_status().is_ok()) return std::nullopt;
-  return simulation.step_status().failure();
+  for (const StepStatus& status : {simulation.hand().status(), simulation.step_status()})
+    if (!status.is_ok()) return status.failure();
+  return std::nullopt;
 }
 
 }  // namespace argil::study

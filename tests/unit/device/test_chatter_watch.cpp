@@ -20,8 +20,10 @@ using Force = std::function<double(double)>;  // [N] along z at a time [s]
 std::optional<int> find_chatter(ChatterWatch& watch, const Force& force, double seconds, int first = 1,
                                 double period = kPeriod) {
   const int last = static_cast<int>(std::lround(seconds / period));
-  for (int k = first; k <= last; ++k)
-    if (watch.see({0.0, 0.0, force(k * period)})) return k;
+  for (int k = first; k <= last; ++k) {
+    watch.see({0.0, 0.0, force(k * period)});
+    if (watch.is_chattering()) return k;
+  }
   return std::nullopt;
 }
 

@@ -107,6 +107,20 @@ class Live(unittest.TestCase):
                 self.assertGreater(numpy.abs(file["haptic/force"]).max(), 0.01)
                 self.assertEqual(file["timing/num_ticks"][0], 1200)
 
+    def test_a_force_that_trembles_ends_it_and_its_replay_alike(self):
+        # Contact that is held and not in the solve, stiffer than the clay: the body is thrown off the tool, step by step.
+        self.write_scene("scene.json", {"between_frames": "hold"})
+        bare = ["--set", "/dynamics/implicit_contact=false", "--set", "/contact/vertex_face_stiffness_N_per_m=1000"]
+        done = self.call("live", "scene.json", "--device", "simulated", "-o", "live.h5", "--duration", "6", *bare)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("trembles above 50 Hz", done.stderr)
+        done = self.call("run", "scene.json", "--trace", "live.h5", "-o", "again.h5", *bare)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("trembles above 50 Hz", done.stderr)
+        self.assert_equal()
+        with h5py.File(self.folder / "live.h5") as file:
+            self.assertEqual(file["failure"].attrs["tick"], file["haptic/tick"][-1] + 1)
+
     def test_a_replay_is_a_session_that_replays_again(self):
         self.call("live", "scene.json", "--device", "simulated", "-o", "first.h5", "--duration", "0.5")
         (self.folder / "first.h5").rename(self.folder / "live.h5")
