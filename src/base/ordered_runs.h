@@ -47,7 +47,7 @@ class OrderedRuns {
   }
   /// From now on only these runs, increasing; the list must outlive them. Null: all.
   void visit(const std::vector<int>* runs) { m_visited = runs; }
-  static constexpr std::ptrdiff_t kLength = 32;
+  static constexpr std::ptrdiff_t kLength = 8;
 
  private:
   int m_threads;

@@ -14,7 +14,7 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
   const std::ptrdiff_t num_rows = b.cols();
   for (std::vector<float>* vector : {&m_r, &m_z, &m_w, &m_p, &m_q, &m_x})
     vector->resize(static_cast<std::size_t>(4 * num_rows));
-  if (m_is_changed) std::fill(m_z.begin(), m_z.end(), 0.0F);  // rows outside are read
+  if (m_is_changed) clear_left_rows();
   m_is_changed = false;
   m_products.resize(static_cast<std::size_t>(m_runs.count_runs(num_rows)));
   m_sums.resize(m_products.size());
@@ -44,6 +44,24 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
         x.data()[3 * row + k] += first * static_cast<double>(m_x.data()[4 * row + k]);
   });
   return report;
+}
+
+void ShortIteration::visit(const std::vector<int>* runs) {
+  m_runs.visit(runs);
+  m_visited = runs;
+  m_is_changed = true;
+}
+
+/// Rows beside those that are visited are read: what the last solve left there goes.
+void ShortIteration::clear_left_rows() {
+  const auto length = 4 * OrderedRuns::kLength;
+  const auto size = static_cast<std::ptrdiff_t>(m_z.size());
+  for (const int run : m_solved)
+    std::fill(m_z.begin() + run * length, m_z.begin() + std::min((run + 1) * length, size), 0.0F);
+  if (m_has_solved_all) std::fill(m_z.begin(), m_z.end(), 0.0F);
+  m_has_solved_all = m_visited == nullptr;
+  m_solved.clear();
+  if (m_visited) m_solved = *m_visited;
 }
 
 /// A x = r / `first`, which has the norm 1, until what is left of it is below `goal`.

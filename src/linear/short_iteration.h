@@ -19,15 +19,16 @@ class ShortIteration {
                     int max_iterations, Points& x, double goal = 0.0);
 
   /// From now on rows of these runs alone, as if there were no others. Null: all.
-  void visit(const std::vector<int>* runs) {
-    m_runs.visit(runs);
-    m_is_changed = true;
-  }
+  void visit(const std::vector<int>* runs);
 
  private:
+  void clear_left_rows();
   SolveReport iterate(Operator& whole, double first, double goal, int max_iterations);
 
   OrderedRuns m_runs;
+  const std::vector<int>* m_visited = nullptr;
+  std::vector<int> m_solved;  // runs of the last solve
+  bool m_has_solved_all = true;
   bool m_is_changed = true;
   ShortBlocks m_blocks;
   Points m_product;

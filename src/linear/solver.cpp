@@ -133,7 +133,7 @@ class KeptFactorSolver final : public Solver {
         m_has_factor(params.kind == SolverKind::pcg_cholesky) {}
 
   SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) override {
-    m_guess = x;
+    if (!m_is_part) m_guess = x;
     ++m_cost.solves;
     if (!m_has_factor) {
       const int max_iterations = m_is_part ? m_params.max_iterations : m_params.jacobi_iterations;

@@ -129,7 +129,10 @@ void describe_step(Summary& s) {
   else if (!solver.empty())
     s.keep("linear solve: direct (" + solver + ")");
   const std::string extent = s.word("/dynamics/extent");
-  if (extent == "whole") s.keep("extent: the whole body in every step");
+  const bool is_full = !s.has("/fidelity/mode") || s.word("/fidelity/mode") == "full";
+  if (extent == "whole" || (extent == "auto" && is_full)) s.keep("extent: the whole body in every step");
+  if (extent == "auto" && !is_full)
+    s.simplify("extent: in a large body only the region that moves as far as the hand feels it");
   if (extent == "local")
     s.simplify("extent: only the region that moves; what is slower than " +
                print(s.number("/dynamics/region_tolerance")) + " of the fastest vertex stays");

@@ -155,11 +155,14 @@ bool is_anisotropic(const material::Moisture& m) {
 }
 
 /// A step of a region needs elements that go in lanes, a solve of part of the rows, and loads that stay.
-void check_extent(const Scenario& s) {
-  const solid::SolidParams& p = s.params.solid;
+void check_extent(Scenario& s) {
+  solid::SolidParams& p = s.params.solid;
   if (s.mode != Mode::dynamic || p.extent == solid::Extent::whole) return;
+  const bool is_asked_for = p.extent == solid::Extent::local;
   const auto require = [&](bool is_met, const std::string& what, const std::string& remedy) {
-    if (!is_met) throw InputError(s.file, "/dynamics/extent", "local " + what, remedy + ", or use whole");
+    if (!is_met) p.extent = solid::Extent::whole;
+    if (!is_met && is_asked_for)
+      throw InputError(s.file, "/dynamics/extent", "local " + what, remedy + ", or use whole");
   };
   using linear::SolverKind;
   require(p.element == solid::ElementKind::p1 && p.model != solid::StrainModel::neo_hookean &&
@@ -292,6 +295,7 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
     document = below;
   }
   Scenario s;
+  s.params.solid.extent = solid::Extent::automatic;
   s.file = file;
   choose_body(s, document);
   choose_mode(s, document);

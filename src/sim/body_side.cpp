@@ -13,23 +13,33 @@
 #include "material/plasticity.h"
 
 namespace argil::sim {
+namespace {
+
+/// A full model is whole unless the scenario asks for a region.
+solid::SolidParams make_solid_params(const Params& params) {
+  solid::SolidParams p = params.solid;
+  if (p.extent == solid::Extent::automatic && params.fidelity.mode == FidelityMode::full)
+    p.extent = solid::Extent::whole;
+  return p;
+}
+
+}  // namespace
 
 BodySide::BodySide(Body body, const Params& params)
     : m_params(params),
       m_body(std::move(body)),
       m_moisture(params.elastic, params.plasticity.yield, params.moisture, params.water.porosity),
-      m_solid(m_body.mesh, m_body.topology, m_body.supports, params.solid, params.threads),
+      m_solid(m_body.mesh, m_body.topology, m_body.supports, make_solid_params(params), params.threads),
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation),
       m_surface(params.contact_surface, m_body, m_solid.elements()),
-      m_runs(params.threads),
       m_fidelity(params.fidelity) {
   const Eigen::Index n = m_solid.elements().num_nodes();
   m_state.solid = m_solid.make_rest_state();
   m_load_force = solid::compute_load_force(m_solid.elements(), m_body.topology.boundary, m_body.loads);
-  m_external_force.setZero(3, n);
+  m_external_force = m_load_force;
+  m_forced_nodes.reserve(static_cast<std::size_t>(n));
+  m_changed_nodes.reserve(static_cast<std::size_t>(2 * n));
   m_held_back.setZero(3, n);
-  m_x_before = m_state.solid.x;
-  m_v_before = m_state.solid.v;
   m_yield.setZero(m_solid.elements().num_points());
   m_is_flowing.resize(static_cast<std::size_t>(m_solid.elements().num_points() / kLanes + 1), 0);
   const bool keeps_volume = params.plasticity.enabled && params.plasticity.deviatoric;
@@ -46,7 +56,7 @@ BodySide::BodySide(Body body, const Params& params)
   rest = refresh_materials(-1.0);
   ARGIL_ASSERT(rest.is_ok());
   if (m_state.is_at_rest) m_solid.sleep_all();
-  m_fidelity.find_reach(m_state.solid.x, m_solid.elements().rest);
+  find_reach(OrderedItems(params.threads));
 }
 
 StepStatus BodySide::settle() {
@@ -65,7 +75,7 @@ void BodySide::begin_step(ContactLoad& load, BodyAnswer& answer) {
   answer.has_moved = false;
   answer.felt = load.hand.felt;
   if (load.scale == 1.0) return;
-  load.force *= load.scale;
+  for (const int n : load.force.nodes) load.force.at.col(n) *= load.scale;
   for (solid::PointStiffness& entry : load.stiffness) {
     entry.stiffness *= load.scale;
     entry.force *= load.scale;
@@ -73,11 +83,20 @@ void BodySide::begin_step(ContactLoad& load, BodyAnswer& answer) {
   for (ContactYield& entry : load.yields) entry.force_at_rest *= load.scale;
 }
 
+/// Loads and contacts, at the nodes where these act now or did in the last step.
+void BodySide::set_external_force(ContactLoad& load) {
+  load.force.list();
+  m_changed_nodes = m_forced_nodes;
+  m_changed_nodes.insert(m_changed_nodes.end(), load.force.nodes.begin(), load.force.nodes.end());
+  for (const int n : m_changed_nodes) m_external_force.col(n) = load.force.at.col(n) + m_load_force.col(n);
+  m_forced_nodes = load.force.nodes;
+}
+
 /// What a step has found the body to yield under the tool lets the forces of its contacts fall: those on the
 /// body, and of the last detection those that the hand feels. With one detection a step, both are equal and
 /// opposite.
 void BodySide::apply_contact_yield(ContactLoad& load, device::Wrench& felt) {
-  m_solid.apply_contact_stiffness(load.stiffness, load.force);
+  m_solid.apply_contact_stiffness(load.stiffness, load.force.at);
   for (std::size_t i = load.last_detection; i < load.stiffness.size(); ++i) {
     const Vec3 at_rest = load.yields[i].force_at_rest * load.stiffness[i].normal;
     const Vec3 change = load.detections * (at_rest + m_solid.compute_contact_change(load.stiffness, i));
@@ -90,7 +109,7 @@ void BodySide::apply_contact_yield(ContactLoad& load, device::Wrench& felt) {
 /// else clay held in mid-air would freeze in whatever shape it has.
 void BodySide::apply_clay_kernel(const ContactLoad& load, double step_s) {
   if (!load.is_pressed || m_params.kernel.form == material::KernelForm::off) return;
-  parallel_for(m_state.solid.v.cols(), m_params.threads, [&](std::ptrdiff_t v) {
+  m_solid.moving_nodes().each(m_state.solid.v.cols(), [&](std::ptrdiff_t v) {
     if (!m_state.solid.v.col(v).isZero(0.0)) m_state.solid.v.col(v) *= clay_factor(v, load, step_s);
   });
 }
@@ -108,16 +127,18 @@ StepStatus BodySide::check_energy(const ContactLoad& contacts) {
   constexpr double kSpeed = 1e-3;  // [m/s] of a body that counts as still: below is what a loose solve leaves
   const solid::SolidState& solid = m_state.solid;
   const Field& mass = m_solid.mass();
-  m_state.energy_given += ordered_sum(solid.x.cols(), [&](std::ptrdiff_t n) {
-    const Vec3 way = solid.x.col(n) - m_x_before.col(n);
+  m_state.energy_given += m_solid.moving_nodes().sum(solid.x.cols(), [&](std::ptrdiff_t n) {
+    const Vec3 way = solid.x.col(n) - m_solid.x_start().col(n);
     const Vec3 load = m_load_force.col(n) + mass(n) * m_params.solid.gravity;
     const Vec3 reaction = (m_solid.constraints().support.col(n).array() >= 0)
                               .select(m_solid.internal_force().col(n), Vec3::Zero());
-    return std::max(0.0, way.dot(contacts.force.col(n))) + std::abs(way.dot(load)) +
+    return std::max(0.0, way.dot(contacts.force.at.col(n))) + std::abs(way.dot(load)) +
            std::abs(way.dot(reaction));
   });
-  const double bound = m_params.energy_limit * m_state.energy_given + 0.5 * kSpeed * kSpeed * mass.sum();
   const double kinetic = m_solid.compute_kinetic_energy(solid);
+  double bound = m_params.energy_limit * m_state.energy_given;
+  if (kinetic <= bound) return StepStatus::ok();
+  bound += 0.5 * kSpeed * kSpeed * mass.sum();
   if (kinetic <= bound) return StepStatus::ok();
   return StepStatus::failed(
       {tick(), "solid", -1, "kinetic energy [J] of a body that was given less", kinetic, bound});
@@ -143,13 +164,8 @@ Vec6 BodySide::compute_flow(int point, double step_s) const {
 /// Flow of every point whose elastic strain lies beyond its yield; others are not looked at one by one.
 void BodySide::apply_plastic_flow(double step_s) {
   if (!m_params.plasticity.enabled) return;
-  const std::ptrdiff_t count = m_state.solid.plastic_strain.cols();
-  m_state.plastic_dissipation += m_runs.sum(count, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    double released = 0.0;
-    for (std::ptrdiff_t p = begin; p < end; p += kLanes)
-      if (m_solid.moves(p / kLanes)) released += flow_at_points(p, std::min(p + kLanes, end), step_s);
-    return released;
-  });
+  m_state.plastic_dissipation += m_solid.sum_moving_points(
+      [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return flow_at_points(begin, end, step_s); });
 }
 
 /// Of at most kLanes points; returns what their flow dissipates [J].
@@ -226,14 +242,13 @@ void BodySide::fall_asleep() {
   m_state.solid.v_before.setZero();
   if (m_state.solid.x_before.size() > 0) m_state.solid.x_before = m_state.solid.x;
   m_solid.sleep_all();
-  m_rest_energy = m_solid.compute_elastic_energy(m_state.solid.plastic_strain);
-  m_rest_plastic_strain = m_state.solid.plastic_strain.colwise().norm().maxCoeff();
+  m_rest_strain = m_solid.summarise(m_state.solid.plastic_strain);
 }
 
 /// Is the body left as it is in this physics step? It falls asleep when nothing has touched it and it has
 /// been slower than rest_speed for two steps, and wakes when anything acts. A body that never moved rests
 /// from the start; only rounding would stir it.
-bool BodySide::rests(const ContactLoad& load) {
+bool BodySide::rests(ContactLoad& load) {
   if (!m_fidelity.is_full()) return sleeps_on(load);
   if (load.is_touched || m_is_moved) {
     m_state.is_at_rest = false;
@@ -247,35 +262,49 @@ bool BodySide::rests(const ContactLoad& load) {
   return m_state.is_at_rest;
 }
 
+void BodySide::find_reach(const OrderedItems& nodes) {
+  m_fidelity.find_reach(m_state.solid.x, m_solid.elements().rest, nodes);
+}
+
 /// fidelity: does the body still sleep under this load?
-bool BodySide::sleeps_on(const ContactLoad& load) {
+bool BodySide::sleeps_on(ContactLoad& load) {
+  load.force.list();
   m_fidelity.begin_step(load.hand.felt.force);
   if (!m_state.is_at_rest) {
-    m_fidelity.find_reach(m_state.solid.x, m_solid.elements().rest);
+    find_reach(m_solid.moving_nodes());
     return false;
   }
-  const double imbalance = std::sqrt(ordered_sum(m_held_back.cols(), [&](std::ptrdiff_t n) {
-    return (m_held_back.col(n) + load.force.col(n)).squaredNorm();
-  }));
-  m_state.is_at_rest = m_fidelity.sleeps_on(imbalance);
+  double squares = m_held_back_squares;
+  for (const int n : load.force.nodes) {
+    const Vec3 force = load.force.at.col(n);
+    squares += force.dot(2.0 * m_held_back.col(n) + force);
+  }
+  m_state.is_at_rest = m_fidelity.sleeps_on(std::sqrt(std::max(0.0, squares)));
   return m_state.is_at_rest;
 }
 
-/// fidelity: the mean strain of the points, each by its elastic energy. Laws of elasticity agree for small
-/// strain and differ in the next power, so that the force of another one may be off by about as much.
+/// fidelity: the mean strain of the points that move, each by its elastic energy. Laws of elasticity agree
+/// for small strain and differ in the next power, so that the force of another one may be off by about as
+/// much.
 void BodySide::watch_strain() {
   constexpr int kSteps = 16;  // between two looks
   if (m_fidelity.is_full() || m_state.steps % kSteps != 0) return;
-  double energy = 0.0, strained = 0.0;
-  for (int p = 0; p < m_solid.elements().num_points(); ++p) {
-    const Vec6 strain = m_solid.strain().col(p);
-    const Vec6 elastic = strain - m_state.solid.plastic_strain.col(p);
-    const double share = m_solid.material(m_solid.elements().tet_of_point(p)).mu *
-                         m_solid.elements().weight(p) * elastic.squaredNorm();
-    energy += share;
-    strained += share * strain.norm();
-  }
-  m_fidelity.set_large_strain(energy > 0.0 ? strained / energy : 0.0);
+  const auto weigh = [&](std::ptrdiff_t begin, std::ptrdiff_t end, bool by_strain) {
+    double sum = 0.0;
+    for (auto p = static_cast<int>(begin); p < static_cast<int>(end); ++p) {
+      const Vec6 strain = m_solid.strain().col(p);
+      const Vec6 elastic = strain - m_state.solid.plastic_strain.col(p);
+      sum += m_solid.material(m_solid.elements().tet_of_point(p)).mu * m_solid.elements().weight(p) *
+             elastic.squaredNorm() * (by_strain ? strain.norm() : 1.0);
+    }
+    return sum;
+  };
+  const auto sum = [&](bool by_strain) {
+    return m_solid.sum_moving_points(
+        [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return weigh(begin, end, by_strain); });
+  };
+  const double energy = sum(false);
+  m_fidelity.set_large_strain(energy > 0.0 ? sum(true) / energy : 0.0);
 }
 
 /// fidelity: may the body stop where it is, instead of the step that was assembled?
@@ -284,7 +313,9 @@ bool BodySide::falls_asleep(const ContactLoad& load, const solid::StepLoads& loa
   const bool flows = std::any_of(m_is_flowing.begin(), m_is_flowing.end(), [](char c) { return c != 0; });
   if (!m_fidelity.falls_asleep(m_solid.compute_imbalance(loads), flows)) return false;
   for (Eigen::Index n = 0; n < m_held_back.cols(); ++n)
-    m_held_back.col(n) = m_solid.find_imbalance(loads, n) - load.force.col(n);
+    m_held_back.col(n) = m_solid.find_imbalance(loads, n) - load.force.at.col(n);
+  m_held_back_squares = m_held_back.squaredNorm();
+  find_reach(OrderedItems(m_params.threads));
   fall_asleep();
   return true;
 }
@@ -295,8 +326,9 @@ PhysicsRecord BodySide::make_record() const {
   record.time = static_cast<double>(m_hand.ticks) * m_params.rates.haptic_period;
   record.kinetic_energy = m_solid.compute_kinetic_energy(m_state.solid);
   const bool is_at_rest = m_state.is_at_rest;
-  record.elastic_energy =
-      is_at_rest ? m_rest_energy : m_solid.compute_elastic_energy(m_state.solid.plastic_strain);
+  const solid::StrainSummary strain =
+      is_at_rest ? m_rest_strain : m_solid.summarise(m_state.solid.plastic_strain);
+  record.elastic_energy = strain.elastic_energy;
   record.plastic_dissipation = m_state.plastic_dissipation;
   record.contact_work = m_state.contact_work;
   record.water_mass = m_water.mass();
@@ -308,8 +340,7 @@ PhysicsRecord BodySide::make_record() const {
   record.residual = m_solid.counters().residual;
   record.active_nodes = m_solid.num_active();
   record.min_volume_ratio = m_solid.min_volume_ratio();
-  record.max_plastic_strain =
-      is_at_rest ? m_rest_plastic_strain : m_state.solid.plastic_strain.colwise().norm().maxCoeff();
+  record.max_plastic_strain = strain.largest_plastic_strain;
   record.fidelity = m_fidelity.record();
   return record;
 }

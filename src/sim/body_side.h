@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/archive.h"
-#include "base/ordered_runs.h"
+#include "base/ordered_items.h"
 #include "material/moisture.h"
 #include "sim/compliance.h"
 #include "sim/contact_surface.h"
@@ -36,8 +36,8 @@ class BodySide {
   const ContactSurface& surface() const { return m_surface; }
   const solid::Solid& solid() const { return m_solid; }
   const water::PoreWater& pore_water() const { return m_water; }
-  const HandPose& hand() const { return m_hand; }        ///< of the last step
-  const Points& x_before() const { return m_x_before; }  ///< nodes before the last move
+  const HandPose& hand() const { return m_hand; }               ///< of the last step
+  const Points& x_before() const { return m_solid.x_start(); }  ///< nodes before the last move
   BodyAtFrame at_frame(Tick tick);
   PhysicsRecord make_record() const;                  ///< of the last step
   Frame make_frame(const HandPose& hand) const;       ///< the body as it is now, with the hand there
@@ -61,6 +61,7 @@ class BodySide {
   }
   Tick tick() const { return m_hand.ticks - 1; }
   void begin_step(ContactLoad& load, BodyAnswer& answer);
+  void set_external_force(ContactLoad& load);
   void apply_contact_yield(ContactLoad& load, device::Wrench& felt);
   double clay_factor(Eigen::Index node, const ContactLoad& load, double step_s) const;
   void apply_clay_kernel(const ContactLoad& load, double step_s);
@@ -73,8 +74,9 @@ class BodySide {
   StepStatus refresh_materials(double tolerance);
   void refresh_material(int tet, double S);
   void fall_asleep();
-  bool rests(const ContactLoad& load);
-  bool sleeps_on(const ContactLoad& load);
+  bool rests(ContactLoad& load);
+  bool sleeps_on(ContactLoad& load);
+  void find_reach(const OrderedItems& nodes);
   void watch_strain();
   bool falls_asleep(const ContactLoad& load, const solid::StepLoads& loads);
 
@@ -89,16 +91,17 @@ class BodySide {
   std::vector<int> m_changed_tets;
   Points m_load_force;  // 3×n, constant
   Points m_external_force;
-  Points m_x_before, m_v_before;
+  std::vector<int> m_forced_nodes;        // by contacts, in the last step
+  std::vector<int> m_changed_nodes;       // whose external force may be another than in that before
   std::vector<double> m_shape_stiffness;  // 2μ* per tet [Pa]; empty: isotropic stiffness
   bool m_is_flow_driven = false;          // plastic flow follows the stress, not the strain
   Field m_yield;                          // of each point: elastic strain norm [–]
   std::vector<char> m_is_flowing;         // of each run of kLanes points, in the last step
-  OrderedRuns m_runs;
-  bool m_is_moved = false;  // some support moves
+  bool m_is_moved = false;                // some support moves
   Fidelity m_fidelity;
+  double m_held_back_squares = 0.0;
   Points m_held_back;  // 3×n [N] of a body that sleeps: loads less internal forces, where nodes are free
-  double m_rest_energy = 0.0, m_rest_plastic_strain = 0.0;  // of the body while it is at rest
+  solid::StrainSummary m_rest_strain;  // of the body while it is at rest
   StageObserver* m_observer = nullptr;
 };
 

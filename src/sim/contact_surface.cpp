@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/check.h"
 #include "mesh/quadratic.h"
@@ -37,6 +38,8 @@ ContactSurface::ContactSurface(SurfaceKind kind, const Body& body, const solid::
       add(v, 1.0);
       close();
     }
+    m_is_corner.resize(static_cast<std::size_t>(elements.num_nodes()), 0);
+    for (const int node : m_triangles.reshaped()) m_is_corner[static_cast<std::size_t>(node)] = 1;
     for (const int tet : body.topology.boundary_tet)
       m_tets.insert(m_tets.end(), static_cast<std::size_t>(elements.surface_per_face), tet);
     return;
@@ -68,12 +71,25 @@ void ContactSurface::find_positions(const Points& x, Points& out) const {
   }
 }
 
-void ContactSurface::add_force(const contact::Contact& contact, const Vec3& f, Points& force) const {
+bool ContactSurface::find_moved(const OrderedItems& nodes, const Points& x, std::vector<int>& vertices,
+                                Points& places) const {
+  const std::vector<int>* visited = nodes.visited();
+  if (!visited || m_is_corner.empty()) return false;
+  vertices.clear();
+  std::copy_if(visited->begin(), visited->end(), std::back_inserter(vertices),
+               [this](int node) { return m_is_corner[static_cast<std::size_t>(node)] != 0; });
+  if (places.cols() < static_cast<Eigen::Index>(vertices.size())) places.resize(3, num_vertices());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    places.col(static_cast<Eigen::Index>(i)) = x.col(vertices[i]);
+  return true;
+}
+
+void ContactSurface::add_force(const contact::Contact& contact, const Vec3& f, NodalForce& force) const {
   for (std::size_t c = 0; c < 3 && contact.vertex[c] >= 0; ++c) {
     const Vec3 share = contact.weight[c] * f;
     const auto i = static_cast<std::size_t>(contact.vertex[c]);
     for (auto k = static_cast<std::size_t>(m_begin[i]); k < static_cast<std::size_t>(m_begin[i + 1]); ++k)
-      force.col(m_node[k]) += m_weight[k] * share;
+      force.add(m_node[k], m_weight[k] * share);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "contact/contact.h"
+#include "sim/nodal_force.h"
 #include "sim/params.h"
 #include "sim/state.h"
 
@@ -26,8 +27,12 @@ class ContactSurface {
   /// Positions of the vertices [m] for nodes at x.
   void find_positions(const Points& x, Points& out) const;
 
+  /// The vertices that go with these nodes, and their places. False: all of them have to be found.
+  bool find_moved(const OrderedItems& nodes, const Points& x, std::vector<int>& vertices,
+                  Points& places) const;
+
   /// Adds Wᵀ f to the nodes' forces, f the force on a contact [N].
-  void add_force(const contact::Contact& contact, const Vec3& f, Points& force) const;
+  void add_force(const contact::Contact& contact, const Vec3& f, NodalForce& force) const;
 
   /// Appends a contact's stiffness [N/m] along a direction, between nodes. What hangs on nodes that share no
   /// tet is taken as one stiffness for each vertex of the contact, in proportion to its weight: no softer, as
@@ -50,6 +55,7 @@ class ContactSurface {
   bool add_nodes(int vertex, double weight, solid::PointStiffness& out) const;
 
   Triangles m_triangles;
+  std::vector<char> m_is_corner;     // of a triangle, where vertices are nodes; else empty
   std::vector<int> m_begin, m_node;  // nodes that carry each vertex
   std::vector<double> m_weight;      // N of each
   std::vector<int> m_tets;           // the tets under each triangle, m_tets_per_triangle of them

@@ -10,6 +10,7 @@
 #include "device/gate.h"
 #include "device/passivity.h"
 #include "device/sample.h"
+#include "sim/nodal_force.h"
 #include "solid/solid.h"
 
 namespace argil::sim {
@@ -46,7 +47,7 @@ struct ContactLoad {
   std::vector<int> touched_tet;      ///< under a tool that wets or dries, in the steps that move water
   std::vector<double> touched_area;  ///< [m²] of each
   // Tick by tick.
-  Points force;                ///< 3×n on the body [N]
+  NodalForce force;            ///< on the body
   Vec3 centre = Vec3::Zero();  ///< of pressure of the last detection [m], valid while is_pressed
   bool is_pressed = false;     ///< a push or pull tool exerts a force on the body
   bool is_touched = false;     ///< some detection of the step found a force on the body
@@ -55,7 +56,7 @@ struct ContactLoad {
   std::vector<ContactGroup> groups;
   std::size_t last_detection = 0;  ///< entry of `stiffness` where the last detection's contacts begin
 
-  explicit ContactLoad(Eigen::Index num_nodes) : force(Points::Zero(3, num_nodes)) {}
+  explicit ContactLoad(Eigen::Index num_nodes) : force(num_nodes) {}
   /// Ready for the ticks of another step; keeps its storage.
   void clear();
   /// Takes storage for as many contacts as a late step may gather.
@@ -66,8 +67,10 @@ struct ContactLoad {
 struct BodyAnswer {
   Tick step = 0;           ///< number of the step, from 1
   bool has_moved = false;  ///< the body has; else its surface is where it was
-  Points surface_x;        ///< vertices of the touched surface [m], where it has moved
-  device::Wrench felt;     ///< what the hand felt, less what the body has yielded to it
+  bool is_whole = true;    ///< all of its surface may have moved; else only these vertices have:
+  std::vector<int> moved;
+  Points surface_x;  ///< places of all vertices of the touched surface, or of these [m], where it has moved
+  device::Wrench felt;  ///< what the hand felt, less what the body has yielded to it
 };
 
 /// What a tick of the hand shares with the steps of the body. In batch a step takes no time: it begins and is

@@ -22,14 +22,10 @@ void Fidelity::begin_step(const Vec3& felt_force) {
   m_felt_force = felt_force;
 }
 
-void Fidelity::find_reach(const Points& x, const Points& rest) {
-  double largest = 0.0;
-  double squares = 0.0;
-  for (Eigen::Index n = 0; n < x.cols(); ++n) {
-    const double way = (x.col(n) - rest.col(n)).squaredNorm();
-    squares += way;
-    largest = std::max(largest, way);
-  }
+void Fidelity::find_reach(const Points& x, const Points& rest, const OrderedItems& nodes) {
+  const auto way = [&](std::ptrdiff_t n) { return (x.col(n) - rest.col(n)).squaredNorm(); };
+  const double squares = nodes.sum(x.cols(), way);
+  const double largest = nodes.find_largest(x.cols(), way);
   // As long as the hand has moved nothing, all nodes may go with it.
   const auto count = static_cast<double>(x.cols());
   m_reach = kSafety * std::sqrt(largest > 0.0 ? squares / largest : count);
@@ -45,7 +41,7 @@ double Fidelity::solve_slack() const {
 }
 
 double Fidelity::region_slack() const {
-  return is_full() ? 0.0 : kRegion * lasting_share();
+  return is_full() ? 0.0 : kRegion * lasting_share() * m_reach;
 }
 
 bool Fidelity::falls_asleep(double imbalance, bool flows) {
@@ -64,9 +60,9 @@ bool Fidelity::sleeps_on(double imbalance) {
   return m_record.estimate <= kSleep * m_record.bound;
 }
 
-void Fidelity::set_made(bool is_solved, double imbalance) {
+void Fidelity::set_made(bool is_solved, double imbalance, double held_back) {
   m_record.rung = is_solved ? Rung::solved : Rung::coasting;
-  m_record.estimate = m_reach * imbalance;
+  m_record.estimate = m_reach * imbalance + held_back;
 }
 
 void Fidelity::exchange_state(Archive& archive) {

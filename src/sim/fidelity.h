@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "base/archive.h"
+#include "base/ordered_items.h"
 #include "base/types.h"
 
 namespace argil::sim {
@@ -48,8 +49,8 @@ class Fidelity {
   bool is_full() const { return m_params.mode == FidelityMode::full; }
   /// A step begins while the hand feels a force [N].
   void begin_step(const Vec3& felt_force);
-  /// The body has gone from `rest` to `x`: how far a force in it reaches.
-  void find_reach(const Points& x, const Points& rest);
+  /// The body has gone from `rest` to `x`: how far forces on `nodes` of it reach.
+  void find_reach(const Points& x, const Points& rest, const OrderedItems& nodes);
   /// [N] without balance that a step's solve may leave, and a region that is held where it is. What these
   /// leave stays in the body and is felt later, maybe at a small force and, where contacts come and go, much
   /// enlarged: so they have shares of the floor, and less while the force changes fast.
@@ -61,7 +62,7 @@ class Fidelity {
   /// May a body that sleeps and holds back `imbalance` [N] go on so?
   bool sleeps_on(double imbalance);
   /// The step was made, `is_solved`: by more than going on as before, and left so much without balance [N].
-  void set_made(bool is_solved, double imbalance);
+  void set_made(bool is_solved, double imbalance, double held_back);
 
   void set_large_strain(double mean_strain) { m_record.large_strain = mean_strain; }
   const FidelityRecord& record() const { return m_record; }

@@ -2,6 +2,7 @@
 
 #include "sim/hand_side.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -18,7 +19,7 @@ void ContactLoad::reserve() {
 }
 
 void ContactLoad::clear() {
-  if (is_touched) force.setZero();
+  force.clear();
   is_touched = false;
   is_pressed = false;
   centre.setZero();
@@ -55,6 +56,7 @@ void HandSide::begin_at(const device::DeviceSample& start) {
 /// The detector makes its trees at its first look, which here sees nothing move.
 void HandSide::prepare() {
   m_load.reserve();
+  m_moved.reserve(static_cast<std::size_t>(m_surface.num_vertices()));
   m_detector.find_contacts(m_state.contact_x, m_state.contact_x, m_state.tool, m_state.tool, m_contacts, 0.0);
 }
 
@@ -64,18 +66,55 @@ void HandSide::see(BodyAnswer& answer) {
     m_state.hand_torque = answer.felt.torque;
   }
   if (!answer.has_moved) return;
-  m_state.surface_x.swap(answer.surface_x);
+  if (answer.is_whole) {
+    m_state.surface_x.swap(answer.surface_x);
+    m_has_all_moved = true;
+  } else {
+    if (!m_is_surface_known && !m_state.has_moved) m_state.surface_x = m_state.contact_x;
+    m_is_surface_known = true;
+    for (std::size_t i = 0; i < answer.moved.size(); ++i)
+      m_state.surface_x.col(answer.moved[i]) = answer.surface_x.col(static_cast<Eigen::Index>(i));
+    m_moved.insert(m_moved.end(), answer.moved.begin(), answer.moved.end());
+  }
   m_state.has_moved = true;
+}
+
+/// How far the surface has moved since the last detection, at most; nothing where that takes a look at all of
+/// it.
+std::optional<double> HandSide::find_surface_motion() const {
+  if (!m_state.has_moved) return 0.0;
+  if (m_has_all_moved) return {};
+  double motion = 0.0;
+  for (const int v : m_moved)
+    motion = std::max(motion, (m_state.surface_x.col(v) - m_state.contact_x.col(v)).cwiseAbs().maxCoeff());
+  return motion;
+}
+
+/// The last detection has seen the surface where it is.
+void HandSide::take_up_surface() {
+  if (m_has_all_moved) {
+    m_state.contact_x.swap(m_state.surface_x);
+    m_is_surface_known = false;
+  } else {
+    for (const int v : m_moved) m_state.contact_x.col(v) = m_state.surface_x.col(v);
+  }
+  m_has_all_moved = false;
+  m_moved.clear();
+  m_state.has_moved = false;
 }
 
 void HandSide::place_surface(const Points& x) {
   m_state.contact_x = x;
   m_state.surface_x = x;
+  m_is_surface_known = true;
+  m_has_all_moved = false;
+  m_moved.clear();
   m_state.has_moved = false;
 }
 
 void HandSide::move_surface(const Points& x) {
   m_surface.find_positions(x, m_state.surface_x);
+  m_has_all_moved = true;
   m_state.has_moved = true;
 }
 
@@ -118,11 +157,10 @@ void HandSide::find_contacts(int ticks) {
   const bool has_moved = m_state.has_moved;
   if (!finds_same_contacts())
     m_detector.find_contacts(m_state.contact_x, has_moved ? m_state.surface_x : m_state.contact_x,
-                             m_state.contact_tool, m_state.tool, m_contacts,
-                             has_moved ? std::optional<double>() : 0.0, m_clock.seconds(ticks));
+                             m_state.contact_tool, m_state.tool, m_contacts, find_surface_motion(),
+                             m_clock.seconds(ticks));
   m_state.num_contacts = static_cast<int>(m_contacts.contacts.size());
-  if (has_moved) m_state.contact_x.swap(m_state.surface_x);
-  m_state.has_moved = false;
+  take_up_surface();
   m_state.contact_tool = m_state.tool;
   m_state.force_age = 0;
   m_has_felt_anew = true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/archive.h"
@@ -83,6 +84,8 @@ class HandSide {
   void find_contacts(int ticks);
   bool finds_same_contacts();
   void move_surface(const Points& x);
+  std::optional<double> find_surface_motion() const;
+  void take_up_surface();
   void act_on_body(const contact::Contact& c, const Vec3& force);
   void spread_contact_force();
   void add_contact_stiffness(const contact::Contact& c, const Vec3& force, bool pushes);
@@ -102,8 +105,12 @@ class HandSide {
   HandState m_state;
   contact::ContactDetector m_detector;
   contact::Contacts m_contacts;
-  double m_pressed_weight = 0.0;  // Σ|force| of the last detection
-  int m_still_detections = 0;     // in a row, in which neither tool nor surface had moved
+  // Since the last detection:
+  bool m_has_all_moved = false;     // any vertex of the surface may have moved
+  std::vector<int> m_moved;         // else these have
+  bool m_is_surface_known = false;  // surface_x holds all vertices, also where they have not moved
+  double m_pressed_weight = 0.0;    // Σ|force| of the last detection
+  int m_still_detections = 0;       // in a row, in which neither tool nor surface had moved
   LocalCompliance m_compliance;
   std::vector<ContactSpring> m_springs;       // of the last detection, with their forces
   std::vector<std::size_t> m_spring_contact;  // and their places in m_contacts

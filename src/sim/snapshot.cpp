@@ -38,6 +38,8 @@ void HandSide::exchange_state(Archive& archive) {
 }
 
 void HandSide::see_again(const BodyState& body) {
+  m_is_surface_known = false;
+  m_moved.clear();
   if (m_state.has_moved) move_surface(body.solid.x);
 }
 
@@ -52,8 +54,8 @@ void BodySide::exchange_state(Archive& archive) {
   archive.any_size("solid/v_before", m_state.solid.v_before);
   archive.number("solid/is_at_rest", m_state.is_at_rest);
   archive.number("solid/slow_steps", m_state.slow_steps);
-  archive.number("solid/rest_energy", m_rest_energy);
-  archive.number("solid/rest_plastic_strain", m_rest_plastic_strain);
+  archive.number("solid/rest_energy", m_rest_strain.elastic_energy);
+  archive.number("solid/rest_plastic_strain", m_rest_strain.largest_plastic_strain);
   m_solid.exchange_state(archive);
   exchange_water(archive);
   archive.number("ledger/plastic_dissipation", m_state.plastic_dissipation);
@@ -64,6 +66,7 @@ void BodySide::exchange_state(Archive& archive) {
   m_solid.exchange_frames(archive);
   if (!m_fidelity.is_full()) {
     archive.array("fidelity/held_back", m_held_back);
+    m_held_back_squares = m_held_back.squaredNorm();
     m_fidelity.exchange_state(archive);
   }
   if (!archive.is_restoring()) return;

@@ -142,13 +142,13 @@ StepStatus BodySide::water_step(const ContactLoad& load) {
 StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
   const double h = step_seconds();
   solid::SolidState& solid = m_state.solid;
-  m_external_force = load.force + m_load_force;
+  set_external_force(load);
   solid::StepLoads loads{m_external_force, load.stiffness};
+  loads.changed = &m_changed_nodes;
   loads.slack = m_fidelity.solve_slack();
   loads.region_slack = m_fidelity.region_slack();
   if (load.is_pressed)
     loads.mobility = [this, &load](Eigen::Index node) { return clay_factor(node, load, step_seconds()); };
-  m_v_before = solid.v;
   ARGIL_TRY(m_solid.begin_step(solid, loads, h, time_at_end(), tick()));
   for (bool solved = false; !solved;) {
     {
@@ -165,17 +165,17 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
     apply_contact_yield(load, answer.felt);
     m_solid.finish_step(solid);
     apply_clay_kernel(load, h);  // v ← G_d^{h/h_ref} v
-    m_x_before = solid.x;
     m_solid.move(solid);
-    m_state.contact_work += load.force.cwiseProduct(solid.x - m_x_before).sum();
+    for (const int n : load.force.nodes)
+      m_state.contact_work += load.force.at.col(n).dot(solid.x.col(n) - m_solid.x_start().col(n));
   }
   {
     const StageScope scope(m_observer, Stage::kinematics);
     StepStatus status = check_energy(load);
     if (status.is_ok()) status = m_solid.update_kinematics(solid.x, tick());  // F → R → ε
     if (!status.is_ok()) {
-      solid.x = m_x_before;  // the last good state stays
-      solid.v = m_v_before;
+      solid.x = m_solid.x_start();  // the last good state stays
+      solid.v = m_solid.v_start();
       return status;
     }
   }
@@ -183,8 +183,9 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
   apply_plastic_flow(h);  // trial ε_p of every tet, committed at once
   m_solid.settle_region(solid, m_is_flowing);
   watch_strain();
-  m_fidelity.set_made(m_solid.counters().has_solved, m_solid.counters().imbalance + m_solid.held_back());
-  m_surface.find_positions(solid.x, answer.surface_x);
+  m_fidelity.set_made(m_solid.counters().has_solved, m_solid.counters().imbalance, m_solid.held_back());
+  answer.is_whole = !m_surface.find_moved(m_solid.moving_nodes(), solid.x, answer.moved, answer.surface_x);
+  if (answer.is_whole) m_surface.find_positions(solid.x, answer.surface_x);
   answer.has_moved = true;
   return StepStatus::ok();
 }

@@ -1,6 +1,7 @@
 #include "solid/active_set.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "base/lanes.h"
 #include "base/ordered_runs.h"
@@ -10,12 +11,16 @@ namespace {
 
 constexpr int kRun = static_cast<int>(OrderedRuns::kLength);
 
-void sort_unique(std::vector<int>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 }  // namespace
+
+void ActiveSet::Marks::move_to(std::vector<int>& list) {
+  list.clear();
+  for (std::size_t w = 0; w < m_words.size(); ++w) {
+    for (std::uint64_t word = m_words[w]; word != 0; word &= word - 1)
+      list.push_back(static_cast<int>(64 * w) + std::countr_zero(word));
+    m_words[w] = 0;
+  }
+}
 
 ActiveSet::Table ActiveSet::make_table(std::vector<std::pair<int, int>>& pairs, int count) {
   std::sort(pairs.begin(), pairs.end());
@@ -37,7 +42,7 @@ ActiveSet::ActiveSet(const Elements& elements, const std::vector<int>& node_of_r
   std::vector<std::pair<int, int>> batches_of_run, runs_of_batch, nodes_of_batch;
   for (int t = 0; t < elements.num_tets(); ++t)
     for (const int node : elements.nodes.col(t)) {
-      nodes_of_batch.emplace_back(t / kLanes, node / kRun);
+      nodes_of_batch.emplace_back(t / kLanes, node);
       const int run = m_run_of_node[static_cast<std::size_t>(node)];
       if (run < 0) continue;
       batches_of_run.emplace_back(run, t / kLanes);
@@ -50,7 +55,9 @@ ActiveSet::ActiveSet(const Elements& elements, const std::vector<int>& node_of_r
   m_nodes_of_batch = make_table(nodes_of_batch, num_batches);
   m_state.assign(static_cast<std::size_t>(num_runs), kAwake);
   m_calm_steps.assign(m_state.size(), 0);
-  m_moves.assign(static_cast<std::size_t>(num_batches), 0);
+  m_batch_marks.resize(static_cast<std::size_t>(num_batches));
+  m_run_marks.resize(m_state.size());
+  m_node_marks.resize(static_cast<std::size_t>(elements.num_nodes()));
   update();
 }
 
@@ -100,11 +107,7 @@ void ActiveSet::make_drowsy(int run) {
 
 bool ActiveSet::update() {
   if (!m_is_changed && !m_has_drowsy) return false;
-  for (const int batch : m_batches) m_moves[static_cast<std::size_t>(batch)] = 0;
   m_awake.clear();
-  m_batches.clear();
-  m_near.clear();
-  m_nodes.clear();
   m_fringe.clear();
   m_num_awake_rows = 0;
   m_has_drowsy = false;
@@ -112,7 +115,7 @@ bool ActiveSet::update() {
     int& state = m_state[static_cast<std::size_t>(run)];
     if (state == kAsleep) continue;
     const auto [first, last] = m_batches_of_run.of(run);
-    m_batches.insert(m_batches.end(), first, last);
+    for (auto batch = first; batch != last; ++batch) m_batch_marks.set(*batch);
     if (state == kAwake) {
       m_awake.push_back(run);
       m_num_awake_rows += std::min(kRun, m_num_rows - kRun * run);
@@ -121,16 +124,15 @@ bool ActiveSet::update() {
       m_has_drowsy = true;  // and gone from the lists of the next update
     }
   }
-  sort_unique(m_batches);
+  m_batch_marks.move_to(m_batches);
   for (const int batch : m_batches) {
-    m_moves[static_cast<std::size_t>(batch)] = 1;
     const auto [run, last_run] = m_runs_of_batch.of(batch);
-    m_near.insert(m_near.end(), run, last_run);
+    std::for_each(run, last_run, [this](int r) { m_run_marks.set(r); });
     const auto [nodes, last_nodes] = m_nodes_of_batch.of(batch);
-    m_nodes.insert(m_nodes.end(), nodes, last_nodes);
+    std::for_each(nodes, last_nodes, [this](int n) { m_node_marks.set(n); });
   }
-  sort_unique(m_near);
-  sort_unique(m_nodes);
+  m_run_marks.move_to(m_near);
+  m_node_marks.move_to(m_nodes);
   std::set_difference(m_near.begin(), m_near.end(), m_awake.begin(), m_awake.end(),
                       std::back_inserter(m_fringe));
   m_is_changed = false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -34,8 +35,7 @@ class ActiveSet {
   const std::vector<int>& fringe() const { return m_fringe; }    ///< of other rows that awake tets pull at
   const std::vector<int>& near() const { return m_near; }        ///< both
   const std::vector<int>& batches() const { return m_batches; }  ///< of tets that move, kLanes each
-  const std::vector<int>& nodes() const { return m_nodes; }      ///< of nodes of those tets
-  bool moves(int batch) const { return m_moves[static_cast<std::size_t>(batch)] != 0; }
+  const std::vector<int>& nodes() const { return m_nodes; }      ///< of those tets
 
   bool has_any(int run,
                const std::vector<char>& of_batch) const;  ///< is it set for any of a run's batches of tets?
@@ -45,6 +45,18 @@ class ActiveSet {
   void exchange_state(Archive& archive);
 
  private:
+  /// A set of small numbers that is read in their order.
+  class Marks {
+   public:
+    void resize(std::size_t count) { m_words.assign((count + 63) / 64, 0); }
+    void set(int i) { m_words[static_cast<std::size_t>(i) / 64] |= std::uint64_t{1} << (i % 64); }
+    /// Empties the set into `list`.
+    void move_to(std::vector<int>& list);
+
+   private:
+    std::vector<std::uint64_t> m_words;
+  };
+
   static constexpr int kAsleep = 0, kDrowsy = 1, kAwake = 2;
 
   /// Lists of lists.
@@ -58,10 +70,10 @@ class ActiveSet {
   static Table make_table(std::vector<std::pair<int, int>>& pairs, int count);
 
   int m_num_rows;
-  std::vector<int> m_run_of_node;                             // −1: held
-  Table m_batches_of_run, m_runs_of_batch, m_nodes_of_batch;  // the last one: runs of nodes
+  std::vector<int> m_run_of_node;  // −1: held
+  Table m_batches_of_run, m_runs_of_batch, m_nodes_of_batch;
   std::vector<int> m_state, m_calm_steps;
-  std::vector<char> m_moves;  // of each batch: is it in the list?
+  Marks m_batch_marks, m_run_marks, m_node_marks;
   bool m_is_changed = true;
   bool m_has_drowsy = false;
   std::vector<int> m_awake, m_fringe, m_near, m_batches, m_nodes;

@@ -57,10 +57,10 @@ void Solid::set_tet_forces() {
 }
 
 void Solid::gather(Points& force) const {
-  m_nodes.each(force.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v)
-      sum_corner_forces(m_corner_force.data(), m_elements.node_corners.data(), m_elements.node_begin[v],
-                        m_elements.node_begin[v + 1], force.data() + 3 * v);
+  each_node([&](std::ptrdiff_t node) {
+    const auto n = static_cast<std::size_t>(node);
+    sum_corner_forces(m_corner_force.data(), m_elements.node_corners.data(), m_elements.node_begin[n],
+                      m_elements.node_begin[n + 1], force.data() + 3 * n);
   });
 }
 

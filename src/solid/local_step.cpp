@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kStill = 1e-4;      // [m/s]: where nothing is faster, speeds are measured by this
 constexpr int kCalmSteps = 8;        // that a run must have been slow before it falls asleep
+constexpr double kSafety = 2.0;      // of a reach
 constexpr double kSleepShare = 0.5;  // of the speed that wakes it, below which a run is slow
 
 /// First row of a run, and the one after its last.
@@ -40,16 +41,23 @@ void Solid::sleep_all() {
   if (!m_region) return;
   m_region->sleep_all();
   m_has_old_forces = true;
+  m_has_old_nodes = true;
   if (m_region->update()) visit_region();
 }
 
 /// Forces that change and contacts wake their nodes, and those around.
 void Solid::wake_region(const StepLoads& loads) {
   if (m_last_load.size() == 0) m_last_load.setZero(3, loads.force.cols());
-  for (Eigen::Index n = 0; n < loads.force.cols(); ++n)
-    if ((loads.force.col(n).array() != m_last_load.col(n).array()).any())
-      m_region->wake_node(static_cast<int>(n));
-  m_last_load = loads.force;
+  const auto see = [&](Eigen::Index n) {
+    if ((loads.force.col(n).array() == m_last_load.col(n).array()).all()) return;
+    m_region->wake_node(static_cast<int>(n));
+    m_last_load.col(n) = loads.force.col(n);
+  };
+  if (m_has_old_forces || !loads.changed) {
+    for (Eigen::Index n = 0; n < loads.force.cols(); ++n) see(n);
+  } else {
+    for (const int node : *loads.changed) see(node);
+  }
   for (const PointStiffness& contact : loads.contacts)
     for (std::size_t i = 0; i < contact.count(); ++i) m_region->wake_node(contact.vertex[i]);
   if (m_region->update()) visit_region();
@@ -73,27 +81,52 @@ void Solid::grow_region_by_speed(const StepLoads& loads) {
   }
 }
 
-/// The runs that are pulled at most wake, until what is left holds back no more than it may.
+/// By the reciprocity of Maxwell and Betti a force is felt at the place of contact by as much of it as its
+/// node goes when that place is moved by a unit. That is read off the body: how far the node, or one that it
+/// is joined to, has gone so far, over the largest way.
+double Solid::find_reach(std::size_t row, double largest) const {
+  double way = 0.0;
+  for (int b = m_matrix.row_begin[row]; b < m_matrix.row_begin[row + 1]; ++b) {
+    const int node = m_node_of_row[static_cast<std::size_t>(m_matrix.column[static_cast<std::size_t>(b)])];
+    way = std::max(way, (m_x.col(node) - m_elements.rest.col(node)).squaredNorm());
+  }
+  return largest > 0.0 ? kSafety * std::sqrt(way / largest) : kSafety;
+}
+
+/// How much of the forces that pull at a run the hand would feel at most [N].
+double Solid::find_felt_pull(int run, double largest_way, const StepLoads& loads) const {
+  constexpr double kNothing = 1e-6;  // of what may be left out: too little to look closer
+  const auto [begin, end] = find_rows(run, m_node_of_row.size());
+  double felt = 0.0;
+  for (std::size_t row = begin; row < end; ++row) {
+    double pull = m_rhs.col(static_cast<Eigen::Index>(row)).norm() / m_tau;
+    if (kSafety * pull > kNothing * loads.region_slack) {
+      if (loads.mobility) pull *= loads.mobility(m_node_of_row[row]);
+      pull *= find_reach(row, largest_way) / kSafety;
+    }
+    felt += kSafety * pull;
+  }
+  return felt;
+}
+
+/// The runs whose pull the hand would feel most wake, until what is left holds back no more than it may.
 void Solid::grow_region_by_force(const StepLoads& loads) {
+  const double largest_way = m_nodes.find_largest(
+      m_x.cols(), [&](std::ptrdiff_t n) { return (m_x.col(n) - m_elements.rest.col(n)).squaredNorm(); });
   m_pulls.clear();
   double total = 0.0;
   for (const int run : m_region->fringe()) {
-    const auto [begin, end] = find_rows(run, m_node_of_row.size());
-    double squares = 0.0;
-    for (std::size_t row = begin; row < end; ++row) {
-      const double mobility = loads.mobility ? loads.mobility(m_node_of_row[row]) : 1.0;
-      squares += (mobility / m_tau * m_rhs.col(static_cast<Eigen::Index>(row))).squaredNorm();
-    }
-    m_pulls.emplace_back(-squares, run);
-    total += squares;
+    const double felt = find_felt_pull(run, largest_way, loads);
+    m_pulls.emplace_back(-felt, run);
+    total += felt;
   }
   std::sort(m_pulls.begin(), m_pulls.end());
-  for (const auto& [minus_squares, run] : m_pulls) {
-    if (!(total > loads.region_slack * loads.region_slack)) break;
+  for (const auto& [minus_felt, run] : m_pulls) {
+    if (!(total > loads.region_slack)) break;
     m_region->wake(run);
-    total += minus_squares;
+    total += minus_felt;
   }
-  m_held_back = std::sqrt(std::max(0.0, total));
+  m_held_back = std::max(0.0, total);
 }
 
 void Solid::grow_region(const StepLoads& loads) {
@@ -120,16 +153,16 @@ void Solid::settle_region(SolidState& state, const std::vector<char>& is_flowing
   }
   m_region->wake_batches(is_flowing);
   const double bound = kSleepShare * m_params.region_tolerance * std::max(m_fastest, kStill);
-  // What is stopped is, with all others that may be, as much as may be held back.
+  // What is stopped is, with all others that may be, felt by as much as may be held back.
   const double share =
       kSleepShare * m_region_slack / std::sqrt(std::max(1.0, static_cast<double>(fastest.size())));
   const auto is_slow = [&](std::size_t i, int run) {
     if (m_region_slack == 0.0) return fastest[i] <= bound;
     const auto [begin, end] = find_rows(run, m_node_of_row.size());
-    double squares = 0.0;
+    double felt = 0.0;
     for (std::size_t row = begin; row < end; ++row)
-      squares += (m_mass(m_node_of_row[row]) / m_tau * state.v.col(m_node_of_row[row])).squaredNorm();
-    return squares <= share * share;
+      felt += kSafety * (m_mass(m_node_of_row[row]) / m_tau * state.v.col(m_node_of_row[row])).norm();
+    return felt <= share;
   };
   for (std::size_t i = 0; i < fastest.size(); ++i) {
     const int run = m_region->awake()[i];

@@ -146,17 +146,29 @@ void Solid::assemble_rows() {
         for (std::ptrdiff_t row = begin; row < end; ++row) assembled += assemble_row(row);
         return assembled;
       }));
-  std::fill(m_is_tet_changed.begin(), m_is_tet_changed.end(), char{0});
 }
 
+/// Rows of tets that have changed, which all lie in runs that move. Takes note of the changes.
 void Solid::mark_rows(bool all) {
-  if (all) std::fill(m_is_row_stale.begin(), m_is_row_stale.end(), char{1});
-  for (std::size_t t = 0; t < m_is_tet_changed.size() && !all; ++t) {
-    if (!m_is_tet_changed[t]) continue;
-    for (const int node : m_elements.nodes.col(static_cast<Eigen::Index>(t)))
-      if (const int row = m_row_of_node[static_cast<std::size_t>(node)]; row >= 0)
-        m_is_row_stale[static_cast<std::size_t>(row)] = 1;
+  if (all) {
+    std::fill(m_is_row_stale.begin(), m_is_row_stale.end(), char{1});
+    std::fill(m_is_tet_changed.begin(), m_is_tet_changed.end(), char{0});
+    return;
   }
+  const auto mark = [this](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t t = begin; t < end; ++t) {
+      if (!m_is_tet_changed[static_cast<std::size_t>(t)]) continue;
+      m_is_tet_changed[static_cast<std::size_t>(t)] = 0;
+      for (const int node : m_elements.nodes.col(t))
+        if (const int row = m_row_of_node[static_cast<std::size_t>(node)]; row >= 0)
+          m_is_row_stale[static_cast<std::size_t>(row)] = 1;
+    }
+  };
+  constexpr int kOneThread = 1;  // tets share rows
+  if (m_region)
+    for_batches(m_region->batches(), m_elements.num_tets(), kOneThread, mark);
+  else
+    mark(0, m_elements.num_tets());
 }
 
 template <int N>

@@ -32,6 +32,7 @@ enum class Iteration {
 
 /// How much of a body a step solves for.
 enum class Extent {
+  automatic,  ///< local in a body that is so large that this saves time, or whole
   whole,
   local,  ///< the region that moves; the rest stays where it is
 };

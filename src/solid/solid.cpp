@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "base/check.h"
@@ -42,6 +43,11 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   m_mu.setZero(m_elements.num_tets());
   m_excess_bulk.setZero(m_elements.num_tets());
   m_is_tet_changed.resize(m_material.size(), 1);
+  const Eigen::Index num_batches = (m_elements.num_tets() + kLanes - 1) / kLanes;
+  m_batch_volume_ratio.setOnes(num_batches);
+  m_is_batch_new.resize(static_cast<std::size_t>(num_batches), 1);
+  m_batch_energy.setZero(num_batches);
+  m_batch_plastic_strain.setZero(num_batches);
   m_corner_force.setZero(3, m_elements.nodes.size() + 1);
   m_internal_force.setZero(3, num_nodes);
   m_product.setZero(3, num_nodes);
@@ -52,7 +58,8 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   m_is_row_stale.resize(m_node_of_row.size(), 1);
   m_rhs.setZero(3, num_free());
   m_delta.setZero(3, num_free());
-  if (m_params.extent == Extent::local) {
+  constexpr int kLarge = 1500;  // rows; with fewer, keeping the lists costs what a smaller solve saves
+  if (m_params.extent == Extent::local || (m_params.extent == Extent::automatic && num_free() >= kLarge)) {
     m_region = std::make_unique<ActiveSet>(m_elements, m_node_of_row, m_row_of_node);
     visit_region();
   }
@@ -82,12 +89,35 @@ void sort_along_curve(const Points& x, std::vector<int>& list) {
 
 }  // namespace
 
+namespace {
+
+/// Of all numbers, NaN where any of them is not finite.
+template <class Numbers>
+double find_least(const Numbers& numbers) {
+  double least = std::numeric_limits<double>::infinity();
+  double nothing = 0.0;  // 0·x: NaN where x is not finite
+  for (Eigen::Index i = 0; i < numbers.size(); ++i) {
+    least = std::min(least, numbers(i));
+    nothing += 0.0 * numbers(i);
+  }
+  return least + nothing;
+}
+
+}  // namespace
+
+/// Must a step be told where this support is? Backward Euler's leaves what does not move where it is.
+bool Solid::is_placed(int support) const {
+  return m_params.integrator != Integrator::backward_euler ||
+         !m_supports[static_cast<std::size_t>(support)].displacement.isZero(0.0);
+}
+
 /// Rows of the free nodes and the matrix's pattern.
 void Solid::number_rows() {
   m_row_of_node.assign(static_cast<std::size_t>(m_elements.num_nodes()), -1);
   for (int n = 0; n < m_elements.num_nodes(); ++n) {
     for (int k = 0; k < 3; ++k)
-      if (m_constraints.support(k, n) >= 0) m_held_components.push_back({n, k});
+      if (const int support = m_constraints.support(k, n); support >= 0 && is_placed(support))
+        m_placed_components.push_back({n, k});
     if (!m_constraints.is_held(n)) m_node_of_row.push_back(n);
   }
   sort_along_curve(m_elements.rest, m_node_of_row);
@@ -149,6 +179,7 @@ void Solid::set_material(int tet, const TetMaterial& material) {
     for (const int node : m_elements.nodes.col(tet)) m_region->wake_node(node);
   m_material[static_cast<std::size_t>(tet)] = material;
   m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
+  m_is_batch_new[static_cast<std::size_t>(tet / kLanes)] = 1;
   if (!m_stiffness.empty())
     m_stiffness[static_cast<std::size_t>(tet)] = make_isotropic_stiffness(material.lambda, material.mu);
   const Elasticity e = elasticity(tet);
@@ -253,7 +284,15 @@ void Solid::set_tet_motion(const Points& x, bool keeps_frame) {
                        m_strain.data(),
                        m_volume_ratio.data(),
                        m_is_tet_changed.data()};
-  each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_motions(tets, begin, end); });
+  const auto set = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    compute_motions(tets, begin, end);
+    m_batch_volume_ratio(begin / kLanes) = find_least(m_volume_ratio.segment(begin, end - begin));
+    m_is_batch_new[static_cast<std::size_t>(begin / kLanes)] = 1;
+  };
+  if (m_has_old_nodes)
+    for_batches(m_elements.num_tets(), m_threads, set);
+  else
+    each_batch(set);
 }
 
 void Solid::set_quadratic_motion(const Points& x, bool keeps_frame) {
@@ -283,14 +322,17 @@ StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frame) {
     set_tet_motion(x, keeps_frame);
   else
     set_quadratic_motion(x, keeps_frame);
-  Eigen::Index worst = 0;
-  m_min_volume_ratio = m_volume_ratio.minCoeff(&worst);
-  const bool finite = m_volume_ratio.allFinite();  // minCoeff may pass over a NaN
+  m_min_volume_ratio =
+      m_elements.nodes_per_tet == 4 ? find_least(m_batch_volume_ratio) : find_least(m_volume_ratio);
+  const bool finite = std::isfinite(m_min_volume_ratio);
   // Strain of the linear model has no inside to turn out; in statics its solution is what was asked for.
   const bool may_invert = m_is_static && m_params.model == StrainModel::linear;
   if (finite && (may_invert || m_min_volume_ratio > m_params.min_volume_ratio)) return StepStatus::ok();
-  if (!finite)
-    for (worst = 0; std::isfinite(m_volume_ratio(worst));) ++worst;
+  Eigen::Index worst = 0;
+  if (finite)
+    m_volume_ratio.minCoeff(&worst);
+  else
+    while (std::isfinite(m_volume_ratio(worst))) ++worst;
   return StepStatus::failed({tick, "solid", m_elements.tet_of_point(static_cast<int>(worst)),
                              "volume ratio det F of a tet", m_volume_ratio(worst),
                              m_params.min_volume_ratio});
@@ -344,8 +386,29 @@ double Solid::compute_elastic_energy(const TensorField& plastic_strain) const {
   return own + m_nodal->compute_energy(change);
 }
 
+StrainSummary Solid::summarise(const TensorField& plastic_strain) const {
+  const auto find_largest = [&](Eigen::Index begin, Eigen::Index end) {
+    double squares = 0.0;
+    for (Eigen::Index p = begin; p < end; ++p)
+      squares = std::max(squares, plastic_strain.col(p).squaredNorm());
+    return std::sqrt(squares);
+  };
+  if (!has_plain_tets() || m_nodal)
+    return {compute_elastic_energy(plastic_strain), find_largest(0, plastic_strain.cols())};
+  const ForceArrays tets = make_force_arrays(plastic_strain, nullptr);
+  for_batches(m_elements.num_tets(), m_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    const std::ptrdiff_t batch = begin / kLanes;
+    if (!m_is_batch_new[static_cast<std::size_t>(batch)]) return;
+    m_is_batch_new[static_cast<std::size_t>(batch)] = 0;
+    m_batch_energy(batch) = compute_energy(tets, begin, end);
+    m_batch_plastic_strain(batch) = find_largest(begin, end);
+  });
+  return {ordered_sum(m_batch_energy.size(), [&](std::ptrdiff_t batch) { return m_batch_energy(batch); }),
+          m_batch_plastic_strain.maxCoeff()};
+}
+
 double Solid::compute_kinetic_energy(const SolidState& state) const {
-  return ordered_sum(m_mass.size(),
+  return m_nodes.sum(m_mass.size(),
                      [&](std::ptrdiff_t v) { return 0.5 * m_mass(v) * state.v.col(v).squaredNorm(); });
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "base/ordered_items.h"
 #include "base/status.h"
 #include "solid/active_set.h"
 #include "solid/elements.h"
@@ -65,10 +66,19 @@ struct StepLoads {
   std::span<const PointStiffness> contacts = {};  ///< and how those of contacts grow as the body moves on
   /// Extent::local: share of a node's speed that the step will leave it; empty: all of it.
   std::function<double(Eigen::Index)> mobility = {};
-  /// Forces [N] without balance, Euclidean norm over all nodes, that a step may leave: in its solve, and
-  /// (Extent::local) where the body is left as it is; 0: the tolerances of the parameters decide.
+  /// Forces [N] without balance, Euclidean norm over all nodes, that a step's solve may leave; 0: the
+  /// tolerance of the parameters decides.
   double slack = 0.0;
+  /// Extent::local: by how much the hand's force may be off [N] for what is left as it is; 0: as for slack.
   double region_slack = 0.0;
+  /// Extent::local: nodes whose force may be another than in the last step; null: any.
+  const std::vector<int>* changed = nullptr;
+};
+
+/// Of the body as a whole.
+struct StrainSummary {
+  double elastic_energy = 0.0;          ///< [J]
+  double largest_plastic_strain = 0.0;  ///< ‖ε_p‖
 };
 
 /// Finite elements in time. A step in the order in which sim/step.cpp calls its stages: begin_step, then
@@ -117,9 +127,22 @@ class Solid {
   void settle_region(SolidState& state, const std::vector<char>& is_flowing);
   void wake_all();   ///< the whole body moves again
   void sleep_all();  ///< none of it until something acts; it has no speed
-  /// May the tets of this run of kLanes move?
-  bool moves(std::ptrdiff_t batch) const { return !m_region || m_region->moves(static_cast<int>(batch)); }
-  /// By what the last step left as it is: norm of force over its nodes [N].
+  /// Σ body(begin, end) over the runs of kLanes points that may move, in their order.
+  template <class Body>
+  double sum_moving_points(Body body) {
+    const std::ptrdiff_t count = m_elements.num_points();
+    const std::vector<int>* batches = m_region ? &m_region->batches() : nullptr;
+    m_point_sums.resize(batches ? batches->size() : static_cast<std::size_t>((count + kLanes - 1) / kLanes));
+    double* sums = m_point_sums.data();
+    parallel_for(static_cast<std::ptrdiff_t>(m_point_sums.size()), m_threads, [=, &body](std::ptrdiff_t i) {
+      const std::ptrdiff_t batch = batches ? (*batches)[static_cast<std::size_t>(i)] : i;
+      sums[i] = body(batch * kLanes, std::min((batch + 1) * kLanes, count));
+    });
+    double total = 0.0;
+    for (const double sum : m_point_sums) total += sum;
+    return total;
+  }
+  /// By what the last step left as it is: how much of that force the hand may feel [N].
   double held_back() const { return m_held_back; }
   int num_active() const { return m_region ? m_region->num_awake_rows() : num_free(); }
 
@@ -164,6 +187,10 @@ class Solid {
   bool is_strained(int tet, const TensorField& plastic_strain) const;
   double min_volume_ratio() const { return m_min_volume_ratio; }
   int num_free() const { return static_cast<int>(m_node_of_row.size()); }
+  /// Of tets that moved in the last step: all others are where they were.
+  const OrderedItems& moving_nodes() const { return m_nodes; }
+  const Points& x_start() const { return m_x_start; }  ///< where the last step began
+  const Points& v_start() const { return m_v_start; }
   const Points& internal_force() const { return m_internal_force; }  ///< of the last assembly [N]
 
   /// Elastic energy of one point for the given plastic strain [J], without what nodes share (p1_nodal).
@@ -172,6 +199,8 @@ class Solid {
   Vec6 compute_flow_drive(int point, const Vec6& plastic_strain, double shape_stiffness) const;
   /// Of the body at the present kinematics [J].
   double compute_elastic_energy(const TensorField& plastic_strain) const;
+  /// The same and the largest ‖ε_p‖. Tets that have not moved since the last call are not looked at.
+  StrainSummary summarise(const TensorField& plastic_strain) const;
   double compute_kinetic_energy(const SolidState& state) const;
 
  private:
@@ -194,10 +223,18 @@ class Solid {
     else
       for_batches(m_elements.num_tets(), m_threads, body);
   }
+  template <class Body>
+  void each_node(Body body) const {
+    m_nodes.each(m_elements.num_nodes(), body);
+  }
+  bool is_placed(int support) const;
+  void take_up(const SolidState& state);
   void wake_region(const StepLoads& loads);
   void grow_region(const StepLoads& loads);
   void grow_region_by_speed(const StepLoads& loads);
   void grow_region_by_force(const StepLoads& loads);
+  double find_reach(std::size_t row, double largest_way) const;
+  double find_felt_pull(int run, double largest_way, const StepLoads& loads) const;
   void visit_region();
   double frame_tolerance() const;
   void set_tet_motion(const Points& x, bool keeps_frame);
@@ -289,7 +326,10 @@ class Solid {
   Eigen::Matrix3Xd m_deformation;  // F, 3 columns a point
   Eigen::Matrix3Xd m_rotation;     // R, 3 columns a point
   TensorField m_strain;
-  Field m_volume_ratio;  // det F
+  Field m_volume_ratio;                      // det F
+  Field m_batch_volume_ratio;                // p1: least of each run of kLanes tets
+  mutable std::vector<char> m_is_batch_new;  // p1: have its tets moved since they were summarised?
+  mutable Field m_batch_energy, m_batch_plastic_strain;
   double m_min_volume_ratio = 1.0;
   Field m_tet_volume_change;  // p1_nodal: θ of each tet
   Field m_volume_change;      // p1_nodal: θ of each tet's nodes, their mean
@@ -305,8 +345,8 @@ class Solid {
 
   std::vector<int> m_row_of_node;  // −1: held in all directions
   std::vector<int> m_node_of_row;
-  std::vector<std::array<int, 2>> m_held_components;  // node and direction of all that is prescribed
-  std::vector<int> m_held_rows;                       // rows with a held component
+  std::vector<std::array<int, 2>> m_placed_components;  // node and direction of what is_placed
+  std::vector<int> m_held_rows;                         // rows with a held component
   std::vector<int> m_block_of_corner_pair;  // N² a tet: place of block (i, j), −1 where there is none
   linear::BlockMatrix m_matrix;
   MatrixShares m_stored_shares;         // of the matrix that is stored
@@ -314,15 +354,17 @@ class Solid {
   std::vector<char> m_is_row_stale;     // holds something that the next matrix may not
   OrderedRuns m_rows;                   // that are solved for
   OrderedRuns m_near_rows;              // and those that awake tets pull at
-  OrderedRuns m_nodes;                  // of tets that move
+  OrderedItems m_nodes;                 // of tets that move
   std::unique_ptr<ActiveSet> m_region;  // Extent::local
   bool m_has_old_forces = true;         // of tets that do not move: not found yet
+  bool m_has_old_nodes = true;          // what a step takes of nodes that do not move: not taken up yet
   double m_fastest = 0.0;               // speed of the last step [m/s]
   double m_frame_slack = 0.0;           // by how much frames may lag where the force at the hand allows it
   double m_region_slack = 0.0;          // of the present step [N]
   double m_held_back = 0.0;
   std::vector<std::pair<double, int>> m_pulls;  // on runs that sleep [N], and their numbers
   Points m_last_load;                           // forces of the last step
+  std::vector<double> m_point_sums;             // of each run of points
   std::vector<double> m_run_speed;              // of the fastest node of each run that is awake
   std::unique_ptr<linear::Solver> m_solver;
   std::unique_ptr<linear::Solver> m_static_solver;    // made at first use, as is the next:

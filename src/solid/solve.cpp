@@ -64,7 +64,7 @@ void Solid::clear_held(Points& u) const {
 }
 
 StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
-  m_v_base = m_v;
+  each_node([&](std::ptrdiff_t n) { m_v_base.col(n) = m_v.col(n); });
   solved = !is_newton() || is_explicit();
   if (is_explicit()) {
     for (int row = 0; row < num_free(); ++row)
@@ -112,10 +112,13 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
   if (num_free() == 0) return {true, 0, 0.0};
   const auto guess = [&] {
     if (is_newton()) m_delta.setZero();
-    for (int row = 0; row < num_free() && is_first; ++row) {
-      const int n = m_node_of_row[static_cast<std::size_t>(row)];
-      m_delta.col(row) = m_v_start.col(n) - m_v.col(n);
-    }
+    if (is_first)
+      m_near_rows.each(num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        for (std::ptrdiff_t row = begin; row < end; ++row) {
+          const int n = m_node_of_row[static_cast<std::size_t>(row)];
+          m_delta.col(row) = m_v_start.col(n) - m_v.col(n);
+        }
+      });
     for (const int row : m_held_rows)
       for (int k = 0; k < 3; ++k)
         if (m_constraints.support(k, m_node_of_row[static_cast<std::size_t>(row)]) >= 0)
@@ -206,6 +209,7 @@ void Solid::exchange_frames(Archive& archive) {
     archive.number("region/fastest", m_fastest);
     archive.any_size("region/last_load", m_last_load);
   }
+  if (archive.is_restoring()) m_has_old_nodes = m_has_old_forces = true;
   archive.number("solid/frame_slack", m_frame_slack);
   if (m_frame.size() == 0 || frame_tolerance() == 0.0) return;
   archive.array("solid/frame", m_frame);

@@ -33,20 +33,27 @@ StepStatus Solid::begin_step(const SolidState& state, const StepLoads& loads, do
   m_iterations = 0;
   start_contacts(loads.contacts.size());
   m_plastic_strain = &state.plastic_strain;
-  m_x_start = state.x;
-  m_v_start = state.v;
-  m_x = state.x;
+  take_up(state);
   keep_damping_frame();
   predict(state, loads, step_s);
   const bool has_moved = place_supports(time, 1.0);
-  if (is_explicit())
-    m_v = state.v;
-  else
-    m_v.noalias() = (m_x - m_x_hat) / m_tau;
+  if (!is_explicit())
+    each_node([&](std::ptrdiff_t n) { m_v.col(n) = (m_x.col(n) - m_x_hat.col(n)) / m_tau; });
   // Held components go at their mean velocity; Newmark's own rule would let it swing about that.
-  for (const auto& [n, k] : m_held_components) m_v(k, n) = (m_held_x(k, n) - state.x(k, n)) / step_s;
+  for (const auto& [n, k] : m_placed_components) m_v(k, n) = (m_held_x(k, n) - state.x(k, n)) / step_s;
   if (is_explicit()) m_x = state.x;  // forces are those of the start
   return has_moved && !is_explicit() ? update_kinematics(m_x, tick) : StepStatus::ok();
+}
+
+/// Where the step begins. Of nodes that sleep all is as it was in the last step.
+void Solid::take_up(const SolidState& state) {
+  if (m_has_old_nodes) m_nodes.visit(nullptr);
+  each_node([&](std::ptrdiff_t n) {
+    m_x_start.col(n) = m_x_hat.col(n) = m_x.col(n) = state.x.col(n);
+    m_v_start.col(n) = m_v_hat.col(n) = m_v.col(n) = state.v.col(n);
+  });
+  if (m_has_old_nodes && m_region) m_nodes.visit(&m_region->nodes());
+  m_has_old_nodes = false;
 }
 
 /// Newton's method damps in the frame of the step's start, so that a step has a potential.
@@ -74,8 +81,6 @@ double Solid::compute_tau(const SolidState& state, double step_s) const {
 /// x̂, v̂, τ of each integrator.
 void Solid::predict(const SolidState& state, const StepLoads& loads, double step_s) {
   m_tau = compute_tau(state, step_s);
-  m_x_hat = state.x;
-  m_v_hat = state.v;
   switch (m_params.integrator) {
     case Integrator::backward_euler:
     case Integrator::symplectic_euler:
@@ -103,7 +108,7 @@ void Solid::predict(const SolidState& state, const StepLoads& loads, double step
 bool Solid::place_supports(double time, double share) {
   bool has_moved = false;
   m_is_shifted = false;
-  for (const auto& [n, k] : m_held_components) {
+  for (const auto& [n, k] : m_placed_components) {
     const auto support = static_cast<std::size_t>(m_constraints.support(k, n));
     m_held_x(k, n) = m_elements.rest(k, n) + share * compute_displacement(m_supports[support], time)(k);
     has_moved = has_moved || m_x(k, n) != m_held_x(k, n);
@@ -161,8 +166,10 @@ double Solid::compute_excess() const {
 void Solid::compute_residual(const StepLoads& loads) {
   assemble_internal_force();
   m_corner_scale = is_newton() ? m_corner_force.squaredNorm() : 0.0;
-  const bool is_viscous = !m_is_static && m_params.rayleigh_stiffness > 0.0 && (m_v.array() != 0.0).any();
-  m_product.setZero(3, m_elements.num_nodes());
+  const bool is_viscous =
+      !m_is_static && m_params.rayleigh_stiffness > 0.0 &&
+      m_nodes.sum(m_v.cols(), [&](std::ptrdiff_t n) { return m_v.col(n).isZero(0.0) ? 0.0 : 1.0; }) > 0.0;
+  each_node([&](std::ptrdiff_t n) { m_product.col(n).setZero(); });
   if (is_viscous) compute_stiffness_product(m_v, m_params.rayleigh_stiffness, 0.0, m_product);
   if (!m_is_static && m_params.implicit_contact)
     for (std::size_t i = 0; i < loads.contacts.size(); ++i)
@@ -243,7 +250,7 @@ Vec3 Solid::find_imbalance(const StepLoads& loads, Eigen::Index node) const {
 }
 
 double Solid::compute_imbalance(const StepLoads& loads) const {
-  return std::sqrt(ordered_sum(m_elements.num_nodes(), [&](std::ptrdiff_t n) {
+  return std::sqrt(m_nodes.sum(m_elements.num_nodes(), [&](std::ptrdiff_t n) {
     return (find_imbalance(loads, n) + m_mass(n) / m_tau * m_v_start.col(n)).squaredNorm();
   }));
 }
@@ -288,7 +295,7 @@ void Solid::set_iterate(double share) {
       m_x.col(n) = m_x_hat.col(n) + m_tau * m_v.col(n);
     }
   });
-  for (const auto& [n, k] : m_held_components) {
+  for (const auto& [n, k] : m_placed_components) {
     m_v(k, n) = m_v_base(k, n);
     m_x(k, n) = m_held_x(k, n);
   }
@@ -322,12 +329,12 @@ void Solid::finish_step(SolidState& state) {
     state.x_before = state.x;
     state.v_before = state.v;
   }
-  state.v = m_v;
+  each_node([&](std::ptrdiff_t n) { state.v.col(n) = m_v.col(n); });
 }
 
 void Solid::move(SolidState& state) const {
-  state.x.noalias() = m_x_hat + m_tau * state.v;
-  for (const auto& [n, k] : m_held_components) state.x(k, n) = m_held_x(k, n);
+  each_node([&](std::ptrdiff_t n) { state.x.col(n) = m_x_hat.col(n) + m_tau * state.v.col(n); });
+  for (const auto& [n, k] : m_placed_components) state.x(k, n) = m_held_x(k, n);
 }
 
 StepStatus Solid::iterate_static(const SolidState& state, const StepLoads& loads) {

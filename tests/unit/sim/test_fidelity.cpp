@@ -36,11 +36,11 @@ TEST(Fidelity, ForceReachesAsFarAsNodesGoWithTheHand) {
   one(2, 7) = 1e-3;
   Fidelity fidelity = make_fidelity();
   fidelity.begin_step(Vec3::Zero());
-  fidelity.find_reach(one, rest);
+  fidelity.find_reach(one, rest, OrderedItems(1));
   const double of_one = fidelity.solve_slack();
-  fidelity.find_reach(all, rest);
+  fidelity.find_reach(all, rest, OrderedItems(1));
   EXPECT_DOUBLE_EQ(fidelity.solve_slack(), of_one / 10.0);
-  fidelity.find_reach(rest, rest);  // nothing has moved: any of them may
+  fidelity.find_reach(rest, rest, OrderedItems(1));  // nothing has moved: any of them may
   EXPECT_DOUBLE_EQ(fidelity.solve_slack(), of_one / 10.0);
 }
 
@@ -70,7 +70,7 @@ TEST(Fidelity, ARelaxingModeFallsAsleepWhenLittleIsLeft) {
   int steps = 0;
   for (bool sleeps = false; !sleeps; imbalance *= kDecay, ++steps) {
     fidelity.begin_step(Vec3::Zero());
-    fidelity.find_reach(rest, rest);
+    fidelity.find_reach(rest, rest, OrderedItems(1));
     sleeps = fidelity.falls_asleep(imbalance, false);
   }
   const int first_calm = static_cast<int>(std::ceil(std::log(0.4 * 0.02 / 2.0) / std::log(kDecay)));
@@ -84,7 +84,7 @@ TEST(Fidelity, ARelaxingModeFallsAsleepWhenLittleIsLeft) {
 TEST(Fidelity, WakesFarFromWhereItFellAsleep) {
   Fidelity fidelity = make_fidelity();
   fidelity.begin_step(Vec3::Zero());
-  fidelity.find_reach(Points::Zero(3, 1), Points::Zero(3, 1));
+  fidelity.find_reach(Points::Zero(3, 1), Points::Zero(3, 1), OrderedItems(1));
   const double falls = 0.4 * 0.02 / 2.0;
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(fidelity.falls_asleep(1.01 * falls, false));
   for (int i = 0; i < 7; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.99 * falls, false));

@@ -2,6 +2,9 @@
 // nearer to it the less may be, and what is left out stays where it is.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
 #include "support/block_body.h"
@@ -30,6 +33,11 @@ Body make_bar() {
   return test::make_block_body(80, 4, 3, Vec3(0.4, 0.02, 0.015));
 }
 
+/// The same, but with so many nodes that a region is taken unasked.
+Body make_long_bar() {
+  return test::make_block_body(120, 4, 3, Vec3(0.6, 0.02, 0.015));
+}
+
 /// Down on one end of it, up again.
 device::DeviceSample hand_at(Tick tick) {
   device::DeviceSample sample;
@@ -42,17 +50,25 @@ device::DeviceSample hand_at(Tick tick) {
 struct PressRun {
   std::vector<Vec3> force;
   int most_active = 0;
+  double mean_active = 0.0;  // over all ticks
   Points x;
 };
 
-PressRun run(const Params& params) {
-  Simulation simulation(make_bar(), contact::make_sphere_tool(kToolRadius, 2), params, hand_at(0));
+PressRun run(const Params& params, const Body& body = make_bar(), const Vec3& aside = Vec3::Zero()) {
+  const auto hand = [&](Tick tick) {
+    device::DeviceSample sample = hand_at(tick);
+    sample.position += aside;
+    return sample;
+  };
+  Simulation simulation(body, contact::make_sphere_tool(kToolRadius, 2), params, hand(0));
   PressRun result;
   for (Tick k = 1; k <= kTicks; ++k) {
-    const StepStatus status = simulation.tick(hand_at(k));
+    const StepStatus status = simulation.tick(hand(k));
     EXPECT_TRUE(status.is_ok()) << k;
     result.force.push_back(simulation.hand_state().hand_force);
-    result.most_active = std::max(result.most_active, simulation.physics_record().active_nodes);
+    const int active = simulation.physics_record().active_nodes;
+    result.most_active = std::max(result.most_active, active);
+    result.mean_active += static_cast<double>(active) / kTicks;
   }
   result.x = simulation.body_state().solid.x;
   return result;
@@ -114,14 +130,55 @@ TEST(LocalExtent, LeavesTheRestWhereItIsAndSleepsWhenNothingActs) {
   EXPECT_EQ(simulation.physics_record().active_nodes, 0);
 }
 
+/// The region follows what the hand feels: by the reciprocity of forces and displacements. In an elastic
+/// block what is far from the tool yields, too, and is felt.
+TEST(LocalExtent, UnderFidelityKeepsTheForceWithinItsBound) {
+  const Body block = test::make_block_body(24, 24, 8, Vec3(0.12, 0.12, 0.04));
+  const Vec3 middle(0.0097, 0.0498, 0.025);
+  Params params = make_params(solid::Extent::whole, 1e-3);
+  params.plasticity.enabled = false;
+  params.kernel.form = material::KernelForm::off;
+  const PressRun whole = run(params, block, middle);
+  params.fidelity.mode = FidelityMode::automatic;
+  params.solid.extent = solid::Extent::automatic;
+  const PressRun region = run(params, block, middle);
+  double error = 0.0;
+  for (std::size_t k = 0; k < whole.force.size(); ++k) {
+    const double bound =
+        std::max(params.fidelity.force_floor, params.fidelity.force_tolerance * whole.force[k].norm());
+    error = std::max(error, (region.force[k] - whole.force[k]).norm() / bound);
+  }
+  EXPECT_LT(error, 1.0);
+  EXPECT_LT(region.mean_active, 0.3 * whole.mean_active);
+}
+
+TEST(LocalExtent, IsTakenByItselfWhereItSaves) {
+  Params params = make_params(solid::Extent::automatic, 1e-3);
+  const auto count_active = [&](const Body& body) {
+    Simulation simulation(body, contact::make_sphere_tool(kToolRadius, 2), params, hand_at(0));
+    for (Tick k = 1; k <= 10; ++k) EXPECT_TRUE(simulation.tick(hand_at(k)).is_ok());
+    return std::pair(simulation.physics_record().active_nodes, simulation.solid().num_free());
+  };
+  const auto [in_full, all] = count_active(make_long_bar());
+  EXPECT_EQ(in_full, all);
+  params.fidelity.mode = FidelityMode::automatic;
+  const auto [in_auto, again] = count_active(make_long_bar());
+  EXPECT_LT(in_auto, again);
+  const auto [in_small, of_small] = count_active(test::make_block_body(20, 4, 3, Vec3(0.1, 0.02, 0.015)));
+  EXPECT_EQ(in_small, of_small);
+}
+
 TEST(LocalExtent, GivesEqualBitsOnAnyNumberOfThreads) {
-  Params params = make_params(solid::Extent::local, 0.02);
-  const PressRun one = run(params);
-  for (const int threads : {2, 3}) {
-    params.threads = threads;
-    const PressRun more = run(params);
-    EXPECT_TRUE((more.x.array() == one.x.array()).all()) << threads;
-    EXPECT_EQ(more.most_active, one.most_active);
+  for (const FidelityMode mode : {FidelityMode::full, FidelityMode::automatic}) {
+    Params params = make_params(solid::Extent::local, 0.02);
+    params.fidelity.mode = mode;
+    const PressRun one = run(params);
+    for (const int threads : {2, 3}) {
+      params.threads = threads;
+      const PressRun more = run(params);
+      EXPECT_TRUE((more.x.array() == one.x.array()).all()) << threads;
+      EXPECT_EQ(more.most_active, one.most_active);
+    }
   }
 }
 
