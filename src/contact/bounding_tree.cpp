@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/lanes.h"
+
 namespace argil::contact {
 
 BoundingTree::BoundingTree(const Points& vertices, const Triangles& triangles) : m_triangles(triangles) {
@@ -12,8 +14,10 @@ BoundingTree::BoundingTree(const Points& vertices, const Triangles& triangles) :
         (vertices.col(triangles(0, t)) + vertices.col(triangles(1, t)) + vertices.col(triangles(2, t))) / 3.0;
   m_order.resize(static_cast<std::size_t>(triangles.cols()));
   std::iota(m_order.begin(), m_order.end(), 0);
-  m_triangle_bounds.resize(m_order.size());
+  m_triangle_bounds.resize(m_order.size() + 1);
   m_nodes.reserve(m_order.size() + 1);
+  m_waiting.reserve(m_order.size() + 1);
+  m_passed.reserve(m_order.size() + 1);
   m_nodes.emplace_back();
   split(0, 0, static_cast<int>(m_order.size()), centroids);
   fit_all(vertices);
@@ -64,24 +68,99 @@ Bounds BoundingTree::fit_triangle(int triangle, const Points& x_t0, const Points
   return bounds;
 }
 
-void BoundingTree::visit(int index, const Bounds& query, const Points& x_t0, const Points& x_t1,
-                         std::vector<int>& triangles) {
-  Node& node = m_nodes[static_cast<std::size_t>(index)];
-  if (!node.bounds.overlaps(query, margin(node))) return;
-  if (node.count > 0) {
-    fit_leaf(node, x_t0, x_t1);
-    if (!node.bounds.overlaps(query, 0.0)) return;
-    for (auto i = static_cast<std::size_t>(node.first); i < static_cast<std::size_t>(node.first + node.count);
-         ++i)
-      if (m_triangle_bounds[i].overlaps(query, 0.0)) triangles.push_back(m_order[i]);
-  } else {
-    visit(node.first, query, x_t0, x_t1, triangles);
-    visit(node.first + 1, query, x_t0, x_t1, triangles);
-    fit_inner(node);
-  }
+namespace {
+
+/// A box and what lies behind it in memory.
+struct BoxLanes {
+  Quad low, high;
+};
+
+ARGIL_INLINE void read_box(const Bounds& bounds, double margin, BoxLanes& box) {
+  read(bounds.low.data(), box.low);
+  read(bounds.high.data(), box.high);
+  box.low -= margin;
+  box.high += margin;
 }
 
-void BoundingTree::fit_leaf(Node& node, const Points& x_t0, const Points& x_t1) {
+}  // namespace
+
+ARGIL_EVERY_PROCESSOR void BoundingTree::find_overlaps(const Bounds& query, const Points& x_t0,
+                                                       const Points& x_t1, std::vector<int>& triangles) {
+  if (m_order.empty()) return;
+  const Quad low = {query.low(0), query.low(1), query.low(2), 0.0};
+  const Quad high = {query.high(0), query.high(1), query.high(2), 0.0};
+  const auto overlaps = [&](const Bounds& bounds, double margin) __attribute__((always_inline)) {
+    BoxLanes box;
+    read_box(bounds, margin, box);
+    const Quad under = high - box.low;
+    const Quad over = box.high - low;
+    const Quad both = under < over ? under : over;
+    return (both[0] >= 0.0) & (both[1] >= 0.0) & (both[2] >= 0.0);
+  };
+  m_waiting.assign(1, 0);
+  m_passed.clear();
+  while (!m_waiting.empty()) {
+    const int index = m_waiting.back();
+    m_waiting.pop_back();
+    Node& node = m_nodes[static_cast<std::size_t>(index)];
+    if (!overlaps(node.bounds, margin(node))) continue;
+    if (node.count == 0) {
+      m_passed.push_back(index);
+      m_waiting.push_back(node.first + 1);
+      m_waiting.push_back(node.first);
+      continue;
+    }
+    fit_leaf(node, x_t0, x_t1);
+    for (auto i = static_cast<std::size_t>(node.first); i < static_cast<std::size_t>(node.first + node.count);
+         ++i)
+      if (overlaps(m_triangle_bounds[i], 0.0)) triangles.push_back(m_order[i]);
+  }
+  fit_passed();
+}
+
+ARGIL_EVERY_PROCESSOR void BoundingTree::find_near(const Vec3& p, double squared_reach, const Points& x_t0,
+                                                   const Points& x_t1, std::vector<int>& triangles) {
+  triangles.clear();
+  if (m_order.empty()) return;
+  const Quad at = {p(0), p(1), p(2), 0.0};
+  const auto is_near = [&](const Bounds& bounds, double margin) __attribute__((always_inline)) {
+    BoxLanes box;
+    read_box(bounds, margin, box);
+    const Quad below = box.low - at;
+    const Quad above = at - box.high;
+    const Quad beside = below > above ? below : above;
+    const Quad way = beside > 0.0 ? beside : Quad{};
+    return way[0] * way[0] + way[1] * way[1] + way[2] * way[2] <= squared_reach;
+  };
+  m_waiting.assign(1, 0);
+  m_passed.clear();
+  while (!m_waiting.empty()) {
+    const int index = m_waiting.back();
+    m_waiting.pop_back();
+    Node& node = m_nodes[static_cast<std::size_t>(index)];
+    if (node.count == 0) {
+      m_passed.push_back(index);
+      for (const int child : {node.first + 1, node.first}) {
+        const Node& of_child = m_nodes[static_cast<std::size_t>(child)];
+        if (is_near(of_child.bounds, margin(of_child))) m_waiting.push_back(child);
+      }
+      continue;
+    }
+    fit_leaf(node, x_t0, x_t1);
+    for (auto i = static_cast<std::size_t>(node.first); i < static_cast<std::size_t>(node.first + node.count);
+         ++i)
+      if (is_near(m_triangle_bounds[i], 0.0)) triangles.push_back(m_order[i]);
+  }
+  fit_passed();
+}
+
+/// Children were passed after their parents.
+ARGIL_CALLED_FROM_EVERY void BoundingTree::fit_passed() {
+  for (auto index = m_passed.rbegin(); index != m_passed.rend(); ++index)
+    fit_inner(m_nodes[static_cast<std::size_t>(*index)]);
+}
+
+ARGIL_CALLED_FROM_EVERY void BoundingTree::fit_leaf(Node& node, const Points& x_t0, const Points& x_t1) {
   if (node.interval == m_interval) return;
   node.bounds = Bounds();
   for (auto i = static_cast<std::size_t>(node.first); i < static_cast<std::size_t>(node.first + node.count);

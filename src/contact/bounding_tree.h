@@ -33,7 +33,11 @@ struct Bounds {
   double squared_distance(const Vec3& p, double margin = 0.0) const {
     double sum = 0.0;
     for (Eigen::Index k = 0; k < 3; ++k) {
-      const double d = std::max(std::max(low(k) - margin - p(k), p(k) - (high(k) + margin)), 0.0);
+      // Values and not references to them, as std::max takes: these branch.
+      const double below = low(k) - margin - p(k);
+      const double above = p(k) - (high(k) + margin);
+      const double beside = below > above ? below : above;
+      const double d = beside > 0.0 ? beside : 0.0;
       sum += d * d;
     }
     return sum;
@@ -63,9 +67,12 @@ class BoundingTree {
   /// Appends the triangles whose boxes over the present motion (both ends; linear paths stay inside) overlap
   /// `query`, in an order that depends on the tree alone, and fits the boxes it meets.
   void find_overlaps(const Bounds& query, const Points& x_t0, const Points& x_t1,
-                     std::vector<int>& triangles) {
-    if (!m_order.empty()) visit(0, query, x_t0, x_t1, triangles);
-  }
+                     std::vector<int>& triangles);
+
+  /// Finds the triangles whose boxes over the present motion come as near to `p` as the root of
+  /// `squared_reach`.
+  void find_near(const Vec3& p, double squared_reach, const Points& x_t0, const Points& x_t1,
+                 std::vector<int>& triangles);
 
   /// Calls visit(triangle) → squared distance for triangles that may be nearer to `p`, at any time of the
   /// present motion, than the least one found so far, which starts as `least`. Fits the boxes it meets.
@@ -92,8 +99,7 @@ class BoundingTree {
   Bounds fit_triangle(int triangle, const Points& x_t0, const Points& x_t1) const;
   void fit_leaf(Node& node, const Points& x_t0, const Points& x_t1);
   void fit_inner(Node& node);
-  void visit(int node, const Bounds& query, const Points& x_t0, const Points& x_t1,
-             std::vector<int>& triangles);
+  void fit_passed();
   template <class Visit>
   void visit_node(int index, const Vec3& p, double& least, const Points& x_t0, const Points& x_t1,
                   Visit& visit) {
@@ -124,8 +130,10 @@ class BoundingTree {
 
   Triangles m_triangles;
   std::vector<int> m_order;
-  std::vector<Bounds> m_triangle_bounds;  // in that order; of a leaf's last fit
-  std::vector<Node> m_nodes;              // children after their parent
+  std::vector<Bounds>
+      m_triangle_bounds;      // in that order, of a leaf's last fit; and one more, for reads beyond
+  std::vector<Node> m_nodes;  // children after their parent
+  std::vector<int> m_waiting, m_passed;  // working arrays of a query: nodes to look at; inner ones that were
   double m_motion = 0.0;
   std::int64_t m_interval = 0;
 };

@@ -58,6 +58,7 @@ struct VertexSide {
   // Of the present interval.
   std::vector<Entry> entries;    ///< by vertex, time, face
   std::vector<int> inside_next;  ///< working array
+  std::vector<int> candidates;   ///< working array: faces that may be near a vertex
   std::vector<NearFace> near;    ///< working array: faces near a vertex, by number
   std::vector<int> pressed;      ///< vertices with depth
   std::vector<double> depth;     ///< |∫ nᵀ(p−q) n dt| of each vertex [m]

@@ -47,12 +47,12 @@ Surroundings find_surroundings(const VertexFaceMotion& m, const Vec3& p, int fac
   Surroundings out;
   out.nearest = compute_nearest_on_face(m.faces, face, p);
   const double reach = (1.0 + blend) * (1.0 + blend) * out.nearest.squared_distance;
-  m.tree.visit_near(p, reach, m.faces.x_t0, m.faces.x_t1, [&](int other) {
+  m.tree.find_near(p, reach, m.faces.x_t0, m.faces.x_t1, m.side.candidates);
+  for (const int other : m.side.candidates) {
     const SurfacePoint found = compute_nearest_on_face(m.faces, other, p);
     if (is_nearer(found, out.nearest)) out.nearest = found;
     if (found.squared_distance < reach) near.push_back({other, found.squared_distance});
-    return reach;
-  });
+  }
   // Not in the order of the tree's boxes, which depend on the past.
   std::sort(near.begin(), near.end(), [](const NearFace& a, const NearFace& b) { return a.face < b.face; });
   out.walked = walk_to_nearest(m.faces, p, face, near);

@@ -3,9 +3,9 @@
 //   build/bin/bench_step --benchmark_filter=push/tets:10000
 // Counters are microseconds per physics step of one haptic tick: `solve` is the median over the steps in
 // which the stage ran, `solve_p99` its 99th percentile; `step` is the sum of a step's stages. Push: contact
-// and solid, water every tenth step; push_nodal: the same at ν = 0.45 with elements that do not lock. Wet:
-// the body feels no force, water flows in every step. Compliant: a physics step every 14 ticks, and a surface
-// that yields in between; `contact` is that of one tick.
+// and solid, water every tenth step; push_auto: the same with fidelity auto; push_nodal: the same at ν = 0.45
+// with elements that do not lock. Wet: the body feels no force, water flows in every step. Compliant: a
+// physics step every 14 ticks, and a surface that yields in between; `contact` is that of one tick.
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -25,7 +25,7 @@ constexpr double kApproach = 0.45;  // [s] into the motion
 constexpr Tick kApproachSteps = 300;
 constexpr int kPressSteps = 200;  // the same for every size, so that all press the same part of the motion
 
-enum class Variant { plain, compliant, nodal };
+enum class Variant { plain, lean, compliant, nodal };
 
 /// The demonstration's scene with a physics step every tick.
 struct Press {
@@ -45,6 +45,7 @@ struct Press {
         {"/haptics/water_period_ticks", is_compliant                  ? "14"
                                         : m == device::ToolMode::push ? "10"
                                                                       : "1"}};
+    if (variant == Variant::lean) settings.push_back({"/fidelity/mode", "auto"});
     if (variant == Variant::nodal) {
       settings.push_back({"/dynamics/element", "p1_nodal"});
       settings.push_back({"/material/poissons_ratio", "0.45"});
@@ -92,6 +93,10 @@ void push(benchmark::State& state) {
   run_steps(state, device::ToolMode::push);
 }
 
+void push_auto(benchmark::State& state) {
+  run_steps(state, device::ToolMode::push, Variant::lean);
+}
+
 void push_nodal(benchmark::State& state) {
   run_steps(state, device::ToolMode::push, Variant::nodal);
 }
@@ -109,6 +114,7 @@ void set_sizes(benchmark::internal::Benchmark* bench) {
   bench->Iterations(kPressSteps)->Unit(benchmark::kMicrosecond)->UseRealTime();
 }
 BENCHMARK(push)->Apply(set_sizes);
+BENCHMARK(push_auto)->Apply(set_sizes);
 BENCHMARK(push_nodal)->Apply(set_sizes);
 BENCHMARK(wet)->Apply(set_sizes);
 BENCHMARK(compliant)->Apply(set_sizes);
