@@ -13,8 +13,8 @@
 #else
 #define ARGIL_EVERY_PROCESSOR
 #endif
-// Of functions that such a one calls: GCC leaves the upper halves of vectors as they are where it sees that the
-// callee does not touch them, and all code after it is slow.
+// Of functions that such a one calls: GCC leaves the upper halves of vectors as they are where it sees that
+// the callee does not touch them, and all code after it is slow.
 #if defined(__GNUC__) && !defined(__clang__)
 #define ARGIL_CALLED_FROM_EVERY __attribute__((noipa))
 #else

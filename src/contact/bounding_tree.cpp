@@ -84,9 +84,35 @@ ARGIL_INLINE void read_box(const Bounds& bounds, double margin, BoxLanes& box) {
 
 }  // namespace
 
+/// The triangles whose boxes, and all those around them, pass `is_met`(box, margin).
+template <class Test>
+ARGIL_INLINE void BoundingTree::find(Test is_met, const Points& x_t0, const Points& x_t1,
+                                     std::vector<int>& triangles) {
+  m_waiting.clear();
+  m_passed.clear();
+  if (!m_order.empty() && is_met(m_nodes.front().bounds, margin(m_nodes.front()))) m_waiting.push_back(0);
+  while (!m_waiting.empty()) {
+    const int index = m_waiting.back();
+    m_waiting.pop_back();
+    Node& node = m_nodes[static_cast<std::size_t>(index)];
+    if (node.count == 0) {
+      m_passed.push_back(index);
+      for (const int child : {node.first + 1, node.first}) {
+        const Node& of_child = m_nodes[static_cast<std::size_t>(child)];
+        if (is_met(of_child.bounds, margin(of_child))) m_waiting.push_back(child);
+      }
+      continue;
+    }
+    fit_leaf(node, x_t0, x_t1);
+    const auto last = static_cast<std::size_t>(node.first + node.count);
+    for (auto i = static_cast<std::size_t>(node.first); i < last; ++i)
+      if (is_met(m_triangle_bounds[i], 0.0)) triangles.push_back(m_order[i]);
+  }
+  fit_passed();
+}
+
 ARGIL_EVERY_PROCESSOR void BoundingTree::find_overlaps(const Bounds& query, const Points& x_t0,
                                                        const Points& x_t1, std::vector<int>& triangles) {
-  if (m_order.empty()) return;
   const Quad low = {query.low(0), query.low(1), query.low(2), 0.0};
   const Quad high = {query.high(0), query.high(1), query.high(2), 0.0};
   const auto overlaps = [&](const Bounds& bounds, double margin) __attribute__((always_inline)) {
@@ -97,31 +123,12 @@ ARGIL_EVERY_PROCESSOR void BoundingTree::find_overlaps(const Bounds& query, cons
     const Quad both = under < over ? under : over;
     return (both[0] >= 0.0) & (both[1] >= 0.0) & (both[2] >= 0.0);
   };
-  m_waiting.assign(1, 0);
-  m_passed.clear();
-  while (!m_waiting.empty()) {
-    const int index = m_waiting.back();
-    m_waiting.pop_back();
-    Node& node = m_nodes[static_cast<std::size_t>(index)];
-    if (!overlaps(node.bounds, margin(node))) continue;
-    if (node.count == 0) {
-      m_passed.push_back(index);
-      m_waiting.push_back(node.first + 1);
-      m_waiting.push_back(node.first);
-      continue;
-    }
-    fit_leaf(node, x_t0, x_t1);
-    for (auto i = static_cast<std::size_t>(node.first); i < static_cast<std::size_t>(node.first + node.count);
-         ++i)
-      if (overlaps(m_triangle_bounds[i], 0.0)) triangles.push_back(m_order[i]);
-  }
-  fit_passed();
+  find(overlaps, x_t0, x_t1, triangles);
 }
 
 ARGIL_EVERY_PROCESSOR void BoundingTree::find_near(const Vec3& p, double squared_reach, const Points& x_t0,
                                                    const Points& x_t1, std::vector<int>& triangles) {
   triangles.clear();
-  if (m_order.empty()) return;
   const Quad at = {p(0), p(1), p(2), 0.0};
   const auto is_near = [&](const Bounds& bounds, double margin) __attribute__((always_inline)) {
     BoxLanes box;
@@ -132,26 +139,7 @@ ARGIL_EVERY_PROCESSOR void BoundingTree::find_near(const Vec3& p, double squared
     const Quad way = beside > 0.0 ? beside : Quad{};
     return way[0] * way[0] + way[1] * way[1] + way[2] * way[2] <= squared_reach;
   };
-  m_waiting.assign(1, 0);
-  m_passed.clear();
-  while (!m_waiting.empty()) {
-    const int index = m_waiting.back();
-    m_waiting.pop_back();
-    Node& node = m_nodes[static_cast<std::size_t>(index)];
-    if (node.count == 0) {
-      m_passed.push_back(index);
-      for (const int child : {node.first + 1, node.first}) {
-        const Node& of_child = m_nodes[static_cast<std::size_t>(child)];
-        if (is_near(of_child.bounds, margin(of_child))) m_waiting.push_back(child);
-      }
-      continue;
-    }
-    fit_leaf(node, x_t0, x_t1);
-    for (auto i = static_cast<std::size_t>(node.first); i < static_cast<std::size_t>(node.first + node.count);
-         ++i)
-      if (is_near(m_triangle_bounds[i], 0.0)) triangles.push_back(m_order[i]);
-  }
-  fit_passed();
+  find(is_near, x_t0, x_t1, triangles);
 }
 
 /// Children were passed after their parents.

@@ -100,6 +100,8 @@ class BoundingTree {
   void fit_leaf(Node& node, const Points& x_t0, const Points& x_t1);
   void fit_inner(Node& node);
   void fit_passed();
+  template <class Test>
+  void find(Test is_met, const Points& x_t0, const Points& x_t1, std::vector<int>& triangles);
   template <class Visit>
   void visit_node(int index, const Vec3& p, double& least, const Points& x_t0, const Points& x_t1,
                   Visit& visit) {
