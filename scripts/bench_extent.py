@@ -1,31 +1,58 @@
 #!/usr/bin/python3
-"""What steps of the region that moves cost and how far their force is off, beside steps of the whole body, on slabs of one
-thickness and one size of tets that differ in width: a sphere presses 1.5 mm and slides (traces/block_slide.csv).
+"""What a local push costs on slabs of one thickness and one size of tets that differ in width: steps of the whole body,
+of the region that the hand feels (`fidelity: auto`), and of the region that moves (`extent: local`), and how far their
+forces are off.
 
-    scripts/bench_extent.py [--build BUILD] [--cells 14 46 144] [--tolerances 0.03 0.01]
+    scripts/bench_extent.py [--build BUILD] [--cells 14 46 144] [--scenes light push slide]
 
-writes results/bench/extent.csv. One thread, processor time of the whole program and, from `run --dry-run`, of its start.
-A slab of 144 cells a side has 995 328 tets; the three take a quarter of an hour.
+light: a sphere of 8 mm presses 0.5 mm; push: the same, 1.5 mm, and moves 6 mm aside; slide: a sphere of 24 mm presses 1.5 mm
+and slides (traces/block_slide.csv), on cells half as large again. Writes results/bench/extent.csv. One thread, processor
+time of the ticks. A slab of 144 cells a side has 995 328 tets; all takes half an hour.
 """
 import argparse
 import json
-import resource
 import subprocess
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 import h5py
 import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
-CELL = 0.00375  # [m]
 LAYERS = 8
+SMALL_TOOL = {"kind": "sphere", "radius_m": 0.008, "subdivisions": 3}
 
 
-def write_slab(file, cells):
+class Scene(NamedTuple):
+    """scenarios/study_slide.json on a slab, with another tool, motion and range of the clay kernel, and without friction."""
+
+    cell: float  # [m]
+    depth: float = 0.0  # [m] of the press; 0: motion and tool of the scenario
+    aside: float = 0.0  # [m]
+
+
+SCENES = {"light": Scene(0.0025, 0.0005), "push": Scene(0.0025, 0.0015, 0.006), "slide": Scene(0.00375)}
+MODES = {"whole": ["/dynamics/extent=whole"], "auto": ["/fidelity/mode=auto"],
+         "local 0.01": ["/dynamics/extent=local", "/dynamics/region_tolerance=0.01"]}
+
+
+def write_push(file, scene):
+    """Down at 20 mm/s from 0.2 mm above the slab, aside at 30 mm/s, up again."""
+    top = LAYERS * scene.cell + SMALL_TOOL["radius_m"]
+    with open(file, "w", encoding="ascii") as out:
+        out.write("# argil-trace: 1\n# device: press\n# units: m\ntime_s,x_m,y_m,z_m,qx,qy,qz,qw,mode\n")
+        for tick in range(401):
+            time = 1e-3 * tick
+            depth = min(scene.depth, -0.0002 + 0.02 * time, scene.depth - 0.02 * (time - 0.3))
+            x = min(max(0.0, 0.03 * (time - 0.1)), scene.aside)
+            out.write(f"{time:.3f},{x:.9g},0,{top - max(depth, -0.0005):.9g},0,0,0,1,push\n")
+
+
+def write_slab(file, cells, cell):
     """`cells` by `cells` by LAYERS cells of six tets each, about the axis x = y = 0, on z = 0."""
-    line = (np.arange(cells + 1) - cells / 2) * CELL
-    z, y, x = np.meshgrid(np.arange(LAYERS + 1) * CELL, line, line, indexing="ij")
+    line = (np.arange(cells + 1) - cells / 2) * cell
+    z, y, x = np.meshgrid(np.arange(LAYERS + 1) * cell, line, line, indexing="ij")
     number = np.arange(x.size).reshape(x.shape)
     k, j, i = (a.ravel() for a in np.meshgrid(np.arange(LAYERS), np.arange(cells), np.arange(cells), indexing="ij"))
     corner = {(a, b, c): number[k + c, j + b, i + a] for a in (0, 1) for b in (0, 1) for c in (0, 1)}
@@ -50,55 +77,58 @@ def write_slab(file, cells):
     return len(tets)
 
 
-def run(argil, folder, settings, *options):
-    """Processor time [s] of a run."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+def write_scene(folder, scene, cells):
+    """Returns the number of tets."""
+    scenario = json.loads((ROOT / "scenarios" / "study_slide.json").read_text(encoding="utf-8"))
+    scenario["body"] = {"mesh": {"file": "slab.msh"}, "fixed": scenario["body"]["fixed"]}
+    scenario["trace"]["file"] = str(ROOT / "traces" / "block_slide.csv")
+    scenario["haptics"]["frame_period_ticks"] = 100000  # a frame holds the whole body
+    if scene.depth > 0.0:
+        scenario["tool"]["shape"] = SMALL_TOOL
+        scenario["contact"]["friction"] = 0.0
+        scenario["material"]["clay_kernel"]["radius_m"] = 0.015
+        scenario["trace"]["file"] = "push.csv"
+        write_push(folder / "push.csv", scene)
+    (folder / "slab.json").write_text(json.dumps(scenario), encoding="utf-8")
+    return write_slab(folder / "slab.msh", cells, scene.cell)
+
+
+def run(argil, folder, settings):
+    """Forces, numbers of nodes that steps solved for, and milliseconds of a step in which the tool touches."""
     sets = [word for setting in settings for word in ("--set", setting)]
-    subprocess.run([argil, "run", folder / "slab.json", "-q", "-o", folder / "slab.h5", "--threads", "1", *sets, *options],
-                   check=True, stdout=subprocess.DEVNULL)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
-def read(folder):
+    subprocess.run([argil, "run", folder / "slab.json", "-q", "-o", folder / "slab.h5", "--threads", "1", *sets], check=True,
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     with h5py.File(folder / "slab.h5") as file:
-        active = file["physics/active_nodes"][:]
-        return file["haptic/force"][:], active[active > 0]
+        force, active = file["haptic/force"][:], file["physics/active_nodes"][:]
+        time = file["timing/cpu"][-1]
+    touches = np.linalg.norm(force, axis=1) > 0  # before, the body rests
+    return force, active[active > 0], 1e3 * time / touches.sum()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=ROOT / "build", type=Path)
     parser.add_argument("--cells", nargs="+", type=int, default=[14, 46, 144])
-    parser.add_argument("--tolerances", nargs="+", type=float, default=[0.03, 0.01])
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
     options = parser.parse_args()
     argil = options.build / "bin" / "argil"
     commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
                             check=True).stdout.strip()
-    lines = [f"# commit {commit}, one thread; times in s of a processor",
-             "tets,extent,tolerance,steps,nodes_mean,nodes_free,start,run,ms_a_step,force_off_largest_over_peak,force_off_rms"]
-    for cells in options.cells:
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            tets = write_slab(folder / "slab.msh", cells)
-            scenario = json.loads((ROOT / "scenarios" / "study_slide.json").read_text(encoding="utf-8"))
-            scenario["body"] = {"mesh": {"file": "slab.msh"}, "fixed": scenario["body"]["fixed"]}
-            scenario["trace"]["file"] = str(ROOT / "traces" / "block_slide.csv")
-            (folder / "slab.json").write_text(json.dumps(scenario), encoding="utf-8")
-            start = run(argil, folder, [], "--dry-run")
-            time = run(argil, folder, [])
-            force, active = read(folder)
-            free = active.max()
-            steps = len(force) - int(np.argmax(np.linalg.norm(force, axis=1) > 0))  # before the touch it rests
-            peak, size = np.linalg.norm(force, axis=1).max(), np.sqrt((force**2).sum(axis=1).mean())
-            lines.append(f"{tets},whole,,{steps},{free},{free},{start:.2f},{time:.2f},{1e3 * (time - start) / steps:.3f},0,0")
-            for tolerance in options.tolerances:
-                time = run(argil, folder, ["/dynamics/extent=local", f"/dynamics/region_tolerance={tolerance}"])
-                local, active = read(folder)
-                off = np.linalg.norm(local - force, axis=1)
-                lines.append(f"{tets},local,{tolerance:g},{steps},{active.mean():.0f},{free},{start:.2f},{time:.2f},"
-                             f"{1e3 * (time - start) / steps:.3f},{off.max() / peak:.2e},{np.sqrt((off**2).mean()) / size:.2e}")
-            print("\n".join(lines[-1 - len(options.tolerances):]), flush=True)
+    lines = [f"# commit {commit}, one thread; ms of a processor a step in which the tool touches",
+             "scene,tets,mode,nodes_mean,nodes_most,ms_a_step,peak_N,error_N,error_over_bound"]
+    for name in options.scenes:
+        for cells in options.cells:
+            with tempfile.TemporaryDirectory() as folder:
+                tets = write_scene(Path(folder), SCENES[name], cells)
+                whole = None
+                for mode, settings in MODES.items():
+                    force, active, time = run(argil, Path(folder), settings)
+                    whole = force if whole is None else whole
+                    size, error = np.linalg.norm(whole, axis=1), np.linalg.norm(force - whole, axis=1)
+                    over = (error / np.maximum(0.02, 0.01 * size)).max()
+                    lines.append(f"{name},{tets},{mode},{active.mean():.0f},{active.max()},{time:.3f},{size.max():.4f},"
+                                 f"{error.max():.5f},{over:.3f}")
+                    print(lines[-1], flush=True)
     (ROOT / "results" / "bench" / "extent.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
