@@ -17,11 +17,11 @@ from pathlib import Path
 PROGRAM = Path(__file__).resolve().parent.parent / "build/bin/bench_step"
 STEPS = 200  # as many as the benchmark measures
 STAGES = {
-    "contact": "argil::sim::Simulation::contact_step",
+    "contact": "argil::sim::HandSide::contact_step",
     "assemble": "argil::solid::Solid::assemble(",
     "solve": "argil::solid::Solid::solve(",
     "kinematics": "argil::solid::Solid::update_kinematics",
-    "plasticity": "argil::sim::Simulation::apply_plastic_flow",
+    "plasticity": "argil::sim::BodySide::apply_plastic_flow",
 }
 
 
