@@ -373,10 +373,9 @@ void bind_dynamics(Binder& b, Scenario& s) {
       "/dynamics/extent", d.extent,
       {{solid::Extent::automatic, "auto"}, {solid::Extent::whole, "whole"}, {solid::Extent::local, "local"}},
       "Solve for the whole body, or for the region that moves, where the rest stays as it is, with its "
-      "strain, until "
-      "it would move; auto: for the region under /fidelity auto in bodies of 1500 free nodes or more, where "
-      "it can "
-      "be, else for the whole.");
+      "strain, until it would move; auto: under /fidelity auto for the region in bodies of 1500 free nodes "
+      "or "
+      "more, where there is no friction and it can be, else for the whole.");
   b.number("/dynamics/region_tolerance", d.region_tolerance, inside(0, 1), "",
            "local: speed over the fastest node's below which nodes stay where they are.");
   b.number("/dynamics/rayleigh_mass_per_s", d.rayleigh_mass, not_negative(), "1/s", "a in D = a M + b K.");

@@ -164,6 +164,8 @@ void check_extent(Scenario& s) {
     if (!is_met && is_asked_for)
       throw InputError(s.file, "/dynamics/extent", "local " + what, remedy + ", or use whole");
   };
+  // Whether a contact sticks or slides may hang on less than what a region leaves out.
+  if (!is_asked_for && s.params.contact.friction > 0.0) p.extent = solid::Extent::whole;
   using linear::SolverKind;
   require(p.element == solid::ElementKind::p1 && p.model != solid::StrainModel::neo_hookean &&
               !is_anisotropic(s.params.moisture),

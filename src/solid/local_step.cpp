@@ -93,13 +93,20 @@ double Solid::find_reach(std::size_t row, double largest) const {
   return largest > 0.0 ? kSafety * std::sqrt(way / largest) : kSafety;
 }
 
-/// How much of the forces that pull at a run the hand would feel at most [N].
+/// How much of what pulls at a run that sleeps, while the others move by the present solution, the hand would
+/// feel at most [N].
 double Solid::find_felt_pull(int run, double largest_way, const StepLoads& loads) const {
   constexpr double kNothing = 1e-6;  // of what may be left out: too little to look closer
   const auto [begin, end] = find_rows(run, m_node_of_row.size());
   double felt = 0.0;
   for (std::size_t row = begin; row < end; ++row) {
-    double pull = m_rhs.col(static_cast<Eigen::Index>(row)).norm() / m_tau;
+    Vec3 momentum = m_rhs.col(static_cast<Eigen::Index>(row));
+    for (int b = m_matrix.row_begin[row]; b < m_matrix.row_begin[row + 1]; ++b) {
+      const int column = m_matrix.column[static_cast<std::size_t>(b)];
+      if (m_region->is_awake(column / static_cast<int>(OrderedRuns::kLength)))
+        momentum -= m_matrix.block(b) * m_delta.col(column);
+    }
+    double pull = momentum.norm() / m_tau;
     if (kSafety * pull > kNothing * loads.region_slack) {
       if (loads.mobility) pull *= loads.mobility(m_node_of_row[row]);
       pull *= find_reach(row, largest_way) / kSafety;
@@ -109,10 +116,11 @@ double Solid::find_felt_pull(int run, double largest_way, const StepLoads& loads
   return felt;
 }
 
-/// The runs whose pull the hand would feel most wake, until what is left holds back no more than it may.
-void Solid::grow_region_by_force(const StepLoads& loads) {
+/// The runs whose pull the hand would feel most wake, until what is left holds back no more than it may. True
+/// when any woke.
+bool Solid::grow_region_by_force(const StepLoads& loads) {
   const double largest_way = m_nodes.find_largest(
-      m_x.cols(), [&](std::ptrdiff_t n) { return (m_x.col(n) - m_elements.rest.col(n)).squaredNorm(); });
+      m_x.cols(), [&](std::ptrdiff_t n) { return (m_x_hat.col(n) - m_elements.rest.col(n)).squaredNorm(); });
   m_pulls.clear();
   double total = 0.0;
   for (const int run : m_region->fringe()) {
@@ -127,17 +135,23 @@ void Solid::grow_region_by_force(const StepLoads& loads) {
     total += minus_felt;
   }
   m_held_back = std::max(0.0, total);
+  if (!m_region->update()) return false;
+  take_in_region(loads);
+  return true;
+}
+
+/// Matrix and residual of the rows that came into reach.
+void Solid::take_in_region(const StepLoads& loads) {
+  visit_region();
+  set_rhs(loads);
+  assemble_matrix(loads.contacts);
 }
 
 void Solid::grow_region(const StepLoads& loads) {
   m_region_slack = loads.region_slack;
-  if (loads.region_slack > 0.0)
-    grow_region_by_force(loads);
-  else
-    grow_region_by_speed(loads);
-  if (!m_region->update()) return;
-  visit_region();
-  assemble_matrix(loads.contacts);
+  if (loads.region_slack > 0.0) return;  // by the solve
+  grow_region_by_speed(loads);
+  if (m_region->update()) take_in_region(loads);
 }
 
 void Solid::settle_region(SolidState& state, const std::vector<char>& is_flowing) {

@@ -232,7 +232,8 @@ class Solid {
   void wake_region(const StepLoads& loads);
   void grow_region(const StepLoads& loads);
   void grow_region_by_speed(const StepLoads& loads);
-  void grow_region_by_force(const StepLoads& loads);
+  bool grow_region_by_force(const StepLoads& loads);
+  void take_in_region(const StepLoads& loads);
   double find_reach(std::size_t row, double largest_way) const;
   double find_felt_pull(int run, double largest_way, const StepLoads& loads) const;
   void visit_region();
@@ -295,6 +296,7 @@ class Solid {
   void predict(const SolidState& state, const StepLoads& loads, double step_s);
   bool place_supports(double time, double share);
   void compute_residual(const StepLoads& loads);
+  void set_rhs(const StepLoads& loads);
   void set_rounding();
   double compute_excess() const;
   StepStatus check_resolution(const SolidState& state) const;

@@ -130,7 +130,17 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
     m_static_solver = linear::make_solver(make_exact(m_params.solver), m_threads);
   linear::Solver& solver = m_is_static ? *m_static_solver : *m_solver;
   solver.set_goal(is_newton() ? 0.0 : m_tau * loads.slack);
+  const bool follows_force = m_region && !m_is_static && loads.region_slack > 0.0;
+  if (follows_force) grow_region_by_force(loads);
   linear::SolveReport report = solver.solve(m_matrix, product, m_rhs, m_delta);
+  // What the solution pulls at and the hand would feel moves, too: some layers of it in a blow, none as a
+  // rule.
+  constexpr int kMostLayers = 16;
+  for (int i = 0; follows_force && i < kMostLayers && report.converged && grow_region_by_force(loads); ++i) {
+    const linear::SolveReport first = report;
+    report = solver.solve(m_matrix, product, m_rhs, m_delta);
+    report.iterations += first.iterations;
+  }
   if (report.wants_stored) {
     store_nodal_stiffness();
     assemble_matrix(loads.contacts);

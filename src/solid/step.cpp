@@ -174,6 +174,11 @@ void Solid::compute_residual(const StepLoads& loads) {
   if (!m_is_static && m_params.implicit_contact)
     for (std::size_t i = 0; i < loads.contacts.size(); ++i)
       spread(loads.contacts[i], compute_contact_fall(loads.contacts, i), m_product);
+  set_rhs(loads);
+  if (is_newton()) set_residual_scale(loads);
+}
+
+void Solid::set_rhs(const StepLoads& loads) {
   const double a = m_is_static ? 0.0 : m_params.rayleigh_mass;
   const double inertia = m_is_static ? 0.0 : 1.0;
   m_near_rows.each(num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -187,7 +192,6 @@ void Solid::compute_residual(const StepLoads& loads) {
   for (const int row : m_held_rows)
     for (int k = 0; k < 3; ++k)
       if (m_constraints.support(k, m_node_of_row[static_cast<std::size_t>(row)]) >= 0) m_rhs(k, row) = 0.0;
-  if (is_newton()) set_residual_scale(loads);
 }
 
 Vec3 Solid::applied_force(const StepLoads& loads, Eigen::Index node) const {
