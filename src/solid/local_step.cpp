@@ -81,16 +81,23 @@ void Solid::grow_region_by_speed(const StepLoads& loads) {
   }
 }
 
+/// Square of how far a row has gone from its place at rest once the step is made by the present solution.
+double Solid::find_squared_way(Eigen::Index row) const {
+  const int node = m_node_of_row[static_cast<std::size_t>(row)];
+  const Vec3 step = m_region->is_awake(static_cast<int>(row / OrderedRuns::kLength))
+                        ? Vec3(m_tau * m_delta.col(row))
+                        : Vec3(Vec3::Zero());
+  return (m_x_hat.col(node) + step - m_elements.rest.col(node)).squaredNorm();
+}
+
 /// By the reciprocity of Maxwell and Betti a force is felt at the place of contact by as much of it as its
 /// node goes when that place is moved by a unit. That is read off the body: how far the node, or one that it
 /// is joined to, has gone so far, over the largest way.
-double Solid::find_reach(std::size_t row, double largest) const {
+double Solid::find_reach(std::size_t row, double largest_way) const {
   double way = 0.0;
-  for (int b = m_matrix.row_begin[row]; b < m_matrix.row_begin[row + 1]; ++b) {
-    const int node = m_node_of_row[static_cast<std::size_t>(m_matrix.column[static_cast<std::size_t>(b)])];
-    way = std::max(way, (m_x.col(node) - m_elements.rest.col(node)).squaredNorm());
-  }
-  return largest > 0.0 ? kSafety * std::sqrt(way / largest) : kSafety;
+  for (int b = m_matrix.row_begin[row]; b < m_matrix.row_begin[row + 1]; ++b)
+    way = std::max(way, find_squared_way(m_matrix.column[static_cast<std::size_t>(b)]));
+  return largest_way > 0.0 ? kSafety * std::sqrt(way / largest_way) : kSafety;
 }
 
 /// How much of what pulls at a run that sleeps, while the others move by the present solution, the hand would
@@ -119,8 +126,12 @@ double Solid::find_felt_pull(int run, double largest_way, const StepLoads& loads
 /// The runs whose pull the hand would feel most wake, until what is left holds back no more than it may. True
 /// when any woke.
 bool Solid::grow_region_by_force(const StepLoads& loads) {
-  const double largest_way = m_nodes.find_largest(
-      m_x.cols(), [&](std::ptrdiff_t n) { return (m_x_hat.col(n) - m_elements.rest.col(n)).squaredNorm(); });
+  double largest_way = 0.0;
+  for (const int run : m_region->awake()) {
+    const auto [begin, end] = find_rows(run, m_node_of_row.size());
+    for (std::size_t row = begin; row < end; ++row)
+      largest_way = std::max(largest_way, find_squared_way(static_cast<Eigen::Index>(row)));
+  }
   m_pulls.clear();
   double total = 0.0;
   for (const int run : m_region->fringe()) {

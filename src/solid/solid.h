@@ -234,6 +234,7 @@ class Solid {
   void grow_region_by_speed(const StepLoads& loads);
   bool grow_region_by_force(const StepLoads& loads);
   void take_in_region(const StepLoads& loads);
+  double find_squared_way(Eigen::Index row) const;
   double find_reach(std::size_t row, double largest_way) const;
   double find_felt_pull(int run, double largest_way, const StepLoads& loads) const;
   void visit_region();
