@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "solid/solid.h"
 
 namespace argil::solid {
@@ -132,13 +133,13 @@ bool Solid::grow_region_by_force(const StepLoads& loads) {
     for (std::size_t row = begin; row < end; ++row)
       largest_way = std::max(largest_way, find_squared_way(static_cast<Eigen::Index>(row)));
   }
-  m_pulls.clear();
+  m_pulls.resize(m_region->fringe().size());
+  parallel_for(static_cast<std::ptrdiff_t>(m_pulls.size()), m_threads, [&](std::ptrdiff_t i) {
+    const int run = m_region->fringe()[static_cast<std::size_t>(i)];
+    m_pulls[static_cast<std::size_t>(i)] = {-find_felt_pull(run, largest_way, loads), run};
+  });
   double total = 0.0;
-  for (const int run : m_region->fringe()) {
-    const double felt = find_felt_pull(run, largest_way, loads);
-    m_pulls.emplace_back(-felt, run);
-    total += felt;
-  }
+  for (const auto& [minus_felt, run] : m_pulls) total -= minus_felt;
   std::sort(m_pulls.begin(), m_pulls.end());
   for (const auto& [minus_felt, run] : m_pulls) {
     if (!(total > loads.region_slack)) break;
