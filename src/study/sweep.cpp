@@ -114,7 +114,8 @@ void remove_unusable(const std::string& part, const std::string& id) {
   try {
     const output::ResultReader reader(part);
     if (reader.find_provenance("run_id") == id) {
-      if (reader.find_checkpoint()) compute_sweep_figures(reader);
+      const bool is_done = reader.outcome() == output::Outcome::done;  // and was not given its name any more
+      if (is_done || reader.find_checkpoint()) compute_sweep_figures(reader);
       return;
     }
   } catch (const hdf5::BusyError&) {

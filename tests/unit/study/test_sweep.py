@@ -203,11 +203,7 @@ class Sweep(unittest.TestCase):
             saturation = frame["saturation"][:-1]
             del frame["saturation"]
             frame["saturation"] = saturation
-        with h5py.File(files[4], "r+") as file:  # what the disk turned to zeros
-            place = file["haptic/force"].id.get_chunk_info(0).byte_offset
-        with open(files[4], "r+b") as file:
-            file.seek(place)
-            file.write(bytes(512))
+        self.damage(files[4])
         self.assertEqual(self.call("missing", self.points), "1-2,4")
         damaged = self.collect()
         for i, words in ((1, "/mesh/tets names vertex -7 in row 3"),
@@ -220,6 +216,14 @@ class Sweep(unittest.TestCase):
         for index in (1, 2, 4):
             self.call("run", self.points, "--index", index)
         self.assertEqual(self.collect(), table)
+
+    def damage(self, result):
+        """Part of the force is what a disk turned to zeros."""
+        with h5py.File(result, "r") as file:
+            place = file["haptic/force"].id.get_chunk_info(0).byte_offset
+        with open(result, "r+b") as file:
+            file.seek(place)
+            file.write(bytes(512))
 
     def kill_after_a_checkpoint(self, part):
         process = subprocess.Popen([ARGIL, "sweep", "run", self.points, "--index", "0"], cwd=self.folder)
@@ -244,15 +248,28 @@ class Sweep(unittest.TestCase):
             whole.unlink()
             self.kill_after_a_checkpoint(part)
             if is_damaged:
-                with h5py.File(part, "r") as file:
-                    place = file["haptic/force"].id.get_chunk_info(0).byte_offset
-                with open(part, "r+b") as file:
-                    file.seek(place)
-                    file.write(bytes(512))
+                self.damage(part)
             done = subprocess.run([ARGIL, "sweep", "run", self.points, "--index", "0"], cwd=self.folder,
                                   capture_output=True, text=True, timeout=300)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual("it is begun anew" in done.stderr, is_damaged, done.stderr)
+            self.assertEqual(self.collect(), expected)
+
+    def test_a_run_that_ended_before_it_was_named_is_taken_unless_it_is_damaged(self):
+        self.expand(list=[{}])
+        self.call("run", self.points, "--index", 0)
+        whole, part = self.folder / "points" / "000000.h5", self.folder / "points" / "000000.part.h5"
+        expected = self.collect()
+        for is_damaged in (False, True):
+            whole.rename(part)
+            if is_damaged:
+                self.damage(part)
+            written = part.stat().st_mtime_ns
+            done = subprocess.run([ARGIL, "sweep", "run", self.points, "--index", "0"], cwd=self.folder,
+                                  capture_output=True, text=True, timeout=300)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual("it is begun anew" in done.stderr, is_damaged, done.stderr)
+            self.assertEqual(whole.stat().st_mtime_ns != written, is_damaged)
             self.assertEqual(self.collect(), expected)
 
     def test_points_are_the_same_by_any_name(self):
