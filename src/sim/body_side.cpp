@@ -74,6 +74,7 @@ void BodySide::begin_step(ContactLoad& load, BodyAnswer& answer) {
   answer.step = m_state.steps;
   answer.has_moved = false;
   answer.felt = load.hand.felt;
+  load.force.list();
   if (load.scale == 1.0) return;
   for (const int n : load.force.nodes) load.force.at.col(n) *= load.scale;
   for (solid::PointStiffness& entry : load.stiffness) {
@@ -84,8 +85,7 @@ void BodySide::begin_step(ContactLoad& load, BodyAnswer& answer) {
 }
 
 /// Loads and contacts, at the nodes where these act now or did in the last step.
-void BodySide::set_external_force(ContactLoad& load) {
-  load.force.list();
+void BodySide::set_external_force(const ContactLoad& load) {
   m_changed_nodes = m_forced_nodes;
   m_changed_nodes.insert(m_changed_nodes.end(), load.force.nodes.begin(), load.force.nodes.end());
   for (const int n : m_changed_nodes) m_external_force.col(n) = load.force.at.col(n) + m_load_force.col(n);
@@ -248,7 +248,7 @@ void BodySide::fall_asleep() {
 /// Is the body left as it is in this physics step? It falls asleep when nothing has touched it and it has
 /// been slower than rest_speed for two steps, and wakes when anything acts. A body that never moved rests
 /// from the start; only rounding would stir it.
-bool BodySide::rests(ContactLoad& load) {
+bool BodySide::rests(const ContactLoad& load) {
   if (!m_fidelity.is_full()) return sleeps_on(load);
   if (load.is_touched || m_is_moved) {
     m_state.is_at_rest = false;
@@ -267,8 +267,7 @@ void BodySide::find_reach(const OrderedItems& nodes) {
 }
 
 /// fidelity: does the body still sleep under this load?
-bool BodySide::sleeps_on(ContactLoad& load) {
-  load.force.list();
+bool BodySide::sleeps_on(const ContactLoad& load) {
   m_fidelity.begin_step(load.hand.felt.force);
   if (!m_state.is_at_rest) {
     find_reach(m_solid.moving_nodes());

@@ -61,7 +61,7 @@ class BodySide {
   }
   Tick tick() const { return m_hand.ticks - 1; }
   void begin_step(ContactLoad& load, BodyAnswer& answer);
-  void set_external_force(ContactLoad& load);
+  void set_external_force(const ContactLoad& load);
   void apply_contact_yield(ContactLoad& load, device::Wrench& felt);
   double clay_factor(Eigen::Index node, const ContactLoad& load, double step_s) const;
   void apply_clay_kernel(const ContactLoad& load, double step_s);
@@ -74,8 +74,8 @@ class BodySide {
   StepStatus refresh_materials(double tolerance);
   void refresh_material(int tet, double S);
   void fall_asleep();
-  bool rests(ContactLoad& load);
-  bool sleeps_on(ContactLoad& load);
+  bool rests(const ContactLoad& load);
+  bool sleeps_on(const ContactLoad& load);
   void find_reach(const OrderedItems& nodes);
   void watch_strain();
   bool falls_asleep(const ContactLoad& load, const solid::StepLoads& loads);

@@ -98,6 +98,10 @@ void HandSide::take_up_surface() {
   } else {
     for (const int v : m_moved) m_state.contact_x.col(v) = m_state.surface_x.col(v);
   }
+  forget_motion();
+}
+
+void HandSide::forget_motion() {
   m_has_all_moved = false;
   m_moved.clear();
   m_state.has_moved = false;
@@ -107,9 +111,7 @@ void HandSide::place_surface(const Points& x) {
   m_state.contact_x = x;
   m_state.surface_x = x;
   m_is_surface_known = true;
-  m_has_all_moved = false;
-  m_moved.clear();
-  m_state.has_moved = false;
+  forget_motion();
 }
 
 void HandSide::move_surface(const Points& x) {

@@ -86,6 +86,7 @@ class HandSide {
   void move_surface(const Points& x);
   std::optional<double> find_surface_motion() const;
   void take_up_surface();
+  void forget_motion();
   void act_on_body(const contact::Contact& c, const Vec3& force);
   void spread_contact_force();
   void add_contact_stiffness(const contact::Contact& c, const Vec3& force, bool pushes);

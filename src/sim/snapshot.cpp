@@ -38,9 +38,10 @@ void HandSide::exchange_state(Archive& archive) {
 }
 
 void HandSide::see_again(const BodyState& body) {
+  const bool has_moved = m_state.has_moved;
+  forget_motion();
   m_is_surface_known = false;
-  m_moved.clear();
-  if (m_state.has_moved) move_surface(body.solid.x);
+  if (has_moved) move_surface(body.solid.x);
 }
 
 /// Moduli and kinematics are functions of what was saved and are found again.

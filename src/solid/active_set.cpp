@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 
 #include "base/lanes.h"
 #include "base/ordered_runs.h"
@@ -107,12 +108,20 @@ void ActiveSet::make_drowsy(int run) {
 
 bool ActiveSet::update() {
   if (!m_is_changed && !m_has_drowsy) return false;
+  m_listed = m_state;
+  std::replace(m_state.begin(), m_state.end(), kDrowsy, kAsleep);  // gone from the lists of the next update
+  make_lists();
+  m_is_changed = false;
+  return true;
+}
+
+void ActiveSet::make_lists() {
   m_awake.clear();
   m_fringe.clear();
   m_num_awake_rows = 0;
   m_has_drowsy = false;
   for (int run = 0; run < num_runs(); ++run) {
-    int& state = m_state[static_cast<std::size_t>(run)];
+    const int state = m_listed[static_cast<std::size_t>(run)];
     if (state == kAsleep) continue;
     const auto [first, last] = m_batches_of_run.of(run);
     for (auto batch = first; batch != last; ++batch) m_batch_marks.set(*batch);
@@ -120,8 +129,7 @@ bool ActiveSet::update() {
       m_awake.push_back(run);
       m_num_awake_rows += std::min(kRun, m_num_rows - kRun * run);
     } else {
-      state = kAsleep;
-      m_has_drowsy = true;  // and gone from the lists of the next update
+      m_has_drowsy = true;
     }
   }
   m_batch_marks.move_to(m_batches);
@@ -135,8 +143,6 @@ bool ActiveSet::update() {
   m_node_marks.move_to(m_nodes);
   std::set_difference(m_near.begin(), m_near.end(), m_awake.begin(), m_awake.end(),
                       std::back_inserter(m_fringe));
-  m_is_changed = false;
-  return true;
 }
 
 bool ActiveSet::has_any(int run, const std::vector<char>& of_batch) const {
@@ -147,8 +153,9 @@ bool ActiveSet::has_any(int run, const std::vector<char>& of_batch) const {
 void ActiveSet::exchange_state(Archive& archive) {
   archive.list("region/state", m_state);
   archive.list("region/calm_steps", m_calm_steps);
-  archive.number("region/has_drowsy", m_has_drowsy);
-  if (archive.is_restoring()) m_is_changed = true;
+  archive.list("region/listed", m_listed);
+  archive.number("region/is_changed", m_is_changed);
+  if (archive.is_restoring()) make_lists();
 }
 
 }  // namespace argil::solid

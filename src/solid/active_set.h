@@ -68,11 +68,13 @@ class ActiveSet {
     }
   };
   static Table make_table(std::vector<std::pair<int, int>>& pairs, int count);
+  void make_lists();
 
   int m_num_rows;
   std::vector<int> m_run_of_node;  // −1: held
   Table m_batches_of_run, m_runs_of_batch, m_nodes_of_batch;
   std::vector<int> m_state, m_calm_steps;
+  std::vector<int> m_listed;  // states at the last update, which the lists are of
   Marks m_batch_marks, m_run_marks, m_node_marks;
   bool m_is_changed = true;
   bool m_has_drowsy = false;

@@ -152,9 +152,13 @@ bool Solid::grow_region_by_force(const StepLoads& loads) {
   return true;
 }
 
-/// Matrix and residual of the rows that came into reach.
+/// Matrix and residual of the rows that came into reach; those that sleep do not move.
 void Solid::take_in_region(const StepLoads& loads) {
   visit_region();
+  for (const int run : m_region->fringe()) {
+    const auto [begin, end] = find_rows(run, m_node_of_row.size());
+    m_delta.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)).setZero();
+  }
   set_rhs(loads);
   assemble_matrix(loads.contacts);
 }

@@ -87,10 +87,6 @@ void sort_along_curve(const Points& x, std::vector<int>& list) {
   for (std::size_t i = 0; i < codes.size(); ++i) list[i] = codes[i].second;
 }
 
-}  // namespace
-
-namespace {
-
 /// Of all numbers, NaN where any of them is not finite.
 template <class Numbers>
 double find_least(const Numbers& numbers) {

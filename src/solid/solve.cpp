@@ -216,6 +216,7 @@ void Solid::exchange_state(Archive& archive) {
 void Solid::exchange_frames(Archive& archive) {
   if (m_region) {
     m_region->exchange_state(archive);
+    if (archive.is_restoring()) visit_region();
     archive.number("region/fastest", m_fastest);
     archive.any_size("region/last_load", m_last_load);
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "contact/tool_shape.h"
@@ -150,6 +151,39 @@ TEST(LocalExtent, UnderFidelityKeepsTheForceWithinItsBound) {
   }
   EXPECT_LT(error, 1.0);
   EXPECT_LT(region.mean_active, 0.4 * whole.mean_active);
+}
+
+/// What a step leaves of nodes that have fallen asleep may not come back when they wake.
+TEST(LocalExtent, UnderFidelityReturnsToTheSameBits) {
+  Params params = make_params(solid::Extent::local, 1e-3);
+  params.fidelity.mode = FidelityMode::automatic;
+  params.fidelity.force_floor = 0.002;
+  const auto make = [&] {
+    return Simulation(make_bar(), contact::make_sphere_tool(kToolRadius, 2), params, hand_at(0));
+  };
+  const auto run_on = [](Simulation& simulation, Tick last) {
+    while (simulation.clock().tick < last)
+      ASSERT_TRUE(simulation.tick(hand_at(simulation.clock().tick + 1)).is_ok());
+  };
+  Simulation whole = make();
+  std::map<Tick, Snapshot> saved;
+  for (const Tick at : {15, 40, 60, 80, 95}) {
+    run_on(whole, at);
+    saved[at] = whole.take_snapshot();
+  }
+  run_on(whole, kTicks);
+  Simulation used = make();
+  run_on(used, 70);
+  for (const auto& [at, snapshot] : saved) {
+    Simulation fresh = make();
+    for (Simulation* simulation : {&fresh, &used}) {
+      simulation->restore(snapshot, "run.h5");
+      run_on(*simulation, kTicks);
+      EXPECT_EQ(simulation->state_hash(), whole.state_hash()) << at;
+      simulation->restore(saved.at(60), "run.h5");  // from where something has moved to where something has
+      run_on(*simulation, 62);
+    }
+  }
 }
 
 TEST(LocalExtent, IsTakenByItselfWhereItSaves) {
