@@ -84,17 +84,21 @@ ARGIL_EVERY_PROCESSOR void shorten(const double* from, std::ptrdiff_t count, flo
 
 }  // namespace
 
-void ShortBlocks::update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs) {
+void ShortBlocks::prepare(const BlockMatrix& matrix) {
   const auto num_rows = static_cast<std::size_t>(matrix.num_rows());
-  if (m_pattern != &matrix || m_revision.size() != num_rows ||
-      m_values.size() != static_cast<std::size_t>(matrix.values.size())) {
-    m_pattern = &matrix;
-    m_values.resize(static_cast<std::size_t>(matrix.values.size()));
-    m_inverse.assign(12 * num_rows, 0.0F);
-    m_revision.clear();
-    for (const std::uint32_t revision : matrix.revision) m_revision.push_back(revision - 1);
-  }
+  if (m_pattern == &matrix && m_revision.size() == num_rows &&
+      m_values.size() == static_cast<std::size_t>(matrix.values.size()))
+    return;
+  m_pattern = &matrix;
+  m_values.resize(static_cast<std::size_t>(matrix.values.size()));
+  m_inverse.assign(12 * num_rows, 0.0F);
   m_diagonal.resize(3, 3 * matrix.num_rows());
+  m_revision.clear();
+  for (const std::uint32_t revision : matrix.revision) m_revision.push_back(revision - 1);
+}
+
+void ShortBlocks::update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs) {
+  prepare(matrix);
   runs.each(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (auto row = static_cast<std::size_t>(begin); row < static_cast<std::size_t>(end); ++row) {
       m_diagonal.middleCols<3>(3 * static_cast<Eigen::Index>(row)) = matrix.block(matrix.diagonal[row]);

@@ -14,6 +14,7 @@ class ShortBlocks {
  public:
   /// Takes the rows that have changed since the last update; the inverses hold what `whole` does not store,
   /// too.
+  void prepare(const BlockMatrix& matrix);  ///< takes the memory
   void update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs);
 
   /// What an iteration of conjugate gradients changes.

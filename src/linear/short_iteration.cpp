@@ -12,13 +12,11 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
                                   double tolerance, int max_iterations, Points& x, double goal) {
   constexpr double kRounding = 1e-14;  // of ‖b‖
   const std::ptrdiff_t num_rows = b.cols();
-  for (std::vector<float>* vector : {&m_r, &m_z, &m_w, &m_p, &m_q, &m_x})
-    vector->resize(static_cast<std::size_t>(4 * num_rows));
+  prepare(matrix);
   if (m_is_changed) clear_left_rows();
   m_is_changed = false;
   m_products.resize(static_cast<std::size_t>(m_runs.count_runs(num_rows)));
   m_sums.resize(m_products.size());
-  m_product.resize(3, num_rows);
 
   whole.multiply(x, m_product);
   const double first = std::sqrt(m_runs.sum(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -44,6 +42,13 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
         x.data()[3 * row + k] += first * static_cast<double>(m_x.data()[4 * row + k]);
   });
   return report;
+}
+
+void ShortIteration::prepare(const BlockMatrix& pattern) {
+  const auto num_rows = static_cast<std::size_t>(pattern.num_rows());
+  for (std::vector<float>* vector : {&m_r, &m_z, &m_w, &m_p, &m_q, &m_x}) vector->resize(4 * num_rows);
+  m_product.resize(3, pattern.num_rows());
+  m_blocks.prepare(pattern);
 }
 
 void ShortIteration::visit(const std::vector<int>* runs) {

@@ -19,6 +19,7 @@ class ShortIteration {
                     int max_iterations, Points& x, double goal = 0.0);
 
   /// From now on rows of these runs alone, as if there were no others. Null: all.
+  void prepare(const BlockMatrix& pattern);
   void visit(const std::vector<int>* runs);
 
  private:

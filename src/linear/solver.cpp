@@ -89,6 +89,9 @@ class JacobiIteration {
     m_jacobi.update(matrix, product);
     return m_iteration.solve(product, m_jacobi, b, m_tolerance, max_iterations, x, goal);
   }
+  void prepare(const BlockMatrix& pattern) {
+    if (m_is_short) m_short.prepare(pattern);
+  }
   bool visit(const std::vector<int>* runs) {
     if (m_is_short) m_short.visit(runs);
     return m_is_short;
@@ -113,6 +116,7 @@ class JacobiSolver final : public Solver {
     m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
     return report;
   }
+  void prepare(const BlockMatrix& pattern) override { m_iteration.prepare(pattern); }
   bool visit(const std::vector<int>* runs) override { return m_iteration.visit(runs); }
 
  private:
@@ -159,6 +163,10 @@ class KeptFactorSolver final : public Solver {
         (report.iterations + 1.0) * (count_entries(matrix) + 2.0 * m_factor->num_entries());
     m_cost.iterations += report.iterations;
     return report;
+  }
+
+  void prepare(const BlockMatrix& pattern) override {
+    if (!m_has_factor) m_jacobi.prepare(pattern);
   }
 
   bool visit(const std::vector<int>* runs) override {

@@ -52,6 +52,9 @@ class Solver {
   /// the first guess. Not converged with an infinite residual: the matrix is not positive definite.
   virtual SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) = 0;
 
+  /// Takes the memory that solves with matrices of this pattern want.
+  virtual void prepare(const BlockMatrix& /*pattern*/) {}
+
   /// From now on the system of these runs of rows alone (base/ordered_runs.h; the list must outlive the
   /// solves), as if there were no others: x stays as it is outside. Null: all. False when this kind solves
   /// whole systems only.

@@ -56,6 +56,7 @@ BodySide::BodySide(Body body, const Params& params)
   rest = refresh_materials(-1.0);
   ARGIL_ASSERT(rest.is_ok());
   if (m_state.is_at_rest) m_solid.sleep_all();
+  m_solid.make_ready(m_state.solid);
   find_reach(OrderedItems(params.threads));
 }
 
@@ -166,6 +167,7 @@ void BodySide::apply_plastic_flow(double step_s) {
   if (!m_params.plasticity.enabled) return;
   m_state.plastic_dissipation += m_solid.sum_moving_points(
       [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return flow_at_points(begin, end, step_s); });
+  m_flows = m_solid.has_any_moving(m_is_flowing);
 }
 
 /// Of at most kLanes points; returns what their flow dissipates [J].
@@ -278,7 +280,7 @@ bool BodySide::sleeps_on(const ContactLoad& load) {
     const Vec3 force = load.force.at.col(n);
     squares += force.dot(2.0 * m_held_back.col(n) + force);
   }
-  m_state.is_at_rest = m_fidelity.sleeps_on(std::sqrt(std::max(0.0, squares)));
+  m_state.is_at_rest = m_fidelity.sleeps_on(std::sqrt(std::max(0.0, squares)), m_solid.held_back());
   return m_state.is_at_rest;
 }
 
@@ -309,12 +311,14 @@ void BodySide::watch_strain() {
 /// fidelity: may the body stop where it is, instead of the step that was assembled?
 bool BodySide::falls_asleep(const ContactLoad& load, const solid::StepLoads& loads) {
   if (m_is_moved || m_params.rates.between_frames == BetweenFrames::compliant) return false;
-  const bool flows = std::any_of(m_is_flowing.begin(), m_is_flowing.end(), [](char c) { return c != 0; });
-  if (!m_fidelity.falls_asleep(m_solid.compute_imbalance(loads), flows)) return false;
-  for (Eigen::Index n = 0; n < m_held_back.cols(); ++n)
-    m_held_back.col(n) = m_solid.find_imbalance(loads, n) - load.force.at.col(n);
-  m_held_back_squares = m_held_back.squaredNorm();
-  find_reach(OrderedItems(m_params.threads));
+  if (!m_fidelity.falls_asleep(m_solid.compute_imbalance(loads), m_solid.held_back(), m_flows)) return false;
+  const OrderedItems& nodes = m_solid.moving_nodes();
+  m_held_back.setZero();
+  m_held_back_squares = nodes.sum(m_held_back.cols(), [&](std::ptrdiff_t n) {
+    if (m_solid.is_awake(n)) m_held_back.col(n) = m_solid.find_imbalance(loads, n) - load.force.at.col(n);
+    return m_held_back.col(n).squaredNorm();
+  });
+  find_reach(nodes);
   fall_asleep();
   return true;
 }
@@ -337,7 +341,7 @@ PhysicsRecord BodySide::make_record() const {
   record.newton_iterations = m_solid.counters().newton_iterations;
   record.factorisations = m_solid.solver_cost().factorisations;
   record.residual = m_solid.counters().residual;
-  record.active_nodes = m_solid.num_active();
+  record.active_nodes = is_at_rest && m_solid.is_local() ? 0 : m_solid.num_active();
   record.min_volume_ratio = m_solid.min_volume_ratio();
   record.max_plastic_strain = strain.largest_plastic_strain;
   record.fidelity = m_fidelity.record();

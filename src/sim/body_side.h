@@ -96,6 +96,7 @@ class BodySide {
   std::vector<double> m_shape_stiffness;  // 2μ* per tet [Pa]; empty: isotropic stiffness
   bool m_is_flow_driven = false;          // plastic flow follows the stress, not the strain
   Field m_yield;                          // of each point: elastic strain norm [–]
+  bool m_flows = false;                   // anywhere
   std::vector<char> m_is_flowing;         // of each run of kLanes points, in the last step
   bool m_is_moved = false;                // some support moves
   Fidelity m_fidelity;

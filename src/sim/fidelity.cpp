@@ -44,19 +44,20 @@ double Fidelity::region_slack() const {
   return is_full() ? 0.0 : kRegion * lasting_share() * m_reach;
 }
 
-bool Fidelity::falls_asleep(double imbalance, bool flows) {
-  const bool is_calm = !flows && m_reach * imbalance <= kFallAsleep * m_record.bound;
+bool Fidelity::falls_asleep(double imbalance, double held_back, bool flows) {
+  const double estimate = m_reach * imbalance + held_back;
+  const bool is_calm = !flows && estimate <= kFallAsleep * m_record.bound;
   m_calm_steps = is_calm ? m_calm_steps + 1 : 0;
   if (m_calm_steps < kCalmSteps) return false;
   m_calm_steps = 0;
   m_record.rung = Rung::asleep;
-  m_record.estimate = m_reach * imbalance;
+  m_record.estimate = estimate;
   return true;
 }
 
-bool Fidelity::sleeps_on(double imbalance) {
+bool Fidelity::sleeps_on(double imbalance, double held_back) {
   m_record.rung = Rung::asleep;
-  m_record.estimate = m_reach * imbalance;
+  m_record.estimate = m_reach * imbalance + held_back;
   return m_record.estimate <= kSleep * m_record.bound;
 }
 

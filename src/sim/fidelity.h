@@ -56,11 +56,11 @@ class Fidelity {
   /// enlarged: so they have shares of the floor, and less while the force changes fast.
   double solve_slack() const;
   double region_slack() const;
-  /// May a body that would hold `imbalance` [N] back, were it stopped, stop now? It must have been so for
-  /// some steps in a row, and not flow.
-  bool falls_asleep(double imbalance, bool flows);
+  /// May a body that would hold `imbalance` [N] back, were it stopped, stop now? Of it, `held_back` [N] more
+  /// is felt by what does not move as it is. It must have been so for some steps in a row, and not flow.
+  bool falls_asleep(double imbalance, double held_back, bool flows);
   /// May a body that sleeps and holds back `imbalance` [N] go on so?
-  bool sleeps_on(double imbalance);
+  bool sleeps_on(double imbalance, double held_back);
   /// The step was made, `is_solved`: by more than going on as before, and left so much without balance [N].
   void set_made(bool is_solved, double imbalance, double held_back);
 

@@ -67,7 +67,8 @@ void BodySide::exchange_state(Archive& archive) {
   m_solid.exchange_frames(archive);
   if (!m_fidelity.is_full()) {
     archive.array("fidelity/held_back", m_held_back);
-    m_held_back_squares = m_held_back.squaredNorm();
+    archive.number("fidelity/held_back_squares", m_held_back_squares);
+    archive.number("fidelity/flows", m_flows);
     m_fidelity.exchange_state(archive);
   }
   if (!archive.is_restoring()) return;

@@ -67,7 +67,7 @@ void ActiveSet::wake_all() {
 }
 
 void ActiveSet::sleep_all() {
-  std::fill(m_state.begin(), m_state.end(), kAsleep);
+  std::replace(m_state.begin(), m_state.end(), kAwake, kDrowsy);
   m_is_changed = true;
 }
 

@@ -18,7 +18,7 @@ class ActiveSet {
             const std::vector<int>& row_of_node);
 
   void wake_all();
-  void sleep_all();
+  void sleep_all();  ///< those that are awake, after the lists of the next update
   void wake(int run);
   void wake_node(int node);                              ///< and the runs that share a tet with its run
   void wake_batches(const std::vector<char>& of_batch);  ///< runs at those that move and for which it is set

@@ -24,6 +24,11 @@ std::pair<std::size_t, std::size_t> find_rows(int run, std::size_t num_rows) {
 
 }  // namespace
 
+bool Solid::is_awake(Eigen::Index node) const {
+  const int row = m_row_of_node[static_cast<std::size_t>(node)];
+  return !m_region || (row >= 0 && m_region->is_awake(row / static_cast<int>(OrderedRuns::kLength)));
+}
+
 void Solid::visit_region() {
   m_rows.visit(&m_region->awake());
   m_near_rows.visit(&m_region->near());
@@ -41,20 +46,33 @@ void Solid::wake_all() {
 void Solid::sleep_all() {
   if (!m_region) return;
   m_region->sleep_all();
-  m_has_old_forces = true;
-  m_has_old_nodes = true;
-  if (m_region->update()) visit_region();
+}
+
+void Solid::make_ready(const SolidState& state) {
+  m_plastic_strain = &state.plastic_strain;
+  if (m_region && m_region->update()) visit_region();
+  take_up(state);
+  assemble_internal_force();
+  m_solver->prepare(m_matrix);
+}
+
+bool Solid::has_any_moving(const std::vector<char>& of_batch) const {
+  if (!m_region) return std::any_of(of_batch.begin(), of_batch.end(), [](char c) { return c != 0; });
+  const std::vector<int>& batches = m_region->batches();
+  return std::any_of(batches.begin(), batches.end(),
+                     [&](int batch) { return of_batch[static_cast<std::size_t>(batch)] != 0; });
 }
 
 /// Forces that change and contacts wake their nodes, and those around.
 void Solid::wake_region(const StepLoads& loads) {
-  if (m_last_load.size() == 0) m_last_load.setZero(3, loads.force.cols());
+  const bool is_first = m_last_load.size() == 0;
+  if (is_first) m_last_load.setZero(3, loads.force.cols());
   const auto see = [&](Eigen::Index n) {
     if ((loads.force.col(n).array() == m_last_load.col(n).array()).all()) return;
     m_region->wake_node(static_cast<int>(n));
     m_last_load.col(n) = loads.force.col(n);
   };
-  if (m_has_old_forces || !loads.changed) {
+  if (is_first || m_has_old_forces || !loads.changed) {
     for (Eigen::Index n = 0; n < loads.force.cols(); ++n) see(n);
   } else {
     for (const int node : *loads.changed) see(node);

@@ -114,7 +114,7 @@ class Solid {
   /// Residual and matrix at the present iterate. True when Newton's residual is small enough.
   bool assemble(const StepLoads& loads);
   /// After the first assembly of a step: the force [N] that would act on a node if the body were stopped
-  /// where it is; and the norm over all nodes of these and the forces that stop it within the step.
+  /// where it is; and the norm over all awake nodes of these and the forces that stop it within the step.
   Vec3 find_imbalance(const StepLoads& loads, Eigen::Index node) const;
   double compute_imbalance(const StepLoads& loads) const;
   /// One linear solve and, for Newton's method, its line search. Sets `solved` when no other is wanted.
@@ -127,6 +127,11 @@ class Solid {
   void settle_region(SolidState& state, const std::vector<char>& is_flowing);
   void wake_all();   ///< the whole body moves again
   void sleep_all();  ///< none of it until something acts; it has no speed
+  /// Does ahead of the first step what is done once: memory, and the forces of tets that do not move.
+  void make_ready(const SolidState& state);
+  bool is_awake(Eigen::Index node) const;
+  /// Is it set for any run of kLanes tets that may move?
+  bool has_any_moving(const std::vector<char>& of_batch) const;
   /// Σ body(begin, end) over the runs of kLanes points that may move, in their order.
   template <class Body>
   double sum_moving_points(Body body) {
@@ -144,6 +149,8 @@ class Solid {
   }
   /// By what the last step left as it is: how much of that force the hand may feel [N].
   double held_back() const { return m_held_back; }
+  bool is_local() const { return m_region != nullptr; }  ///< are there steps of a region alone?
+  /// Nodes that the last step solved for.
   int num_active() const { return m_region ? m_region->num_awake_rows() : num_free(); }
 
   /// How the force of contact i, of which a step was told, changed while the body moved: what to add [N] for

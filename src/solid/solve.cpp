@@ -218,6 +218,7 @@ void Solid::exchange_frames(Archive& archive) {
     m_region->exchange_state(archive);
     if (archive.is_restoring()) visit_region();
     archive.number("region/fastest", m_fastest);
+    archive.number("region/held_back", m_held_back);
     archive.any_size("region/last_load", m_last_load);
   }
   if (archive.is_restoring()) m_has_old_nodes = m_has_old_forces = true;

@@ -255,6 +255,7 @@ Vec3 Solid::find_imbalance(const StepLoads& loads, Eigen::Index node) const {
 
 double Solid::compute_imbalance(const StepLoads& loads) const {
   return std::sqrt(m_nodes.sum(m_elements.num_nodes(), [&](std::ptrdiff_t n) {
+    if (!is_awake(n)) return 0.0;
     return (find_imbalance(loads, n) + m_mass(n) / m_tau * m_v_start.col(n)).squaredNorm();
   }));
 }

@@ -71,13 +71,13 @@ TEST(Fidelity, ARelaxingModeFallsAsleepWhenLittleIsLeft) {
   for (bool sleeps = false; !sleeps; imbalance *= kDecay, ++steps) {
     fidelity.begin_step(Vec3::Zero());
     fidelity.find_reach(rest, rest, OrderedItems(1));
-    sleeps = fidelity.falls_asleep(imbalance, false);
+    sleeps = fidelity.falls_asleep(imbalance, 0.0, false);
   }
   const int first_calm = static_cast<int>(std::ceil(std::log(0.4 * 0.02 / 2.0) / std::log(kDecay)));
   EXPECT_EQ(steps, first_calm + 8);
   EXPECT_EQ(fidelity.record().rung, Rung::asleep);
   EXPECT_LT(fidelity.record().estimate, 0.4 * 0.02);
-  for (int i = 0; i < 100; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.0, true));
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.0, 0.0, true));
 }
 
 /// What falls asleep at an imbalance sleeps on at twice that.
@@ -86,11 +86,17 @@ TEST(Fidelity, WakesFarFromWhereItFellAsleep) {
   fidelity.begin_step(Vec3::Zero());
   fidelity.find_reach(Points::Zero(3, 1), Points::Zero(3, 1), OrderedItems(1));
   const double falls = 0.4 * 0.02 / 2.0;
-  for (int i = 0; i < 20; ++i) EXPECT_FALSE(fidelity.falls_asleep(1.01 * falls, false));
-  for (int i = 0; i < 7; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.99 * falls, false));
-  EXPECT_TRUE(fidelity.falls_asleep(0.99 * falls, false));
-  EXPECT_TRUE(fidelity.sleeps_on(1.99 * falls));
-  EXPECT_FALSE(fidelity.sleeps_on(2.01 * falls));
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(fidelity.falls_asleep(1.01 * falls, 0.0, false));
+  for (int i = 0; i < 7; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.99 * falls, 0.0, false));
+  EXPECT_TRUE(fidelity.falls_asleep(0.99 * falls, 0.0, false));
+  EXPECT_TRUE(fidelity.sleeps_on(1.99 * falls, 0.0));
+  EXPECT_FALSE(fidelity.sleeps_on(2.01 * falls, 0.0));
+  const double held_back = 0.2 * 0.02;  // felt as it is, out of the same bound
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.51 * falls, held_back, false));
+  for (int i = 0; i < 7; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.49 * falls, held_back, false));
+  EXPECT_TRUE(fidelity.falls_asleep(0.49 * falls, held_back, false));
+  EXPECT_TRUE(fidelity.sleeps_on(1.49 * falls, held_back));
+  EXPECT_FALSE(fidelity.sleeps_on(1.51 * falls, held_back));
 }
 
 // Beside the full model.

@@ -153,6 +153,26 @@ TEST(LocalExtent, UnderFidelityKeepsTheForceWithinItsBound) {
   EXPECT_LT(region.mean_active, 0.4 * whole.mean_active);
 }
 
+/// A hand that holds still: body and region sleep, and do not wake at every look.
+TEST(LocalExtent, UnderFidelitySleepsWhileTheHandHoldsStill) {
+  Params params = make_params(solid::Extent::local, 1e-3);
+  params.fidelity.mode = FidelityMode::automatic;
+  params.plasticity.enabled = false;  // whose flow would go on, and
+  params.kernel.form = material::KernelForm::off;  // with which it creeps
+  Simulation simulation(make_bar(), contact::make_sphere_tool(kToolRadius, 2), params, hand_at(0));
+  int asleep = 0;
+  for (Tick k = 1; k <= 400; ++k) {
+    ASSERT_TRUE(simulation.tick(hand_at(std::min<Tick>(k, 30))).is_ok());
+    if (k <= 300) continue;
+    const PhysicsRecord record = simulation.physics_record();
+    if (record.fidelity.rung != Rung::asleep) continue;
+    EXPECT_EQ(record.active_nodes, 0) << k;
+    ++asleep;
+  }
+  EXPECT_GT(simulation.hand_state().hand_force.norm(), params.fidelity.force_floor);
+  EXPECT_GE(asleep, 95);
+}
+
 /// What a step leaves of nodes that have fallen asleep may not come back when they wake.
 TEST(LocalExtent, UnderFidelityReturnsToTheSameBits) {
   Params params = make_params(solid::Extent::local, 1e-3);
