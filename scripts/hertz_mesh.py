@@ -1,9 +1,7 @@
 #!/usr/bin/python3
 """What of the error of plot_hertz.py is the mesh's: its presses on the same blocks of linear tetrahedra, by a few lines of scipy
-instead of argil, in which the tool moves nodes of the top and nothing else.
-
-For the sphere the nodes that it presses on; for the flat punch either the nodes within its disc, or all nodes of faces that
-overlap the disc, which no face enters then. What lies between these is a matter of how contact is found, not of the solver.
+instead of argil, in which the tool moves nodes of the top and nothing else: those that a sphere presses on, and those within the
+disc of a flat punch. What lies between these and argil's is a matter of how contact is found, not of the solver.
 
 Usage: hertz_mesh.py [-o FILE.csv] [--quick]        writes results/contact/hertz_mesh.csv
 """
@@ -57,20 +55,7 @@ def solve(stiffness, held, values, guess):
     return u
 
 
-def find_faces_in_disc(x, tets):
-    """Nodes of faces of the top that overlap the disc of radius a, by sampling them."""
-    faces = np.concatenate([np.delete(tets, i, axis=1) for i in range(4)])
-    faces = faces[(x[faces, 2] > -1e-12).all(axis=1)]
-    share = np.linspace(0, 1, 41)
-    nearest = np.full(len(faces), np.inf)
-    for s in share:
-        for t in share[share <= 1 - s + 1e-12]:
-            place = s * x[faces[:, 0], :2] + t * x[faces[:, 1], :2] + (1 - s - t) * x[faces[:, 2], :2]
-            nearest = np.minimum(nearest, np.hypot(*place.T))
-    return np.unique(faces[nearest < press.CONTACT_RADIUS * (1 - 1e-6)])
-
-
-def compute_force(x, tets, stiffness, tool, pressed):
+def compute_force(x, stiffness, tool):
     """Over the closed form. Frictionless: the tool moves nodes down alone."""
     depth, exact, height = press.shape_of(tool)
     far = press.HALF_WIDTH * (1 - 1e-9)
@@ -79,8 +64,8 @@ def compute_force(x, tets, stiffness, tool, pressed):
     held = np.unique(np.concatenate(held))
     radius = np.hypot(x[:, 0], x[:, 1])
     reach = press.CONTACT_RADIUS * (1.5 if tool == "sphere" else 1 + 1e-9)
-    nodes = find_faces_in_disc(x, tets) if pressed == "faces" else np.flatnonzero((x[:, 2] > -1e-12) & (radius < reach))
-    low = -depth + height(radius[nodes]) if pressed == "nodes" else np.full(len(nodes), -depth)
+    nodes = np.flatnonzero((x[:, 2] > -1e-12) & (radius < reach))
+    low = -depth + height(radius[nodes])
     bears = low < 0
     u = np.zeros(3 * len(x))
     for _ in range(MAX_ROUNDS):
@@ -108,15 +93,15 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             x, tets = read_block(folder, cells)
         stiffness = assemble(x, tets)
-        for tool, pressed in (("sphere", "nodes"), ("punch", "nodes"), ("punch", "faces")):
+        for tool in ("sphere", "punch"):
             if width != widths[0] and tool == "punch":
                 continue
-            rows.append([tool, pressed, cells, round(width / press.CONTACT_RADIUS),
-                         f"{compute_force(x, tets, stiffness, tool, pressed):.4f}"])
+            rows.append([tool, cells, round(width / press.CONTACT_RADIUS),
+                         f"{compute_force(x, stiffness, tool):.4f}"])
             print(*rows[-1], flush=True)
     with open(options.output, "w", newline="", encoding="ascii") as file:
         table = csv.writer(file, lineterminator="\n")
-        table.writerow(["tool", "pressed", "cells_per_contact_radius", "block_over_contact_radius", "force_over_closed_form"])
+        table.writerow(["tool", "cells_per_contact_radius", "block_over_contact_radius", "force_over_closed_form"])
         table.writerows(rows)
 
 

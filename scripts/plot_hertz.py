@@ -58,11 +58,21 @@ def spaced(cells_per_radius, cells):
     return np.array(x + list(x[-1] + np.cumsum(widths)))
 
 
+def round_off(x, y):
+    """Nodes of squares about the axis go towards circles, those of the square of half width a onto the rim of the contact:
+    a force that is singular there is no matter for cells that it cuts in two. None on the axis and beyond 3a moves."""
+    half, radius = np.maximum(x, y), np.maximum(np.hypot(x, y), 1e-300)
+    share = np.minimum(half / CONTACT_RADIUS, np.maximum(0, 1.5 - half / (2 * CONTACT_RADIUS)))
+    scale = 1 + share * (half / radius - 1)
+    return x * scale, y * scale
+
+
 def write_block(stem, cells_per_radius):
-    """Graded block as TetGen's .node and .ele, its top at z = 0: cubes of a/cells around the contact, six tets each."""
+    """Graded block as TetGen's .node and .ele, its top at z = 0: cells of a/cells around the contact, six tets each."""
     side = spaced(cells_per_radius, math.ceil(1.25 * cells_per_radius))
     down = -spaced(cells_per_radius, cells_per_radius)[::-1]
     x, y, z = np.meshgrid(side, side, down, indexing="ij")
+    x, y = round_off(x, y)
     nodes = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
     number = np.arange(len(nodes)).reshape(x.shape)
     n, m = len(side) - 1, len(down) - 1
@@ -172,6 +182,7 @@ def main():
     if not options.quick:
         cases += [(tool, element, cells, 1) for element, cells in (("p2", 4), ("p1", 8))
                   for tool in ("sphere", "punch", "cone")]
+        cases.append(("punch", "p2", 8, 1))
     rows = []
     with tempfile.TemporaryDirectory() as name:
         for tool, element, cells, stiffness in cases:
