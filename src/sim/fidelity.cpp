@@ -8,9 +8,9 @@ namespace {
 
 // Shares of the bound.
 constexpr double kSolve = 0.25;
-constexpr double kRegion = 0.25;
-constexpr double kSleep = 0.8;       // for a body that sleeps; alone, as nothing else is left out then
-constexpr double kFallAsleep = 0.4;  // for one that falls asleep: far from waking
+constexpr double kRegion = 0.5;
+constexpr double kSleep = 0.8;       // for a body that sleeps, with what its region holds back
+constexpr double kFallAsleep = 0.5;  // of what is left for sleep, for one that falls asleep: far from waking
 constexpr int kCalmSteps = 8;        // that it must have been so
 constexpr double kSafety = 2.0;      // of the reach
 
@@ -45,13 +45,13 @@ double Fidelity::region_slack() const {
 }
 
 bool Fidelity::falls_asleep(double imbalance, double held_back, bool flows) {
-  const double estimate = m_reach * imbalance + held_back;
-  const bool is_calm = !flows && estimate <= kFallAsleep * m_record.bound;
+  const double most = kFallAsleep * (kSleep * m_record.bound - held_back);
+  const bool is_calm = !flows && m_reach * imbalance <= most;
   m_calm_steps = is_calm ? m_calm_steps + 1 : 0;
   if (m_calm_steps < kCalmSteps) return false;
   m_calm_steps = 0;
   m_record.rung = Rung::asleep;
-  m_record.estimate = estimate;
+  m_record.estimate = m_reach * imbalance + held_back;
   return true;
 }
 

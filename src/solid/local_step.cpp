@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStill = 1e-4;      // [m/s]: where nothing is faster, speeds are measured by this
 constexpr int kCalmSteps = 8;        // that a run must have been slow before it falls asleep
-constexpr double kSafety = 2.0;      // of a reach
+constexpr double kFelt = 2.0 / 3.0;  // of the sum of what each pull is felt by: they point different ways
 constexpr double kSleepShare = 0.5;  // of the speed that wakes it, below which a run is slow
 
 /// First row of a run, and the one after its last.
@@ -100,28 +100,39 @@ void Solid::grow_region_by_speed(const StepLoads& loads) {
   }
 }
 
-/// Square of how far a row has gone from its place at rest once the step is made by the present solution.
-double Solid::find_squared_way(Eigen::Index row) const {
+/// How far a row has gone from its place at rest once the step is made by the present solution.
+Vec3 Solid::find_way(Eigen::Index row) const {
   const int node = m_node_of_row[static_cast<std::size_t>(row)];
-  const Vec3 step = m_region->is_awake(static_cast<int>(row / OrderedRuns::kLength))
-                        ? Vec3(m_tau * m_delta.col(row))
-                        : Vec3(Vec3::Zero());
-  return (m_x_hat.col(node) + step - m_elements.rest.col(node)).squaredNorm();
+  const Vec3 way = m_x_hat.col(node) - m_elements.rest.col(node);
+  if (!m_region->is_awake(static_cast<int>(row / OrderedRuns::kLength))) return way;
+  return way + m_tau * m_delta.col(row);
 }
 
 /// By the reciprocity of Maxwell and Betti a force is felt at the place of contact by as much of it as its
 /// node goes when that place is moved by a unit. That is read off the body: how far the node, or one that it
-/// is joined to, has gone so far, over the largest way.
-double Solid::find_reach(std::size_t row, double largest_way) const {
+/// is joined to, has gone so far, over the largest way. But next to nodes that are held back a node goes less
+/// far than it would: in a body that yields as c/r [Boussinesq1885] and is held at R, by c/r − c/R, whose
+/// slope there is that of the free one; r times the slope is how far the free one goes.
+double Solid::find_reach(std::size_t row, const LargestWay& largest) const {
+  if (largest.size == 0.0) return 1.0;
+  const auto own = static_cast<Eigen::Index>(row);
+  const Vec3 place = m_elements.rest.col(m_node_of_row[row]);
+  const Vec3 own_way = find_way(own);
+  const double distance = (place - largest.place).norm();
   double way = 0.0;
-  for (int b = m_matrix.row_begin[row]; b < m_matrix.row_begin[row + 1]; ++b)
-    way = std::max(way, find_squared_way(m_matrix.column[static_cast<std::size_t>(b)]));
-  return largest_way > 0.0 ? kSafety * std::sqrt(way / largest_way) : kSafety;
+  for (int b = m_matrix.row_begin[row]; b < m_matrix.row_begin[row + 1]; ++b) {
+    const int other = m_matrix.column[static_cast<std::size_t>(b)];
+    if (other == own) continue;
+    const Vec3 other_way = find_way(other);
+    const double edge = (m_elements.rest.col(m_node_of_row[static_cast<std::size_t>(other)]) - place).norm();
+    way = std::max({way, other_way.norm(), distance / edge * (other_way - own_way).norm()});
+  }
+  return std::min(1.0, way / largest.size);
 }
 
 /// How much of what pulls at a run that sleeps, while the others move by the present solution, the hand would
 /// feel at most [N].
-double Solid::find_felt_pull(int run, double largest_way, const StepLoads& loads) const {
+double Solid::find_felt_pull(int run, const LargestWay& largest, const StepLoads& loads) const {
   constexpr double kNothing = 1e-6;  // of what may be left out: too little to look closer
   const auto [begin, end] = find_rows(run, m_node_of_row.size());
   double felt = 0.0;
@@ -133,11 +144,11 @@ double Solid::find_felt_pull(int run, double largest_way, const StepLoads& loads
         momentum -= m_matrix.block(b) * m_delta.col(column);
     }
     double pull = momentum.norm() / m_tau;
-    if (kSafety * pull > kNothing * loads.region_slack) {
+    if (pull > kNothing * loads.region_slack) {
       if (loads.mobility) pull *= loads.mobility(m_node_of_row[row]);
-      pull *= find_reach(row, largest_way) / kSafety;
+      pull *= find_reach(row, largest);
     }
-    felt += kSafety * pull;
+    felt += kFelt * pull;
   }
   return felt;
 }
@@ -145,16 +156,17 @@ double Solid::find_felt_pull(int run, double largest_way, const StepLoads& loads
 /// The runs whose pull the hand would feel most wake, until what is left holds back no more than it may. True
 /// when any woke.
 bool Solid::grow_region_by_force(const StepLoads& loads) {
-  double largest_way = 0.0;
+  LargestWay largest;
   for (const int run : m_region->awake()) {
     const auto [begin, end] = find_rows(run, m_node_of_row.size());
     for (std::size_t row = begin; row < end; ++row)
-      largest_way = std::max(largest_way, find_squared_way(static_cast<Eigen::Index>(row)));
+      if (const double way = find_way(static_cast<Eigen::Index>(row)).norm(); way > largest.size)
+        largest = {way, m_elements.rest.col(m_node_of_row[row])};
   }
   m_pulls.resize(m_region->fringe().size());
   parallel_for(static_cast<std::ptrdiff_t>(m_pulls.size()), m_threads, [&](std::ptrdiff_t i) {
     const int run = m_region->fringe()[static_cast<std::size_t>(i)];
-    m_pulls[static_cast<std::size_t>(i)] = {-find_felt_pull(run, largest_way, loads), run};
+    m_pulls[static_cast<std::size_t>(i)] = {-find_felt_pull(run, largest, loads), run};
   });
   double total = 0.0;
   for (const auto& [minus_felt, run] : m_pulls) total -= minus_felt;
@@ -209,7 +221,7 @@ void Solid::settle_region(SolidState& state, const std::vector<char>& is_flowing
     const auto [begin, end] = find_rows(run, m_node_of_row.size());
     double felt = 0.0;
     for (std::size_t row = begin; row < end; ++row)
-      felt += kSafety * (m_mass(m_node_of_row[row]) / m_tau * state.v.col(m_node_of_row[row])).norm();
+      felt += kFelt * (m_mass(m_node_of_row[row]) / m_tau * state.v.col(m_node_of_row[row])).norm();
     return felt <= share;
   };
   for (std::size_t i = 0; i < fastest.size(); ++i) {

@@ -241,9 +241,13 @@ class Solid {
   void grow_region_by_speed(const StepLoads& loads);
   bool grow_region_by_force(const StepLoads& loads);
   void take_in_region(const StepLoads& loads);
-  double find_squared_way(Eigen::Index row) const;
-  double find_reach(std::size_t row, double largest_way) const;
-  double find_felt_pull(int run, double largest_way, const StepLoads& loads) const;
+  struct LargestWay {
+    double size = 0.0;          // [m]
+    Vec3 place = Vec3::Zero();  // at rest, of the node that has gone so far
+  };
+  Vec3 find_way(Eigen::Index row) const;
+  double find_reach(std::size_t row, const LargestWay& largest) const;
+  double find_felt_pull(int run, const LargestWay& largest, const StepLoads& loads) const;
   void visit_region();
   double frame_tolerance() const;
   void set_tet_motion(const Points& x, bool keeps_frame);

@@ -92,9 +92,9 @@ TEST(Fidelity, WakesFarFromWhereItFellAsleep) {
   EXPECT_TRUE(fidelity.sleeps_on(1.99 * falls, 0.0));
   EXPECT_FALSE(fidelity.sleeps_on(2.01 * falls, 0.0));
   const double held_back = 0.2 * 0.02;  // felt as it is, out of the same bound
-  for (int i = 0; i < 20; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.51 * falls, held_back, false));
-  for (int i = 0; i < 7; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.49 * falls, held_back, false));
-  EXPECT_TRUE(fidelity.falls_asleep(0.49 * falls, held_back, false));
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.76 * falls, held_back, false));
+  for (int i = 0; i < 7; ++i) EXPECT_FALSE(fidelity.falls_asleep(0.74 * falls, held_back, false));
+  EXPECT_TRUE(fidelity.falls_asleep(0.74 * falls, held_back, false));
   EXPECT_TRUE(fidelity.sleeps_on(1.49 * falls, held_back));
   EXPECT_FALSE(fidelity.sleeps_on(1.51 * falls, held_back));
 }
