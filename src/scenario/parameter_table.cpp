@@ -454,7 +454,7 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
       "/haptics/passivity", s.params.passivity,
       {{device::Passivity::none, "none"}, {device::Passivity::time_domain, "time_domain"}},
       "Damp the force at the hand where it would give back more energy than the hand gave [Hannaford2002].");
-  b.number("/haptics/chatter_limit", s.params.chatter_limit, {0.0, 1.0, false, true}, "",
+  b.number("/haptics/chatter_limit", s.params.chatter_limit, {0.0, 1.0, true, false}, "",
            "The run stops when the force at the hand has trembled for 0.3 s: its rms above 50 Hz is "
            "more than this share of its rms. 1: never.");
   device::DeviceLimits& l = s.params.device;

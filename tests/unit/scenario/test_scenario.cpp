@@ -143,6 +143,8 @@ TEST_F(ScenarioFile, ValuesOutsideTheirRangeNamePointerValueRangeAndUnit) {
       "/material/youngs_modulus_Pa=0",
       {"/material/youngs_modulus_Pa", "0 is outside [1e-09, 1e+18] Pa", "give a value in that range"});
   expect_refused("/water/porosity=1", {"/water/porosity", "1 is outside (0.0, 1.0)"});
+  expect_refused("/haptics/chatter_limit=0", {"/haptics/chatter_limit", "0 is outside (0.0, 1.0]"});
+  EXPECT_EQ(load({"/haptics/chatter_limit=1"}).params.chatter_limit, 1.0);
   expect_refused("/haptics/period_s=1", {"/haptics/period_s", "1 is outside [1e-06, 1.0) s"});
   expect_refused("/tool/shape/subdivisions=7", {"/tool/shape/subdivisions", "7 is outside [0, 6]; give"});
   expect_refused("/body/loads/gravity_m_per_s2=[0,0]",
