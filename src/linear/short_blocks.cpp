@@ -84,17 +84,16 @@ ARGIL_EVERY_PROCESSOR void shorten(const double* from, std::ptrdiff_t count, flo
 
 }  // namespace
 
-void ShortBlocks::prepare(const BlockMatrix& matrix) {
-  const auto num_rows = static_cast<std::size_t>(matrix.num_rows());
-  if (m_pattern == &matrix && m_revision.size() == num_rows &&
-      m_values.size() == static_cast<std::size_t>(matrix.values.size()))
-    return;
-  m_pattern = &matrix;
-  m_values.resize(static_cast<std::size_t>(matrix.values.size()));
+void ShortBlocks::prepare(const BlockMatrix& pattern) {
+  const auto num_rows = static_cast<std::size_t>(pattern.num_rows());
+  const auto num_values = static_cast<std::size_t>(pattern.values.size());
+  if (m_pattern == &pattern && m_revision.size() == num_rows && m_values.size() == num_values) return;
+  m_pattern = &pattern;
+  m_values.resize(num_values);
   m_inverse.assign(12 * num_rows, 0.0F);
-  m_diagonal.resize(3, 3 * matrix.num_rows());
+  m_diagonal.resize(3, 3 * pattern.num_rows());
   m_revision.clear();
-  for (const std::uint32_t revision : matrix.revision) m_revision.push_back(revision - 1);
+  for (const std::uint32_t revision : pattern.revision) m_revision.push_back(revision - 1);
 }
 
 void ShortBlocks::update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs) {

@@ -12,9 +12,10 @@ namespace argil::linear {
 /// 1e-7 of Σ|A||x|. Vectors have four numbers a row, the last of them 0.
 class ShortBlocks {
  public:
+  /// Takes the memory for matrices of this pattern; update does the same.
+  void prepare(const BlockMatrix& pattern);
   /// Takes the rows that have changed since the last update; the inverses hold what `whole` does not store,
   /// too.
-  void prepare(const BlockMatrix& matrix);  ///< takes the memory
   void update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs);
 
   /// What an iteration of conjugate gradients changes.

@@ -18,8 +18,9 @@ class ShortIteration {
   SolveReport solve(const BlockMatrix& matrix, Operator& whole, const Points& b, double tolerance,
                     int max_iterations, Points& x, double goal = 0.0);
 
-  /// From now on rows of these runs alone, as if there were no others. Null: all.
+  /// Takes the memory for matrices of this pattern; solve does the same.
   void prepare(const BlockMatrix& pattern);
+  /// From now on rows of these runs alone, as if there were no others. Null: all.
   void visit(const std::vector<int>* runs);
 
  private:

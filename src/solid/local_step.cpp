@@ -44,8 +44,7 @@ void Solid::wake_all() {
 }
 
 void Solid::sleep_all() {
-  if (!m_region) return;
-  m_region->sleep_all();
+  if (m_region) m_region->sleep_all();
 }
 
 void Solid::make_ready(const SolidState& state) {
@@ -53,7 +52,7 @@ void Solid::make_ready(const SolidState& state) {
   if (m_region && m_region->update()) visit_region();
   take_up(state);
   assemble_internal_force();
-  m_solver->prepare(m_matrix);
+  if (!is_explicit()) m_solver->prepare(m_matrix);
 }
 
 bool Solid::has_any_moving(const std::vector<char>& of_batch) const {
