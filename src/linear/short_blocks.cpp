@@ -78,6 +78,13 @@ ARGIL_EVERY_PROCESSOR void advance_rows(const float* inverse, float alpha, float
   sums = {static_cast<double>(rr[0] + rr[1] + rr[2]), static_cast<double>(rz[0] + rz[1] + rz[2])};
 }
 
+ARGIL_EVERY_PROCESSOR double compute_dot_of_rows(const float* a, const float* b, std::ptrdiff_t begin,
+                                                 std::ptrdiff_t end) {
+  Floats4 dot = {};
+  for (std::ptrdiff_t i = 4 * begin; i < 4 * end; i += 4) dot += *four_at(a + i) * *four_at(b + i);
+  return static_cast<double>(dot[0] + dot[1] + dot[2]);
+}
+
 ARGIL_EVERY_PROCESSOR void shorten(const double* from, std::ptrdiff_t count, float* to) {
   for (std::ptrdiff_t i = 0; i < count; ++i) to[i] = static_cast<float>(from[i]);
 }
@@ -116,6 +123,10 @@ void ShortBlocks::update(const BlockMatrix& matrix, Operator& whole, const Order
         m_inverse.data()[12 * row + 4 * (k / 3) + k % 3] = static_cast<float>(inverse(k));
     }
   });
+}
+
+double ShortBlocks::compute_dot(std::ptrdiff_t begin, std::ptrdiff_t end, const float* a, const float* b) {
+  return compute_dot_of_rows(a, b, begin, end);
 }
 
 double ShortBlocks::multiply(std::ptrdiff_t begin, std::ptrdiff_t end, const float* x, float* y) const {

@@ -32,6 +32,7 @@ class ShortBlocks {
   };
 
   // Rows begin … end−1:
+  static double compute_dot(std::ptrdiff_t begin, std::ptrdiff_t end, const float* a, const float* b);
   double multiply(std::ptrdiff_t begin, std::ptrdiff_t end, const float* x,
                   float* y) const;  ///< y = A x, x·y
   /// p = z + β p, q = w + β q, x += α p, r −= α q, z = D⁻¹ r.

@@ -41,7 +41,12 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
       for (std::ptrdiff_t k = 0; k < 3; ++k)
         x.data()[3 * row + k] += first * static_cast<double>(m_x.data()[4 * row + k]);
   });
+  if (!report.converged) std::fill(m_x.begin(), m_x.end(), 0.0F);
   return report;
+}
+
+void ShortIteration::exchange_state(Archive& archive, const std::string& prefix) {
+  archive.list(prefix + "last_change", m_x);
 }
 
 void ShortIteration::prepare(const BlockMatrix& pattern) {
@@ -61,12 +66,34 @@ void ShortIteration::visit(const std::vector<int>* runs) {
 void ShortIteration::clear_left_rows() {
   const auto length = 4 * OrderedRuns::kLength;
   const auto size = static_cast<std::ptrdiff_t>(m_z.size());
+  const auto clear = [&](int run) {
+    for (std::vector<float>* vector : {&m_z, &m_x})
+      std::fill(vector->begin() + run * length, vector->begin() + std::min((run + 1) * length, size), 0.0F);
+  };
+  const auto is_visited = [&](int run) {
+    return !m_visited || std::binary_search(m_visited->begin(), m_visited->end(), run);
+  };
   for (const int run : m_solved)
-    std::fill(m_z.begin() + run * length, m_z.begin() + std::min((run + 1) * length, size), 0.0F);
-  if (m_has_solved_all) std::fill(m_z.begin(), m_z.end(), 0.0F);
+    if (!is_visited(run)) clear(run);
+  for (int run = 0; m_has_solved_all && m_visited && run * length < size; ++run)
+    if (!is_visited(run)) clear(run);
   m_has_solved_all = m_visited == nullptr;
   m_solved.clear();
   if (m_visited) m_solved = *m_visited;
+}
+
+/// z holds what the last solve found: the share of it that takes most of the error away, z·r / z·A z.
+double ShortIteration::find_share_of_last(Operator& whole, std::ptrdiff_t num_rows) {
+  m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    const auto run = static_cast<std::size_t>(i);
+    m_products[run] = m_blocks.multiply(begin, end, m_z.data(), m_w.data());
+    m_sums[run].rz = ShortBlocks::compute_dot(begin, end, m_r.data(), m_z.data());
+  });
+  double curvature = whole.add_unstored(m_z.data(), m_w.data());
+  for (const double run : m_products) curvature += run;
+  double along = 0.0;
+  for (const ShortBlocks::Sums& run : m_sums) along += run.rz;
+  return curvature > 0.0 ? along / curvature : 0.0;
 }
 
 /// A x = r / `first`, which has the norm 1, until what is left of it is below `goal`.
@@ -89,15 +116,17 @@ SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, 
     for (std::ptrdiff_t row = begin; row < end; ++row)
       for (std::ptrdiff_t k = 0; k < 4; ++k) {
         const std::ptrdiff_t i = 4 * row + k;
-        m_p.data()[i] = m_q.data()[i] = m_w.data()[i] = m_z.data()[i] = m_x.data()[i] = 0.0F;
+        m_z.data()[i] = m_x.data()[i];
+        m_p.data()[i] = m_q.data()[i] = m_w.data()[i] = m_x.data()[i] = 0.0F;
         m_r.data()[i] = k < 3 ? static_cast<float>(m_product.data()[3 * row + k] / first) : 0.0F;
       }
   });
-  advance(0.0, 0.0);  // z = D⁻¹ r
+  const double share = find_share_of_last(whole, num_rows);
+  advance(share, 0.0);  // z = D⁻¹ r
   double residual = std::sqrt(sums.rr);
-  double last_rz = 1.0;
+  double last_rz = std::numeric_limits<double>::infinity();  // later directions know nothing of the first
   double curvature = 0.0;  // p·A p, by the recurrence that holds while directions are conjugate
-  int iterations = 0;
+  int iterations = share != 0.0 ? 1 : 0;
   bool is_positive = true;
   // Written so that a NaN residual leaves the loop as not converged.
   while (residual > goal && iterations < max_iterations) {

@@ -1,14 +1,18 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "base/archive.h"
 #include "linear/short_blocks.h"
 
 namespace argil::linear {
 
 /// The method of ConjugateGradients over the diagonal blocks, in floats but for its sums: what is added to x
 /// is found from b − A x, which is taken in double, so that floats round only what the solve changes. For
-/// tolerances above kRoomForFloats. Each iteration goes over the rows twice. Bits do not depend on `threads`.
+/// tolerances above kRoomForFloats. Each iteration goes over the rows twice. The first goes along what the
+/// last solve added to its x: systems of successive steps have like solutions [Fischer1998]. Bits do not
+/// depend on `threads`.
 class ShortIteration {
  public:
   explicit ShortIteration(int threads) : m_runs(threads) {}
@@ -22,9 +26,12 @@ class ShortIteration {
   void prepare(const BlockMatrix& pattern);
   /// From now on rows of these runs alone, as if there were no others. Null: all.
   void visit(const std::vector<int>* runs);
+  /// What the next solve takes from the last one.
+  void exchange_state(Archive& archive, const std::string& prefix);
 
  private:
   void clear_left_rows();
+  double find_share_of_last(Operator& whole, std::ptrdiff_t num_rows);
   SolveReport iterate(Operator& whole, double first, double goal, int max_iterations);
 
   OrderedRuns m_runs;
@@ -34,7 +41,7 @@ class ShortIteration {
   bool m_is_changed = true;
   ShortBlocks m_blocks;
   Points m_product;
-  std::vector<float> m_r, m_z, m_w, m_p, m_q, m_x;  // four a row
+  std::vector<float> m_r, m_z, m_w, m_p, m_q, m_x;  // four a row; x stays for the next solve
   std::vector<double> m_products;                   // z·w of each run
   std::vector<ShortBlocks::Sums> m_sums;            // of each run
 };

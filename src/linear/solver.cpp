@@ -96,6 +96,9 @@ class JacobiIteration {
     if (m_is_short) m_short.visit(runs);
     return m_is_short;
   }
+  void exchange_state(Archive& archive, const std::string& prefix) {
+    if (m_is_short) m_short.exchange_state(archive, prefix);
+  }
 
  private:
   double m_tolerance;
@@ -118,6 +121,10 @@ class JacobiSolver final : public Solver {
   }
   void prepare(const BlockMatrix& pattern) override { m_iteration.prepare(pattern); }
   bool visit(const std::vector<int>* runs) override { return m_iteration.visit(runs); }
+  void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
+    Solver::exchange_state(archive, prefix, pattern);
+    m_iteration.exchange_state(archive, prefix);
+  }
 
  private:
   SolverParams m_params;
@@ -177,6 +184,7 @@ class KeptFactorSolver final : public Solver {
   void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
     Solver::exchange_state(archive, prefix, pattern);
     archive.number(prefix + "has_factor", m_has_factor);
+    if (!m_has_factor) m_jacobi.exchange_state(archive, prefix);
     archive.number(prefix + "last_iterations", m_last_iterations);
     bool is_fresh = m_is_fresh;
     archive.number(prefix + "is_fresh", is_fresh);

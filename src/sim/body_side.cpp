@@ -341,7 +341,7 @@ PhysicsRecord BodySide::make_record() const {
   record.newton_iterations = m_solid.counters().newton_iterations;
   record.factorisations = m_solid.solver_cost().factorisations;
   record.residual = m_solid.counters().residual;
-  record.active_nodes = is_at_rest && m_solid.is_local() ? 0 : m_solid.num_active();
+  record.active_nodes = is_at_rest ? 0 : m_solid.num_active();
   record.min_volume_ratio = m_solid.min_volume_ratio();
   record.max_plastic_strain = strain.largest_plastic_strain;
   record.fidelity = m_fidelity.record();

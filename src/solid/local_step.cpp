@@ -26,7 +26,7 @@ std::pair<std::size_t, std::size_t> find_rows(int run, std::size_t num_rows) {
 
 bool Solid::is_awake(Eigen::Index node) const {
   const int row = m_row_of_node[static_cast<std::size_t>(node)];
-  return !m_region || (row >= 0 && m_region->is_awake(row / static_cast<int>(OrderedRuns::kLength)));
+  return !m_region || (row >= 0 && m_region->is_row_awake(row));
 }
 
 void Solid::visit_region() {
@@ -103,7 +103,7 @@ void Solid::grow_region_by_speed(const StepLoads& loads) {
 Vec3 Solid::find_way(Eigen::Index row) const {
   const int node = m_node_of_row[static_cast<std::size_t>(row)];
   const Vec3 way = m_x_hat.col(node) - m_elements.rest.col(node);
-  if (!m_region->is_awake(static_cast<int>(row / OrderedRuns::kLength))) return way;
+  if (!m_region->is_row_awake(row)) return way;
   return way + m_tau * m_delta.col(row);
 }
 
@@ -139,8 +139,7 @@ double Solid::find_felt_pull(int run, const LargestWay& largest, const StepLoads
     Vec3 momentum = m_rhs.col(static_cast<Eigen::Index>(row));
     for (int b = m_matrix.row_begin[row]; b < m_matrix.row_begin[row + 1]; ++b) {
       const int column = m_matrix.column[static_cast<std::size_t>(b)];
-      if (m_region->is_awake(column / static_cast<int>(OrderedRuns::kLength)))
-        momentum -= m_matrix.block(b) * m_delta.col(column);
+      if (m_region->is_row_awake(column)) momentum -= m_matrix.block(b) * m_delta.col(column);
     }
     double pull = momentum.norm() / m_tau;
     if (pull > kNothing * loads.region_slack) {

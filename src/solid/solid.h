@@ -149,7 +149,6 @@ class Solid {
   }
   /// By what the last step left as it is: how much of that force the hand may feel [N].
   double held_back() const { return m_held_back; }
-  bool is_local() const { return m_region != nullptr; }  ///< are there steps of a region alone?
   /// Nodes that the last step solved for.
   int num_active() const { return m_region ? m_region->num_awake_rows() : num_free(); }
 

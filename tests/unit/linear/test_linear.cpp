@@ -344,6 +344,28 @@ TEST(ShortIteration, TakesTheRowsThatChangedAndGivesEqualBitsOnAnyNumberOfThread
   }
 }
 
+/// Systems of successive steps have like solutions: what the last one added is the first direction.
+TEST(ShortIteration, GoesFirstAlongWhatTheLastSolveAdded) {
+  constexpr double kTolerance = 1e-4;
+  const BlockMatrix a = make_laplacian(60);
+  const Points b = make_random_vector(60, 36);
+  MatrixOperator product(a, 1);
+  ShortIteration iteration(1);
+  const auto count_iterations = [&](const Points& right) {
+    Points x = Points::Zero(3, 60);
+    const SolveReport report = iteration.solve(a, product, right, kTolerance, 100, x);
+    EXPECT_TRUE(report.converged);
+    EXPECT_NEAR(report.first, right.norm(), 1e-12 * right.norm());
+    EXPECT_LT((to_dense(a) * x.reshaped() - right.reshaped()).norm(), 1.1 * kTolerance * right.norm());
+    return report.iterations;
+  };
+  const int cold = count_iterations(b);
+  EXPECT_GT(cold, 40);
+  EXPECT_EQ(count_iterations(-3.0 * b), 1);  // the very direction
+  EXPECT_LT(count_iterations(b + 0.001 * make_random_vector(60, 37)), cold - 10);
+  EXPECT_LE(count_iterations(make_random_vector(60, 38)), cold + 2);  // of no use, and in no one's way
+}
+
 TEST(ShortIteration, TakesNumbersOfAnySize) {
   const BlockMatrix a = make_random_spd(50, 33);
   for (const double size : {1e-60, 1e60}) {  // beyond what a float holds
