@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "base/types.h"
 
@@ -20,8 +21,11 @@ struct TetMesh {
   Points vertices;                           ///< 3×n rest positions [m]
   Tets tets;                                 ///< 4×m vertex numbers; det(x1−x0, x2−x0, x3−x0) > 0
   std::map<std::string, Field> cell_fields;  ///< scalar data per tet found in the file, by its name there
+  std::vector<int> numbers = {};             ///< of the tets in the file; empty: their own
   int num_vertices() const { return static_cast<int>(vertices.cols()); }
   int num_tets() const { return static_cast<int>(tets.cols()); }
+  /// What a tet is called in the file, in messages and in results.
+  int number(int tet) const { return numbers.empty() ? tet : numbers[static_cast<std::size_t>(tet)]; }
 };
 
 /// Signed volume [m³] of the tet with corners a, b, c, d; positive when d lies on the side of (b−a)×(c−a).

@@ -8,6 +8,7 @@
 #include "base/print.h"
 #include "contact/tool_shape.h"
 #include "embed/cage.h"
+#include "mesh/order.h"
 #include "mesh/quality.h"
 #include "mesh/readers.h"
 #include "scenario/medium_check.h"
@@ -28,7 +29,8 @@ Field take_field(const Scenario& s, const mesh::TetMesh& mesh, const std::string
       std::ostringstream text;
       text << "cell data \"" << name << "\" is " << found->second(t) << ", outside [" << low << ", " << high
            << "]";
-      throw InputError(s.body.file, "tet " + std::to_string(t), text.str(), "correct the file");
+      throw InputError(s.body.file, "tet " + std::to_string(mesh.number(static_cast<int>(t))), text.str(),
+                       "correct the file");
     }
   return found->second;
 }
@@ -43,7 +45,7 @@ Points take_axes(const Scenario& s, const mesh::TetMesh& mesh) {
   for (Eigen::Index t = 0; t < axes.cols(); ++t) {
     const double length = axes.col(t).stableNorm();
     if (!(length > 0.0))
-      throw InputError(s.body.file, "tet " + std::to_string(t),
+      throw InputError(s.body.file, "tet " + std::to_string(mesh.number(static_cast<int>(t))),
                        "cell data \"" + s.body.pore_axis_field + "\" has no length",
                        "give every tet an axis");
     axes.col(t) /= length;
@@ -105,6 +107,7 @@ void make_mesh(const Scenario& s, Scene& scene) {
   mesh::require_size(body.mesh.vertices, origin);
   const std::string warning = mesh::require_usable(mesh::compute_quality(body.mesh), origin);
   if (!warning.empty()) scene.notes.push_back(warning);
+  mesh::sort_tets(body.mesh);
   body.topology = mesh::make_topology(body.mesh);
   if (body.skin.num_triangles() > 0)
     body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, origin);

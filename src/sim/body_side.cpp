@@ -11,6 +11,7 @@
 #include "base/ordered_sum.h"
 #include "base/parallel.h"
 #include "material/plasticity.h"
+#include "mesh/order.h"
 
 namespace argil::sim {
 namespace {
@@ -364,8 +365,8 @@ Frame BodySide::make_frame(const HandPose& hand) const {
   frame.tick = hand.ticks;
   frame.time = static_cast<double>(hand.ticks) * m_params.rates.haptic_period;
   frame.position = m_state.solid.x.leftCols(m_body.mesh.num_vertices());
-  frame.saturation = m_water.saturation();
-  frame.plastic_strain = mean_plastic_strain();
+  frame.saturation = mesh::in_file_order(m_body.mesh, m_water.saturation());
+  frame.plastic_strain = mesh::in_file_order(m_body.mesh, mean_plastic_strain());
   if (m_body.skin_embedding.num_points() > 0) {
     embed::interpolate_positions(m_body.skin_embedding, m_solid.elements().nodes, m_state.solid.x,
                                  frame.skin_position);

@@ -65,6 +65,7 @@ Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology
     lay_out_quadratic(mesh, topology, e);
   else
     lay_out_linear(mesh, topology, e);
+  e.numbers = mesh.numbers;
   const int N = e.nodes_per_tet;
   const int Q = e.points_per_tet;
   e.weight.resize(static_cast<Eigen::Index>(Q) * mesh.num_tets());

@@ -20,12 +20,18 @@ struct Elements {
   std::vector<int> node_begin;    ///< n+1: where each node's corners begin in node_corners
   std::vector<int> node_corners;  ///< N·tet + corner of every tet around a node, tets increasing
   Triangles surface;              ///< boundary as flat triangles between nodes, outward
+  std::vector<int> numbers;       ///< of the tets in the mesh's file; empty: their own
   int surface_per_face = 1;       ///< of them per boundary face of the mesh, in its order
 
   int num_tets() const { return static_cast<int>(nodes.cols()); }
   int num_nodes() const { return static_cast<int>(rest.cols()); }
   int num_points() const { return static_cast<int>(weight.size()); }
   int tet_of_point(int point) const { return point / points_per_tet; }
+  /// What the tet of a point is called in messages.
+  int number_of_point(int point) const {
+    const int tet = tet_of_point(point);
+    return numbers.empty() ? tet : numbers[static_cast<std::size_t>(tet)];
+  }
   /// Share of a tet's mass at its node i in time (p2: diagonal of the consistent mass, 6 and 32 times V/420,
   /// over their sum), and of its body force in statics.
   double mass_share(int i) const { return nodes_per_tet == 4 ? 0.25 : (i < 4 ? 6.0 : 32.0) / 216.0; }

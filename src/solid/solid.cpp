@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include "base/check.h"
 #include "base/ordered_sum.h"
 #include "base/parallel.h"
+#include "mesh/order.h"
 #include "solid/tet_lanes.h"
 
 namespace argil::solid {
@@ -67,26 +67,6 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
 
 namespace {
 
-/// Puts points that are near one another in space near one another in the list, whatever order the mesh has:
-/// along the curve that visits the octants of a cube one after the other [Morton1966].
-void sort_along_curve(const Points& x, std::vector<int>& list) {
-  constexpr int kBits = 20;
-  const Vec3 low = x.rowwise().minCoeff();
-  const double scale = std::ldexp(1.0, kBits) / std::max((x.colwise() - low).maxCoeff(), 1e-300);
-  std::vector<std::pair<std::uint64_t, int>> codes;
-  for (const int n : list) {
-    std::uint64_t code = 0;
-    for (int k = 0; k < 3; ++k) {
-      const auto cell =
-          static_cast<std::uint64_t>(std::min((x(k, n) - low(k)) * scale, std::ldexp(1.0, kBits) - 1.0));
-      for (int bit = 0; bit < kBits; ++bit) code |= (cell >> bit & 1) << (3 * bit + k);
-    }
-    codes.emplace_back(code, n);
-  }
-  std::sort(codes.begin(), codes.end());
-  for (std::size_t i = 0; i < codes.size(); ++i) list[i] = codes[i].second;
-}
-
 /// Of all numbers, NaN where any of them is not finite.
 template <class Numbers>
 double find_least(const Numbers& numbers) {
@@ -116,7 +96,7 @@ void Solid::number_rows() {
         m_placed_components.push_back({n, k});
     if (!m_constraints.is_held(n)) m_node_of_row.push_back(n);
   }
-  sort_along_curve(m_elements.rest, m_node_of_row);
+  mesh::sort_along_curve(m_elements.rest, m_node_of_row);
   for (int row = 0; row < num_free(); ++row) {
     const int n = m_node_of_row[static_cast<std::size_t>(row)];
     m_row_of_node[static_cast<std::size_t>(n)] = row;
@@ -329,7 +309,7 @@ StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frame) {
     m_volume_ratio.minCoeff(&worst);
   else
     while (std::isfinite(m_volume_ratio(worst))) ++worst;
-  return StepStatus::failed({tick, "solid", m_elements.tet_of_point(static_cast<int>(worst)),
+  return StepStatus::failed({tick, "solid", m_elements.number_of_point(static_cast<int>(worst)),
                              "volume ratio det F of a tet", m_volume_ratio(worst),
                              m_params.min_volume_ratio});
 }

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/print.h"
 #include "embed/triangle_tree.h"
+#include "mesh/order.h"
 
 namespace argil::study {
 
@@ -16,7 +17,7 @@ output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulat
                                  const Identity& identity) {
   output::ResultHeader header;
   header.rest_position = simulation.body().mesh.vertices;
-  header.tets = simulation.body().mesh.tets;
+  header.tets = mesh::in_file_order(simulation.body().mesh, simulation.body().mesh.tets);
   header.surface_triangles = simulation.body().topology.boundary;
   header.skin_triangles = simulation.body().skin.triangles;
   header.tool = tool;
