@@ -126,25 +126,22 @@ def kill_two(slurm, job, points):
     def running():
         return slurm.ask("squeue", "-h", "-j", job, "-t", "R", "-o", "%K").split()
 
+    results = points.with_suffix("")
     hit, tried = [], set()
     while len(hit) < 2:
-        fresh = [index for index in running() if index not in tried]
-        if not fresh and not slurm.ask("squeue", "-h", "-j", job).strip():
+        writing = {str(int(file.name.split(".")[0])) for file in results.glob("*.part.h5")} - tried
+        if not writing and not slurm.ask("squeue", "-h", "-j", job).strip():
             raise RuntimeError("the array ended before two tasks could be killed")
-        for index in fresh:
-            result = points.with_suffix("") / f"{int(index):06d}.h5"
-            if not result.with_suffix(".part.h5").exists():
-                continue
+        for index in sorted(writing):
             tried.add(index)
             name = "TERM" if hit else "KILL"
             subprocess.run(["scancel", "--batch", f"--signal={name}", f"{job}_{index}"], capture_output=True)
             while index in running():
                 time.sleep(0.05)
-            if not result.exists():
+            if not (results / f"{int(index):06d}.h5").exists():
                 print(f"SIG{name} to task {index}", flush=True)
                 hit.append(index)
                 break
-        time.sleep(0.02)
     return hit
 
 
