@@ -47,6 +47,8 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
 
 void ShortIteration::exchange_state(Archive& archive, const std::string& prefix) {
   archive.list(prefix + "last_change", m_x);
+  archive.number(prefix + "rest", m_rest);
+  if (archive.is_restoring()) m_is_changed = m_has_solved_all = true;
 }
 
 void ShortIteration::prepare(const BlockMatrix& pattern) {
@@ -121,9 +123,16 @@ SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, 
         m_r.data()[i] = k < 3 ? static_cast<float>(m_product.data()[3 * row + k] / first) : 0.0F;
       }
   });
-  const double share = find_share_of_last(whole, num_rows);
+  constexpr double kUseful = 0.7;  // of the residual, at most that is left by the first direction
+  constexpr int kRest = 4;         // solves without it after one that left more
+  const bool tries_last = m_rest == 0;
+  const double share = tries_last ? find_share_of_last(whole, num_rows) : 0.0;
   advance(share, 0.0);  // z = D⁻¹ r
   double residual = std::sqrt(sums.rr);
+  if (!tries_last)
+    --m_rest;
+  else if (share != 0.0 && residual > kUseful)
+    m_rest = kRest;
   double last_rz = std::numeric_limits<double>::infinity();  // later directions know nothing of the first
   double curvature = 0.0;  // p·A p, by the recurrence that holds while directions are conjugate
   int iterations = share != 0.0 ? 1 : 0;

@@ -11,8 +11,8 @@ namespace argil::linear {
 /// The method of ConjugateGradients over the diagonal blocks, in floats but for its sums: what is added to x
 /// is found from b − A x, which is taken in double, so that floats round only what the solve changes. For
 /// tolerances above kRoomForFloats. Each iteration goes over the rows twice. The first goes along what the
-/// last solve added to its x: systems of successive steps have like solutions [Fischer1998]. Bits do not
-/// depend on `threads`.
+/// last solve added to its x, as systems of successive steps have like solutions [Fischer1998]; where that
+/// proves of little use, none does for a while. Bits do not depend on `threads`.
 class ShortIteration {
  public:
   explicit ShortIteration(int threads) : m_runs(threads) {}
@@ -36,12 +36,13 @@ class ShortIteration {
 
   OrderedRuns m_runs;
   const std::vector<int>* m_visited = nullptr;
-  std::vector<int> m_solved;  // runs of the last solve
-  bool m_has_solved_all = true;
+  std::vector<int> m_solved;      // runs of the last solve
+  bool m_has_solved_all = false;  // or may have
   bool m_is_changed = true;
   ShortBlocks m_blocks;
   Points m_product;
   std::vector<float> m_r, m_z, m_w, m_p, m_q, m_x;  // four a row; x stays for the next solve
+  int m_rest = 0;                                   // solves to come that do not begin with the last x
   std::vector<double> m_products;                   // z·w of each run
   std::vector<ShortBlocks::Sums> m_sums;            // of each run
 };

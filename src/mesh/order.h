@@ -6,8 +6,9 @@
 
 namespace argil::mesh {
 
-/// Puts the numbers of points that are near one another in space near one another in the list: along the curve
-/// that visits the octants of a cube one after the other [Morton1966].
+/// Puts the numbers of points that are near one another in space near one another in the list, and none far
+/// from the next: along Hilbert's curve, which goes through all cells of a cube from neighbour to neighbour
+/// [Hilbert1891; Skilling2004].
 void sort_along_curve(const Points& x, std::vector<int>& list);
 
 /// Puts the tets in the order of their centroids along that curve, with their cell fields, and notes the

@@ -25,9 +25,7 @@ class ActiveSet {
   void wake_batches(const std::vector<char>& of_batch);  ///< runs at those that move and for which it is set
   void make_drowsy(int run);
   bool is_awake(int run) const { return m_state[static_cast<std::size_t>(run)] == kAwake; }
-  bool is_row_awake(Eigen::Index row) const {
-    return is_awake(static_cast<int>(row / OrderedRuns::kLength));
-  }
+  bool is_row_awake(Eigen::Index row) const { return is_awake(static_cast<int>(row / OrderedRuns::kLength)); }
   int num_awake_rows() const { return m_num_awake_rows; }
   int num_runs() const { return static_cast<int>(m_state.size()); }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <thread>
 #include <vector>
 
 #include "mesh/order.h"
@@ -47,6 +48,8 @@ StepStatus run(const mesh::TetMesh& mesh, double tolerance, int num_steps, int t
   for (int t = 0; t < mesh.num_tets(); ++t) solid.set_material(t, {lambda, mu, 0.0});
   solid::SolidState state = solid.make_rest_state();
   ARGIL_TRY(solid.update_kinematics(state.x, 0));
+  std::this_thread::sleep_for(
+      std::chrono::milliseconds(300));  // until threads that libraries start have come to rest
   Points force = Points::Zero(3, state.x.cols());
   const solid::StepLoads loads{force};
   std::vector<double> seconds;
