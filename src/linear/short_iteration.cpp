@@ -84,8 +84,9 @@ void ShortIteration::clear_left_rows() {
   if (m_visited) m_solved = *m_visited;
 }
 
-/// z holds what the last solve found: the share of it that takes most of the error away, z·r / z·A z.
-double ShortIteration::find_share_of_last(Operator& whole, std::ptrdiff_t num_rows) {
+/// z holds what the last solve found: the share of it that takes most of the error's energy away, z·r / z·A
+/// z.
+ShortIteration::FirstStep ShortIteration::find_first_step(Operator& whole, std::ptrdiff_t num_rows) {
   m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
     const auto run = static_cast<std::size_t>(i);
     m_products[run] = m_blocks.multiply(begin, end, m_z.data(), m_w.data());
@@ -95,7 +96,8 @@ double ShortIteration::find_share_of_last(Operator& whole, std::ptrdiff_t num_ro
   for (const double run : m_products) curvature += run;
   double along = 0.0;
   for (const ShortBlocks::Sums& run : m_sums) along += run.rz;
-  return curvature > 0.0 ? along / curvature : 0.0;
+  if (!(curvature > 0.0)) return {};
+  return {along / curvature, along * along / curvature};
 }
 
 /// A x = r / `first`, which has the norm 1, until what is left of it is below `goal`.
@@ -123,19 +125,16 @@ SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, 
         m_r.data()[i] = k < 3 ? static_cast<float>(m_product.data()[3 * row + k] / first) : 0.0F;
       }
   });
-  constexpr double kUseful = 0.7;  // of the residual, at most that is left by the first direction
-  constexpr int kRest = 4;         // solves without it after one that left more
+  constexpr double kUseful = 0.5;  // share of the energy that a solve takes away
+  constexpr int kRest = 4;         // solves without the last solution after one that it was of less use to
   const bool tries_last = m_rest == 0;
-  const double share = tries_last ? find_share_of_last(whole, num_rows) : 0.0;
-  advance(share, 0.0);  // z = D⁻¹ r
+  const FirstStep first_step = tries_last ? find_first_step(whole, num_rows) : FirstStep{};
+  advance(first_step.share, 0.0);  // z = D⁻¹ r
   double residual = std::sqrt(sums.rr);
-  if (!tries_last)
-    --m_rest;
-  else if (share != 0.0 && residual > kUseful)
-    m_rest = kRest;
+  double energy = first_step.energy;
   double last_rz = std::numeric_limits<double>::infinity();  // later directions know nothing of the first
   double curvature = 0.0;  // p·A p, by the recurrence that holds while directions are conjugate
-  int iterations = share != 0.0 ? 1 : 0;
+  int iterations = first_step.share != 0.0 ? 1 : 0;
   bool is_positive = true;
   // Written so that a NaN residual leaves the loop as not converged.
   while (residual > goal && iterations < max_iterations) {
@@ -150,9 +149,14 @@ SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, 
     is_positive = curvature > 0.0;
     if (!is_positive) break;
     advance(last_rz / curvature, beta);
+    energy += last_rz * last_rz / curvature;
     residual = std::sqrt(sums.rr);
     ++iterations;
   }
+  if (!tries_last)
+    --m_rest;
+  else if (first_step.share != 0.0 && first_step.energy < kUseful * energy)
+    m_rest = kRest;
   return {is_positive && residual <= goal, iterations,
           is_positive ? residual : std::numeric_limits<double>::infinity()};
 }

@@ -31,7 +31,12 @@ class ShortIteration {
 
  private:
   void clear_left_rows();
-  double find_share_of_last(Operator& whole, std::ptrdiff_t num_rows);
+  /// Along what the last solve found.
+  struct FirstStep {
+    double share = 0.0;
+    double energy = 0.0;  ///< that it takes off the error's
+  };
+  FirstStep find_first_step(Operator& whole, std::ptrdiff_t num_rows);
   SolveReport iterate(Operator& whole, double first, double goal, int max_iterations);
 
   OrderedRuns m_runs;

@@ -13,6 +13,9 @@
 
 namespace argil::solid {
 
+/// Batches whose least det F is kept together.
+constexpr Eigen::Index kBatchGroup = 64;
+
 Solid::~Solid() = default;
 Solid::Solid(Solid&&) noexcept = default;
 
@@ -45,6 +48,7 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   m_is_tet_changed.resize(m_material.size(), 1);
   const Eigen::Index num_batches = (m_elements.num_tets() + kLanes - 1) / kLanes;
   m_batch_volume_ratio.setOnes(num_batches);
+  m_group_volume_ratio.setOnes((num_batches + kBatchGroup - 1) / kBatchGroup);
   m_is_batch_new.resize(static_cast<std::size_t>(num_batches), 1);
   m_batch_energy.setZero(num_batches);
   m_batch_plastic_strain.setZero(num_batches);
@@ -288,6 +292,24 @@ void Solid::set_quadratic_motion(const Points& x, bool keeps_frame) {
   });
 }
 
+/// det F where it is least; of groups of batches in which none has moved it is known.
+double Solid::find_least_of_batches() {
+  const Eigen::Index num_batches = m_batch_volume_ratio.size();
+  const auto renew = [&](Eigen::Index group) {
+    const Eigen::Index begin = kBatchGroup * group;
+    m_group_volume_ratio(group) =
+        find_least(m_batch_volume_ratio.segment(begin, std::min(kBatchGroup, num_batches - begin)));
+  };
+  if (!m_region || m_has_old_nodes) {
+    for (Eigen::Index group = 0; group < m_group_volume_ratio.size(); ++group) renew(group);
+  } else {
+    Eigen::Index last = -1;
+    for (const int batch : m_region->batches())
+      if (batch / kBatchGroup != last) renew(last = batch / kBatchGroup);
+  }
+  return find_least(m_group_volume_ratio);
+}
+
 StepStatus Solid::update_kinematics(const Points& x, Tick tick) {
   return update_motion(x, tick, false);
 }
@@ -298,8 +320,7 @@ StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frame) {
     set_tet_motion(x, keeps_frame);
   else
     set_quadratic_motion(x, keeps_frame);
-  m_min_volume_ratio =
-      m_elements.nodes_per_tet == 4 ? find_least(m_batch_volume_ratio) : find_least(m_volume_ratio);
+  m_min_volume_ratio = m_elements.nodes_per_tet == 4 ? find_least_of_batches() : find_least(m_volume_ratio);
   const bool finite = std::isfinite(m_min_volume_ratio);
   // Strain of the linear model has no inside to turn out; in statics its solution is what was asked for.
   const bool may_invert = m_is_static && m_params.model == StrainModel::linear;

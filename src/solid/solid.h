@@ -318,6 +318,7 @@ class Solid {
   linear::SolveReport solve_system(const StepLoads& loads, bool is_first);
   StepStatus search_line(const StepLoads& loads, Tick tick);
   void set_iterate(double share);
+  double find_least_of_batches();
   double gravity_mass(Eigen::Index node) const;
   bool is_newton() const { return m_is_static || m_params.iteration == Iteration::newton; }
   bool is_explicit() const { return !m_is_static && m_params.integrator == Integrator::symplectic_euler; }
@@ -341,6 +342,7 @@ class Solid {
   TensorField m_strain;
   Field m_volume_ratio;                      // det F
   Field m_batch_volume_ratio;                // p1: least of each run of kLanes tets
+  Field m_group_volume_ratio;                // p1: least of each group of these runs
   mutable std::vector<char> m_is_batch_new;  // p1: have its tets moved since they were summarised?
   mutable Field m_batch_energy, m_batch_plastic_strain;
   double m_min_volume_ratio = 1.0;
