@@ -84,8 +84,8 @@ void ShortIteration::clear_left_rows() {
   if (m_visited) m_solved = *m_visited;
 }
 
-/// z holds what the last solve found: the share of it that takes most of the error's energy away, z·r / z·A
-/// z.
+/// z holds what the last solve found: the share of it that takes most of the error's energy away, z·r over
+/// z·A z.
 ShortIteration::FirstStep ShortIteration::find_first_step(Operator& whole, std::ptrdiff_t num_rows) {
   m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
     const auto run = static_cast<std::size_t>(i);

@@ -142,6 +142,7 @@ def kill_two(slurm, job, points):
                 print(f"SIG{name} to task {index}", flush=True)
                 hit.append(index)
                 break
+        time.sleep(0.005)
     return hit
 
 

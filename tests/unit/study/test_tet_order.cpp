@@ -99,7 +99,6 @@ TEST_F(TetOrder, OfTheFileIsThatOfMessages) {
   ASSERT_GE(other_element, 0);
   EXPECT_EQ(element, place[static_cast<std::size_t>(other_element)]);
   ball.cell_fields["E"](17) = -1.0;
-  ball.cell_fields["E"](17) = -1.0;
   ARGIL_EXPECT_THROW_WITH(run(ball, "ball", {}), InputError, "tet 17");
   testing::internal::GetCapturedStderr();
 }
