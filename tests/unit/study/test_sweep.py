@@ -238,6 +238,7 @@ class Sweep(unittest.TestCase):
         process.kill()
         process.wait()
         self.assertTrue(part.exists())
+        subprocess.run([ARGIL, "info", part], check=True, capture_output=True)  # finishes a flush that the kill broke off
 
     def test_what_is_there_of_a_point_is_gone_on_with_unless_it_is_damaged(self):
         self.expand(list=[{"/output/checkpoint_period_ticks": 20}])
