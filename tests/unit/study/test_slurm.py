@@ -7,6 +7,7 @@ Usage: test_slurm.py ARGIL [SWEEP.json] [--keep FOLDER]
 import argparse
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -120,28 +121,56 @@ class Slurm:
             time.sleep(0.5)
 
 
+def find_tasks(points):
+    """Processes that run points of the array: index → number of the process."""
+    tasks = {}
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            if str(points).encode() in (process / "cmdline").read_bytes():
+                index = [value for value in (process / "environ").read_bytes().split(b"\0") if value.startswith(b"SLURM_ARRAY_TASK_ID=")]
+                tasks.update({int(value.split(b"=")[1]): int(process.name) for value in index})
+        except OSError:
+            pass  # has ended
+    return tasks
+
+
+def has_pending(process, number):
+    status = Path(f"/proc/{process}/status").read_text()
+    return int(status.split("ShdPnd:")[1].split()[0], 16) >> (number - 1) & 1
+
+
+def signal_task(job, index, process, name):
+    """Through Slurm. The task stands still until the signal is there, so that it cannot end before."""
+    try:
+        os.kill(process, signal.SIGSTOP)
+        subprocess.run(["scancel", "--batch", f"--signal={name}", f"{job}_{index}"], capture_output=True)
+        while not has_pending(process, getattr(signal, f"SIG{name}")):
+            time.sleep(0.01)
+        os.kill(process, signal.SIGCONT)
+        while Path(f"/proc/{process}").exists():
+            time.sleep(0.01)
+    except OSError:
+        pass  # is gone
+
+
 def kill_two(slurm, job, points):
     """Sends SIGKILL to a task and SIGTERM to another, each while it writes its file, and waits until it is gone; one that
-    had just ended does not count. Returns their indices."""
-    def running():
-        return slurm.ask("squeue", "-h", "-j", job, "-t", "R", "-o", "%K").split()
-
+    was about to end does not count. Returns their indices."""
     results = points.with_suffix("")
     hit, tried = [], set()
     while len(hit) < 2:
-        writing = {str(int(file.name.split(".")[0])) for file in results.glob("*.part.h5")} - tried
-        if not writing and not slurm.ask("squeue", "-h", "-j", job).strip():
+        tasks = find_tasks(points)
+        if not tasks and not slurm.ask("squeue", "-h", "-j", job).strip():
             raise RuntimeError("the array ended before two tasks could be killed")
-        for index in sorted(writing):
+        for index, process in tasks.items():
+            if len(hit) == 2 or index in tried or not (results / f"{index:06d}.part.h5").exists():
+                continue
             tried.add(index)
             name = "TERM" if hit else "KILL"
-            subprocess.run(["scancel", "--batch", f"--signal={name}", f"{job}_{index}"], capture_output=True)
-            while index in running():
-                time.sleep(0.05)
-            if not (results / f"{int(index):06d}.h5").exists():
+            signal_task(job, index, process, name)
+            if not (results / f"{index:06d}.h5").exists():
                 print(f"SIG{name} to task {index}", flush=True)
                 hit.append(index)
-                break
         time.sleep(0.005)
     return hit
 
@@ -174,7 +203,7 @@ def main():
             again = sweep("missing", points)
             print(f"missing after job {job}: {again}")
             spans = [span.split("-") for span in again.split(",")]
-            if {n for span in spans for n in range(int(span[0]), int(span[-1]) + 1)} != set(map(int, hit)):
+            if {n for span in spans for n in range(int(span[0]), int(span[-1]) + 1)} != set(hit):
                 raise RuntimeError(f"tasks {hit} were killed")
             slurm.finish(slurm.submit(again, points, argil))
         print(sweep("collect", points, "-o", folder / "slurm"))
