@@ -32,29 +32,51 @@ ARGIL_INLINE void add_block(const float* block, const float* x, RowSum& sum) {
   sum.last += block[8] * p[2];
 }
 
-/// Rows begin … end−1 of y = A x; returns x·y of them. Blocks of even and odd places apart: no sum waits for
-/// the one before it.
+/// Row `row` of yₖ = A xₖ. Blocks of even and odd places apart: no sum waits for the one before it.
+template <int Count>
+ARGIL_INLINE void multiply_row(const BlockMatrix& pattern, const float* values,
+                               const float* const (&x)[Count], std::ptrdiff_t row, Floats4 (&y)[Count]) {
+  const int* column = pattern.column.data();
+  int b = pattern.row_begin.data()[row];
+  const int last = pattern.row_begin.data()[row + 1];
+  const float* block = values + 9 * static_cast<std::ptrdiff_t>(b);
+  RowSum even[Count], odd[Count];
+  for (; b + 1 < last; b += 2, block += 18) {
+    const std::ptrdiff_t at_even = 4 * static_cast<std::ptrdiff_t>(column[b]);
+    const std::ptrdiff_t at_odd = 4 * static_cast<std::ptrdiff_t>(column[b + 1]);
+    for (int k = 0; k < Count; ++k) add_block(block, x[k] + at_even, even[k]);
+    for (int k = 0; k < Count; ++k) add_block(block + 9, x[k] + at_odd, odd[k]);
+  }
+  for (int k = 0; k < Count; ++k) {
+    if (b < last) add_block(block, x[k] + 4 * static_cast<std::ptrdiff_t>(column[b]), even[k]);
+    const Floats8 sum = even[k].eight + odd[k].eight;
+    y[k] = Floats4{sum[0] + sum[3] + sum[6], sum[1] + sum[4] + sum[7],
+                   sum[2] + sum[5] + (even[k].last + odd[k].last), 0.0F};
+  }
+}
+
+/// Rows begin … end−1 of y = A x; returns x·y of them.
 ARGIL_EVERY_PROCESSOR double multiply_rows(const BlockMatrix& pattern, const float* values, const float* x,
                                            std::ptrdiff_t begin, std::ptrdiff_t end, float* y) {
-  const int* column = pattern.column.data();
   Floats4 dot = {};
   for (std::ptrdiff_t row = begin; row < end; ++row) {
-    int b = pattern.row_begin.data()[row];
-    const int last = pattern.row_begin.data()[row + 1];
-    const float* block = values + 9 * static_cast<std::ptrdiff_t>(b);
-    RowSum even, odd;
-    for (; b + 1 < last; b += 2, block += 18) {
-      add_block(block, x + 4 * static_cast<std::ptrdiff_t>(column[b]), even);
-      add_block(block + 9, x + 4 * static_cast<std::ptrdiff_t>(column[b + 1]), odd);
-    }
-    if (b < last) add_block(block, x + 4 * static_cast<std::ptrdiff_t>(column[b]), even);
-    const Floats8 sum = even.eight + odd.eight;
-    const Floats4 out = {sum[0] + sum[3] + sum[6], sum[1] + sum[4] + sum[7],
-                         sum[2] + sum[5] + (even.last + odd.last), 0.0F};
-    *four_at(y + 4 * row) = out;
-    dot += out * *four_at(x + 4 * row);
+    Floats4 out[1];
+    multiply_row<1>(pattern, values, {x}, row, out);
+    *four_at(y + 4 * row) = out[0];
+    dot += out[0] * *four_at(x + 4 * row);
   }
   return static_cast<double>(dot[0] + dot[1] + dot[2]);
+}
+
+ARGIL_EVERY_PROCESSOR void multiply_rows_by_several(const BlockMatrix& pattern, const float* values,
+                                                    const float* const (&x)[ShortBlocks::kSeveral],
+                                                    std::ptrdiff_t begin, std::ptrdiff_t end,
+                                                    float* const (&y)[ShortBlocks::kSeveral]) {
+  for (std::ptrdiff_t row = begin; row < end; ++row) {
+    Floats4 out[ShortBlocks::kSeveral];
+    multiply_row<ShortBlocks::kSeveral>(pattern, values, x, row, out);
+    for (int k = 0; k < ShortBlocks::kSeveral; ++k) *four_at(y[k] + 4 * row) = out[k];
+  }
 }
 
 ARGIL_EVERY_PROCESSOR void advance_rows(const float* inverse, float alpha, float beta, const float* w,
@@ -78,11 +100,40 @@ ARGIL_EVERY_PROCESSOR void advance_rows(const float* inverse, float alpha, float
   sums = {static_cast<double>(rr[0] + rr[1] + rr[2]), static_cast<double>(rz[0] + rz[1] + rz[2])};
 }
 
-ARGIL_EVERY_PROCESSOR double compute_dot_of_rows(const float* a, const float* b, std::ptrdiff_t begin,
-                                                 std::ptrdiff_t end) {
-  Floats4 dot = {};
-  for (std::ptrdiff_t i = 4 * begin; i < 4 * end; i += 4) dot += *four_at(a + i) * *four_at(b + i);
-  return static_cast<double>(dot[0] + dot[1] + dot[2]);
+constexpr int kSeveral = ShortBlocks::kSeveral;
+
+ARGIL_EVERY_PROCESSOR void compute_products_of_rows(const float* const (&x)[kSeveral],
+                                                    const float* const (&y)[kSeveral], const float* r,
+                                                    std::ptrdiff_t begin, std::ptrdiff_t end,
+                                                    ShortBlocks::Products& products) {
+  Floats4 xy[kSeveral][kSeveral] = {};
+  Floats4 xr[kSeveral] = {};
+  for (std::ptrdiff_t i = 4 * begin; i < 4 * end; i += 4)
+    for (int k = 0; k < kSeveral; ++k) {
+      for (int j = k; j < kSeveral; ++j) xy[k][j] += *four_at(x[j] + i) * *four_at(y[k] + i);
+      xr[k] += *four_at(x[k] + i) * *four_at(r + i);
+    }
+  const auto add = [](const Floats4& a) __attribute__((always_inline)) {
+    return static_cast<double>(a[0] + a[1] + a[2]);
+  };
+  for (int k = 0; k < kSeveral; ++k) {
+    for (int j = k; j < kSeveral; ++j) products.xy[k][j] = add(xy[k][j]);
+    products.xr[k] = add(xr[k]);
+  }
+}
+
+ARGIL_EVERY_PROCESSOR void combine_rows(const float (&a)[kSeveral], const float* const (&d)[kSeveral],
+                                        const float* const (&y)[kSeveral], std::ptrdiff_t begin,
+                                        std::ptrdiff_t end, float* x, float* r) {
+  for (std::ptrdiff_t i = 4 * begin; i < 4 * end; i += 4) {
+    Floats4 of_d = {}, of_y = {};
+    for (int k = 0; k < kSeveral; ++k) {
+      of_d += a[k] * *four_at(d[k] + i);
+      of_y += a[k] * *four_at(y[k] + i);
+    }
+    *four_at(x + i) = of_d;
+    *four_at(r + i) -= of_y;
+  }
 }
 
 ARGIL_EVERY_PROCESSOR void shorten(const double* from, std::ptrdiff_t count, float* to) {
@@ -105,32 +156,53 @@ void ShortBlocks::prepare(const BlockMatrix& pattern) {
 
 void ShortBlocks::update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs) {
   prepare(matrix);
+  const bool has_unstored = whole.has_unstored();
   runs.each(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (auto row = static_cast<std::size_t>(begin); row < static_cast<std::size_t>(end); ++row) {
-      m_diagonal.middleCols<3>(3 * static_cast<Eigen::Index>(row)) = matrix.block(matrix.diagonal[row]);
+      const auto diagonal = matrix.block(matrix.diagonal[row]);
+      if (has_unstored) m_diagonal.middleCols<3>(3 * static_cast<Eigen::Index>(row)) = diagonal;
       if (m_revision[row] == matrix.revision[row]) continue;
       m_revision[row] = matrix.revision[row];
       const auto first = 9 * static_cast<std::ptrdiff_t>(matrix.row_begin[row]);
       const auto last = 9 * static_cast<std::ptrdiff_t>(matrix.row_begin[row + 1]);
       shorten(matrix.values.data() + first, last - first, m_values.data() + first);
+      if (!has_unstored) set_inverse(static_cast<std::ptrdiff_t>(row), diagonal);
     }
   });
+  if (!has_unstored) return;
   whole.add_unstored_diagonal(m_diagonal);
   runs.each(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    for (std::ptrdiff_t row = begin; row < end; ++row) {
-      const Mat3 inverse = invert_block(m_diagonal.middleCols<3>(3 * row));
-      for (int k = 0; k < 9; ++k)
-        m_inverse.data()[12 * row + 4 * (k / 3) + k % 3] = static_cast<float>(inverse(k));
-    }
+    for (std::ptrdiff_t row = begin; row < end; ++row) set_inverse(row, m_diagonal.middleCols<3>(3 * row));
   });
 }
 
-double ShortBlocks::compute_dot(std::ptrdiff_t begin, std::ptrdiff_t end, const float* a, const float* b) {
-  return compute_dot_of_rows(a, b, begin, end);
+void ShortBlocks::set_inverse(std::ptrdiff_t row, const Mat3& block) {
+  const Mat3 inverse = invert_block(block);
+  for (int k = 0; k < 9; ++k)
+    m_inverse.data()[12 * row + 4 * (k / 3) + k % 3] = static_cast<float>(inverse(k));
 }
 
 double ShortBlocks::multiply(std::ptrdiff_t begin, std::ptrdiff_t end, const float* x, float* y) const {
   return multiply_rows(*m_pattern, m_values.data(), x, begin, end, y);
+}
+
+void ShortBlocks::multiply_several(std::ptrdiff_t begin, std::ptrdiff_t end,
+                                   const float* const (&x)[kSeveral], float* const (&y)[kSeveral]) const {
+  multiply_rows_by_several(*m_pattern, m_values.data(), x, begin, end, y);
+}
+
+ShortBlocks::Products ShortBlocks::compute_products(std::ptrdiff_t begin, std::ptrdiff_t end,
+                                                    const float* const (&x)[kSeveral],
+                                                    const float* const (&y)[kSeveral], const float* r) {
+  Products products;
+  compute_products_of_rows(x, y, r, begin, end, products);
+  return products;
+}
+
+void ShortBlocks::combine(std::ptrdiff_t begin, std::ptrdiff_t end, const float (&a)[kSeveral],
+                          const float* const (&d)[kSeveral], const float* const (&y)[kSeveral], float* x,
+                          float* r) {
+  combine_rows(a, d, y, begin, end, x, r);
 }
 
 ShortBlocks::Sums ShortBlocks::advance(std::ptrdiff_t begin, std::ptrdiff_t end, float alpha, float beta,

@@ -32,14 +32,31 @@ class ShortBlocks {
   };
 
   // Rows begin … end−1:
-  static double compute_dot(std::ptrdiff_t begin, std::ptrdiff_t end, const float* a, const float* b);
   double multiply(std::ptrdiff_t begin, std::ptrdiff_t end, const float* x,
                   float* y) const;  ///< y = A x, x·y
+  /// yₖ = A xₖ of several x, for which the matrix is read once.
+  static constexpr int kSeveral = 3;
+  void multiply_several(std::ptrdiff_t begin, std::ptrdiff_t end, const float* const (&x)[kSeveral],
+                        float* const (&y)[kSeveral]) const;
+  /// Of several x and y with one another, i ≥ k, and of x with r.
+  struct Products {
+    double xy[kSeveral][kSeveral] = {};  ///< [k][i]: xᵢ·yₖ
+    double xr[kSeveral] = {};
+  };
+  static Products compute_products(std::ptrdiff_t begin, std::ptrdiff_t end,
+                                   const float* const (&x)[kSeveral], const float* const (&y)[kSeveral],
+                                   const float* r);
+  /// x = Σ aₖ dₖ, r −= Σ aₖ yₖ.
+  static void combine(std::ptrdiff_t begin, std::ptrdiff_t end, const float (&a)[kSeveral],
+                      const float* const (&d)[kSeveral], const float* const (&y)[kSeveral], float* x,
+                      float* r);
   /// p = z + β p, q = w + β q, x += α p, r −= α q, z = D⁻¹ r.
   Sums advance(std::ptrdiff_t begin, std::ptrdiff_t end, float alpha, float beta, const float* w,
                const Iterate& to) const;
 
  private:
+  void set_inverse(std::ptrdiff_t row, const Mat3& block);
+
   const BlockMatrix* m_pattern = nullptr;
   std::vector<float> m_values;            // 9 a block
   std::vector<std::uint32_t> m_revision;  // of the rows that they are

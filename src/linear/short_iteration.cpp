@@ -41,19 +41,22 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
       for (std::ptrdiff_t k = 0; k < 3; ++k)
         x.data()[3 * row + k] += first * static_cast<double>(m_x.data()[4 * row + k]);
   });
-  if (!report.converged) std::fill(m_x.begin(), m_x.end(), 0.0F);
+  if (report.converged)
+    m_last.keep(m_runs, num_rows, m_x.data(), first);
+  else
+    m_last.clear(0, num_rows);
   return report;
 }
 
 void ShortIteration::exchange_state(Archive& archive, const std::string& prefix) {
-  archive.list(prefix + "last_change", m_x);
-  archive.number(prefix + "rest", m_rest);
+  m_last.exchange_state(archive, prefix);
   if (archive.is_restoring()) m_is_changed = m_has_solved_all = true;
 }
 
 void ShortIteration::prepare(const BlockMatrix& pattern) {
   const auto num_rows = static_cast<std::size_t>(pattern.num_rows());
   for (std::vector<float>* vector : {&m_r, &m_z, &m_w, &m_p, &m_q, &m_x}) vector->resize(4 * num_rows);
+  m_last.prepare(pattern.num_rows());
   m_product.resize(3, pattern.num_rows());
   m_blocks.prepare(pattern);
 }
@@ -66,11 +69,13 @@ void ShortIteration::visit(const std::vector<int>* runs) {
 
 /// Rows beside those that are visited are read: what the last solve left there goes.
 void ShortIteration::clear_left_rows() {
-  const auto length = 4 * OrderedRuns::kLength;
-  const auto size = static_cast<std::ptrdiff_t>(m_z.size());
+  constexpr std::ptrdiff_t length = OrderedRuns::kLength;
+  const auto size = static_cast<std::ptrdiff_t>(m_z.size() / 4);
   const auto clear = [&](int run) {
-    for (std::vector<float>* vector : {&m_z, &m_x})
-      std::fill(vector->begin() + run * length, vector->begin() + std::min((run + 1) * length, size), 0.0F);
+    const std::ptrdiff_t begin = run * length;
+    const std::ptrdiff_t end = std::min(begin + length, size);
+    std::fill(m_z.begin() + 4 * begin, m_z.begin() + 4 * end, 0.0F);
+    m_last.clear(begin, end);
   };
   const auto is_visited = [&](int run) {
     return !m_visited || std::binary_search(m_visited->begin(), m_visited->end(), run);
@@ -82,22 +87,6 @@ void ShortIteration::clear_left_rows() {
   m_has_solved_all = m_visited == nullptr;
   m_solved.clear();
   if (m_visited) m_solved = *m_visited;
-}
-
-/// z holds what the last solve found: the share of it that takes most of the error's energy away, z·r over
-/// z·A z.
-ShortIteration::FirstStep ShortIteration::find_first_step(Operator& whole, std::ptrdiff_t num_rows) {
-  m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
-    const auto run = static_cast<std::size_t>(i);
-    m_products[run] = m_blocks.multiply(begin, end, m_z.data(), m_w.data());
-    m_sums[run].rz = ShortBlocks::compute_dot(begin, end, m_r.data(), m_z.data());
-  });
-  double curvature = whole.add_unstored(m_z.data(), m_w.data());
-  for (const double run : m_products) curvature += run;
-  double along = 0.0;
-  for (const ShortBlocks::Sums& run : m_sums) along += run.rz;
-  if (!(curvature > 0.0)) return {};
-  return {along / curvature, along * along / curvature};
 }
 
 /// A x = r / `first`, which has the norm 1, until what is left of it is below `goal`.
@@ -118,23 +107,18 @@ SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, 
   };
   m_runs.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row)
-      for (std::ptrdiff_t k = 0; k < 4; ++k) {
-        const std::ptrdiff_t i = 4 * row + k;
-        m_z.data()[i] = m_x.data()[i];
-        m_p.data()[i] = m_q.data()[i] = m_w.data()[i] = m_x.data()[i] = 0.0F;
-        m_r.data()[i] = k < 3 ? static_cast<float>(m_product.data()[3 * row + k] / first) : 0.0F;
-      }
+      for (std::ptrdiff_t k = 0; k < 4; ++k)
+        m_r.data()[4 * row + k] = k < 3 ? static_cast<float>(m_product.data()[3 * row + k] / first) : 0.0F;
+    for (std::vector<float>* vector : {&m_x, &m_z, &m_p, &m_q, &m_w})
+      std::fill(vector->begin() + 4 * begin, vector->begin() + 4 * end, 0.0F);
   });
-  constexpr double kUseful = 0.5;  // share of the energy that a solve takes away
-  constexpr int kRest = 4;         // solves without the last solution after one that it was of less use to
-  const bool tries_last = m_rest == 0;
-  const FirstStep first_step = tries_last ? find_first_step(whole, num_rows) : FirstStep{};
-  advance(first_step.share, 0.0);  // z = D⁻¹ r
+  const LastChanges::Start start = m_last.begin(m_blocks, whole, m_runs, num_rows, m_x.data(), m_r.data());
+  advance(0.0, 0.0);  // z = D⁻¹ r
   double residual = std::sqrt(sums.rr);
-  double energy = first_step.energy;
+  double energy = start.energy;
   double last_rz = std::numeric_limits<double>::infinity();  // later directions know nothing of the first
   double curvature = 0.0;  // p·A p, by the recurrence that holds while directions are conjugate
-  int iterations = first_step.share != 0.0 ? 1 : 0;
+  int iterations = start.products;
   bool is_positive = true;
   // Written so that a NaN residual leaves the loop as not converged.
   while (residual > goal && iterations < max_iterations) {
@@ -153,10 +137,7 @@ SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, 
     residual = std::sqrt(sums.rr);
     ++iterations;
   }
-  if (!tries_last)
-    --m_rest;
-  else if (first_step.share != 0.0 && first_step.energy < kUseful * energy)
-    m_rest = kRest;
+  m_last.judge(start, energy);
   return {is_positive && residual <= goal, iterations,
           is_positive ? residual : std::numeric_limits<double>::infinity()};
 }

@@ -4,15 +4,15 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "linear/last_changes.h"
 #include "linear/short_blocks.h"
 
 namespace argil::linear {
 
 /// The method of ConjugateGradients over the diagonal blocks, in floats but for its sums: what is added to x
 /// is found from b − A x, which is taken in double, so that floats round only what the solve changes. For
-/// tolerances above kRoomForFloats. Each iteration goes over the rows twice. The first goes along what the
-/// last solve added to its x, as systems of successive steps have like solutions [Fischer1998]; where that
-/// proves of little use, none does for a while. Bits do not depend on `threads`.
+/// tolerances above kRoomForFloats. Each iteration goes over the rows twice. Begins with what the last solves
+/// added to their x. Bits do not depend on `threads`.
 class ShortIteration {
  public:
   explicit ShortIteration(int threads) : m_runs(threads) {}
@@ -31,12 +31,6 @@ class ShortIteration {
 
  private:
   void clear_left_rows();
-  /// Along what the last solve found.
-  struct FirstStep {
-    double share = 0.0;
-    double energy = 0.0;  ///< that it takes off the error's
-  };
-  FirstStep find_first_step(Operator& whole, std::ptrdiff_t num_rows);
   SolveReport iterate(Operator& whole, double first, double goal, int max_iterations);
 
   OrderedRuns m_runs;
@@ -45,9 +39,9 @@ class ShortIteration {
   bool m_has_solved_all = false;  // or may have
   bool m_is_changed = true;
   ShortBlocks m_blocks;
+  LastChanges m_last;
   Points m_product;
-  std::vector<float> m_r, m_z, m_w, m_p, m_q, m_x;  // four a row; x stays for the next solve
-  int m_rest = 0;                                   // solves to come that do not begin with the last x
+  std::vector<float> m_r, m_z, m_w, m_p, m_q, m_x;  // four a row
   std::vector<double> m_products;                   // z·w of each run
   std::vector<ShortBlocks::Sums> m_sums;            // of each run
 };

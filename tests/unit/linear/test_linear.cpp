@@ -270,22 +270,21 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EverySolver,
 
 /// A goal ends an iteration early, at a residual that is no larger; a first guess that has reached it stays.
 TEST(IterativeSolver, StopsAtAGoalBeforeItsTolerance) {
+  const Points b = make_random_vector(300, 43);
   for (const double tolerance : {1e-3, 1e-8}) {  // in floats, in double
     for (const SolverKind kind : {SolverKind::pcg_jacobi, SolverKind::pcg_cholesky}) {
-      SolverParams params;
-      params.kind = kind;
-      params.tolerance = tolerance;
-      const auto solver = make_solver(params);
-      BlockMatrix a = make_random_spd(300, 41);
-      MatrixOperator product(a, 1);
-      Points x = Points::Zero(3, 300);
-      solver->solve(a, product, make_random_vector(300, 42), x);  // pcg_cholesky: a factor of this matrix
-      for (int r = 0; r < 300; ++r) {
-        a.block(a.diagonal[static_cast<std::size_t>(r)]) *= 1.0 + 0.5 * (r % 3);
-        ++a.revision[static_cast<std::size_t>(r)];
-      }
-      const Points b = make_random_vector(300, 43);
+      BlockMatrix a;
+      Points x;
       const auto solve = [&](double goal) {
+        a = make_random_spd(300, 41);
+        MatrixOperator product(a, 1);
+        const auto solver = make_solver({.kind = kind, .tolerance = tolerance});
+        x = Points::Zero(3, 300);
+        solver->solve(a, product, make_random_vector(300, 42), x);  // pcg_cholesky: a factor of this matrix
+        for (std::size_t r = 0; r < 300; ++r) {
+          a.block(a.diagonal[r]) *= 1.0 + 0.5 * static_cast<double>(r % 3);
+          ++a.revision[r];
+        }
         solver->set_goal(goal * b.norm());
         x.setZero();
         return solver->solve(a, product, b, x);
@@ -344,26 +343,47 @@ TEST(ShortIteration, TakesTheRowsThatChangedAndGivesEqualBitsOnAnyNumberOfThread
   }
 }
 
-/// Systems of successive steps have like solutions: what the last one added is the first direction.
-TEST(ShortIteration, GoesFirstAlongWhatTheLastSolveAdded) {
-  constexpr double kTolerance = 1e-4;
-  const BlockMatrix a = make_laplacian(60);
-  const Points b = make_random_vector(60, 36);
-  MatrixOperator product(a, 1);
-  ShortIteration iteration(1);
-  const auto count_iterations = [&](const Points& right) {
+/// Systems of successive steps have like solutions: a solve begins with the best of what the last three
+/// added.
+class BeginsWithTheLastChanges : public testing::Test {
+ protected:
+  int count_iterations(const Points& b) {
     Points x = Points::Zero(3, 60);
-    const SolveReport report = iteration.solve(a, product, right, kTolerance, 100, x);
+    const SolveReport report = m_iteration.solve(m_matrix, m_product, b, kTolerance, 100, x);
     EXPECT_TRUE(report.converged);
-    EXPECT_NEAR(report.first, right.norm(), 1e-12 * right.norm());
-    EXPECT_LT((to_dense(a) * x.reshaped() - right.reshaped()).norm(), 1.1 * kTolerance * right.norm());
+    EXPECT_NEAR(report.first, b.norm(), 1e-12 * b.norm());
+    EXPECT_LT((to_dense(m_matrix) * x.reshaped() - b.reshaped()).norm(), 1.1 * kTolerance * b.norm());
     return report.iterations;
-  };
+  }
+  static constexpr double kTolerance = 1e-4;
+  static constexpr int kProducts = 3;
+
+ private:
+  const BlockMatrix m_matrix = make_laplacian(60);
+  MatrixOperator m_product{m_matrix, 1};
+  ShortIteration m_iteration{1};
+};
+
+TEST_F(BeginsWithTheLastChanges, OfASolutionThatIsLikeTheLast) {
+  const Points b = make_random_vector(60, 36);
   const int cold = count_iterations(b);
   EXPECT_GT(cold, 40);
-  EXPECT_EQ(count_iterations(-3.0 * b), 1);  // the very direction
+  EXPECT_EQ(count_iterations(-3.0 * b), kProducts);   // the very direction
+  EXPECT_EQ(count_iterations(1e-50 * b), kProducts);  // beyond what a float holds
+  EXPECT_EQ(count_iterations(1e60 * b), kProducts);
   EXPECT_LT(count_iterations(b + 0.001 * make_random_vector(60, 37)), cold - 10);
-  EXPECT_LE(count_iterations(make_random_vector(60, 38)), cold + 2);  // of no use, and in no one's way
+  EXPECT_LE(count_iterations(make_random_vector(60, 38)), cold + kProducts);  // of no use, in no one's way
+}
+
+TEST_F(BeginsWithTheLastChanges, OfSolutionsThatGoOnAsASquareOfTime) {
+  const Points b = make_random_vector(60, 36);
+  const Points speed = make_random_vector(60, 37);
+  const Points acceleration = make_random_vector(60, 38);
+  std::vector<int> iterations;
+  for (const double t : {1.0, 1.1, 1.2, 1.3, 1.4, 1.5})
+    iterations.push_back(count_iterations(b + t * speed + t * t * acceleration));
+  EXPECT_GT(iterations[0], 40);
+  for (std::size_t i = 3; i < iterations.size(); ++i) EXPECT_LE(iterations[i], 10) << i;
 }
 
 TEST(ShortIteration, TakesNumbersOfAnySize) {

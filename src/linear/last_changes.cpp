@@ -1,0 +1,109 @@
+#include "linear/last_changes.h"
+
+#include <algorithm>
+
+namespace argil::linear {
+namespace {
+
+/// The a for which g·a − ½ aᵀG a is largest. What hardly adds to those before it is left out: rounding would
+/// speak for it.
+Vec3 find_shares(Mat3 G, Vec3 g) {
+  constexpr double kDistinct = 1e-6;  // of the square of a direction's length
+  const Vec3 length = G.diagonal();
+  Vec3 pivot = Vec3::Zero();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (!(G(k, k) > kDistinct * length(k))) continue;
+    pivot(k) = G(k, k);
+    for (Eigen::Index i = k + 1; i < 3; ++i) {
+      const double factor = G(i, k) / pivot(k);
+      for (Eigen::Index j = i; j < 3; ++j) G(j, i) -= factor * G(j, k);
+      g(i) -= factor * g(k);
+    }
+  }
+  Vec3 a = Vec3::Zero();
+  for (Eigen::Index k = 2; k >= 0; --k) {
+    if (pivot(k) == 0.0) continue;
+    double rest = g(k);
+    for (Eigen::Index i = k + 1; i < 3; ++i) rest -= G(i, k) * a(i);
+    a(k) = rest / pivot(k);
+  }
+  return a;
+}
+
+}  // namespace
+
+void LastChanges::prepare(std::ptrdiff_t num_rows) {
+  for (auto* vectors : {&m_d, &m_product})
+    for (std::vector<float>& vector : *vectors) vector.resize(4 * static_cast<std::size_t>(num_rows));
+}
+
+LastChanges::Start LastChanges::begin(const ShortBlocks& matrix, Operator& whole, const OrderedRuns& runs,
+                                      std::ptrdiff_t num_rows, float* x, float* r) {
+  static_assert(kKept == 3);
+  if (m_rest > 0) {
+    --m_rest;
+    return {};
+  }
+  const float* const d[kKept] = {m_d[0].data(), m_d[1].data(), m_d[2].data()};
+  float* const Ad[kKept] = {m_product[0].data(), m_product[1].data(), m_product[2].data()};
+  m_products.resize(static_cast<std::size_t>(runs.count_runs(num_rows)));
+  runs.each(num_rows,
+            [&](std::ptrdiff_t begin, std::ptrdiff_t end) { matrix.multiply_several(begin, end, d, Ad); });
+  for (int k = 0; k < kKept; ++k) whole.add_unstored(d[k], Ad[k]);
+  runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    m_products[static_cast<std::size_t>(i)] = ShortBlocks::compute_products(begin, end, d, Ad, r);
+  });
+  Mat3 G = Mat3::Zero();
+  Vec3 g = Vec3::Zero();
+  for (const ShortBlocks::Products& run : m_products) {
+    for (int k = 0; k < kKept; ++k) {
+      for (int i = k; i < kKept; ++i) G(i, k) += run.xy[k][i];
+      g(k) += run.xr[k];
+    }
+  }
+  if (!(G(0, 0) > 0.0)) return {};  // nothing is kept
+  const Vec3 a = find_shares(G, g);
+  const float share[kKept] = {static_cast<float>(a(0)), static_cast<float>(a(1)), static_cast<float>(a(2))};
+  runs.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    ShortBlocks::combine(begin, end, share, d, Ad, x, r);
+  });
+  return {g.dot(a), kKept};
+}
+
+void LastChanges::judge(const Start& start, double energy) {
+  constexpr double kUseful = 0.5;  // share of the energy
+  constexpr int kLongestRest = 16;
+  if (start.products == 0) return;
+  const bool is_useful = start.energy >= kUseful * energy;
+  m_rest = is_useful ? 0 : m_next_rest;
+  m_next_rest = is_useful ? 1 : std::min(2 * m_next_rest, kLongestRest);
+}
+
+void LastChanges::keep(const OrderedRuns& runs, std::ptrdiff_t num_rows, const float* x, double scale) {
+  constexpr double kLargest = 1e30;  // beside which the new change is nothing
+  const double ratio = m_scale / scale;
+  const float old = ratio < kLargest ? static_cast<float>(ratio) : 0.0F;
+  m_scale = scale;
+  float* const d[kKept] = {m_d[0].data(), m_d[1].data(), m_d[2].data()};
+  runs.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = 4 * begin; i < 4 * end; ++i) {
+      const float growth = x[i] - old * d[0][i];
+      d[2][i] = growth - old * d[1][i];
+      d[1][i] = growth;
+      d[0][i] = x[i];
+    }
+  });
+}
+
+void LastChanges::clear(std::ptrdiff_t begin, std::ptrdiff_t end) {
+  for (std::vector<float>& d : m_d) std::fill(d.begin() + 4 * begin, d.begin() + 4 * end, 0.0F);
+}
+
+void LastChanges::exchange_state(Archive& archive, const std::string& prefix) {
+  for (int k = 0; k < kKept; ++k) archive.list(prefix + "last_change_" + std::to_string(k), m_d[k]);
+  archive.number(prefix + "last_scale", m_scale);
+  archive.number(prefix + "rest", m_rest);
+  archive.number(prefix + "next_rest", m_next_rest);
+}
+
+}  // namespace argil::linear

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/archive.h"
+#include "linear/short_blocks.h"
+
+namespace argil::linear {
+
+/// What the last three solves added to their x. Systems of successive steps have like solutions: the next
+/// solve begins with the combination of these that is nearest to its own [Fischer1998]. Where that proves of
+/// little use, none does for a while, which is the longer the more often that happens.
+class LastChanges {
+ public:
+  static constexpr int kKept = ShortBlocks::kSeveral;
+
+  /// Takes the memory for so many rows; what is kept stays as it is.
+  void prepare(std::ptrdiff_t num_rows);
+
+  /// What a solve of A x = r goes on from.
+  struct Start {
+    double energy = 0.0;  ///< taken away from that of the error, ½ xᵀA x, twice
+    int products = 0;     ///< with the matrix
+  };
+  /// x = Σ aₖ dₖ with the aₖ that take most of the error's energy away, r −= A x; nothing while it rests.
+  Start begin(const ShortBlocks& matrix, Operator& whole, const OrderedRuns& runs, std::ptrdiff_t num_rows,
+              float* x, float* r);
+  /// What begin took away of the energy and what the solve took in all.
+  void judge(const Start& start, double energy);
+  /// What a solve added to its x: `scale` times `x`.
+  void keep(const OrderedRuns& runs, std::ptrdiff_t num_rows, const float* x, double scale);
+  /// Forgets rows begin … end−1.
+  void clear(std::ptrdiff_t begin, std::ptrdiff_t end);
+  void exchange_state(Archive& archive, const std::string& prefix);
+
+ private:
+  // The last change d₀, how much more that was than the one before, d₁, and how much more d₁ grew, d₂: alike
+  // changes have small differences, which stay apart where the changes themselves would not. Four a row, in
+  // units of m_scale.
+  std::vector<float> m_d[kKept];
+  double m_scale = 0.0;
+  std::vector<float> m_product[kKept];            // A dₖ
+  std::vector<ShortBlocks::Products> m_products;  // of each run
+  int m_rest = 0;                                 // solves to come that do without
+  int m_next_rest = 1;                            // after the next one that they were of little use to
+};
+
+}  // namespace argil::linear
