@@ -18,9 +18,7 @@ class OrderedItems {
   /// body(i) for every item.
   template <class Body>
   void each(std::ptrdiff_t count, Body body) const {
-    each_block(count, [&](std::ptrdiff_t /*block*/, std::ptrdiff_t begin, std::ptrdiff_t end) {
-      for (std::ptrdiff_t i = begin; i < end; ++i) body(item(i));
-    });
+    parallel_for(count_visited(count), m_threads, [&](std::ptrdiff_t i) { body(item(i)); });
   }
   /// Σ term(i).
   template <class Term>
@@ -45,20 +43,22 @@ class OrderedItems {
  private:
   static constexpr std::ptrdiff_t kLength = 64;
 
+  std::ptrdiff_t count_visited(std::ptrdiff_t count) const {
+    return m_visited ? static_cast<std::ptrdiff_t>(m_visited->size()) : count;
+  }
   std::ptrdiff_t item(std::ptrdiff_t i) const {
     return m_visited ? (*m_visited)[static_cast<std::size_t>(i)] : i;
   }
   template <class Body>
   void each_block(std::ptrdiff_t count, Body body) const {
-    const std::ptrdiff_t visited = m_visited ? static_cast<std::ptrdiff_t>(m_visited->size()) : count;
+    const std::ptrdiff_t visited = count_visited(count);
     parallel_for((visited + kLength - 1) / kLength, m_threads, [&](std::ptrdiff_t block) {
       body(block, block * kLength, std::min((block + 1) * kLength, visited));
     });
   }
   template <class Term, class Join>
   void find_of_blocks(std::ptrdiff_t count, Term term, Join join) const {
-    const std::size_t visited = m_visited ? m_visited->size() : static_cast<std::size_t>(count);
-    m_of_block.resize((visited + kLength - 1) / kLength);
+    m_of_block.resize(static_cast<std::size_t>((count_visited(count) + kLength - 1) / kLength));
     each_block(count, [&](std::ptrdiff_t block, std::ptrdiff_t begin, std::ptrdiff_t end) {
       double of_block = 0.0;
       for (std::ptrdiff_t i = begin; i < end; ++i) of_block = join(of_block, term(item(i)));

@@ -1,6 +1,8 @@
 // Forces in two passes, each writing one slot an item: tets compute what their corners get, then every node
 // gathers its force from the tets around it in the order of their numbers. The matrix is in matrix.cpp.
 
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "solid/element.h"
 #include "solid/solid.h"
@@ -56,11 +58,19 @@ void Solid::set_tet_forces() {
     each_batch(set);
 }
 
+/// Nodes along the curve: by the thread that has just set the forces around them.
 void Solid::gather(Points& force) const {
-  each_node([&](std::ptrdiff_t node) {
-    const auto n = static_cast<std::size_t>(node);
-    sum_corner_forces(m_corner_force.data(), m_elements.node_corners.data(), m_elements.node_begin[n],
-                      m_elements.node_begin[n + 1], force.data() + 3 * n);
+  constexpr std::size_t kAhead = 2;
+  const std::vector<int>& nodes = m_nodes.visited() ? *m_nodes.visited() : m_nodes_along_curve;
+  const int* corners = m_elements.node_corners.data();
+  parallel_for(static_cast<std::ptrdiff_t>(nodes.size()), m_threads, [&](std::ptrdiff_t item) {
+    const auto i = static_cast<std::size_t>(item);
+    const auto n = static_cast<std::size_t>(nodes[i]);
+    const auto next = static_cast<std::size_t>(nodes[std::min(i + kAhead, nodes.size() - 1)]);
+    __builtin_prefetch(corners + m_elements.node_begin[next]);
+    __builtin_prefetch(corners + m_elements.node_begin[next] + 16);
+    sum_corner_forces(m_corner_force.data(), corners, m_elements.node_begin[n], m_elements.node_begin[n + 1],
+                      force.data() + 3 * n);
   });
 }
 

@@ -32,17 +32,19 @@ ARGIL_INLINE void iterate_rotation(const Real33<Real>& F, Real33<Real>& R, Real&
   // steps.
   constexpr int kMaxIterations = 12;
   constexpr double kSmallestRelativeDeterminant = 1e-8;
-  // Error is half the change once the iteration is near; 1e-9 now means below 1e-18 after this step.
-  constexpr double kSquaredChange = 1e-18;
+  // Once the iteration is near, a step leaves an eighth of the squared change: 5e-17 of this one.
+  constexpr double kSquaredChange = 4e-16;
   const Real one = Real{} + 1.0;
   Real33<Real> inverse;  // transposed
   Real determinant, squares;
   set_cofactor(F, inverse, determinant);
   add_squares(F, squares);
-  Real norm;
-  set_root(norm, squares);
   const Real zero = {};
-  found = determinant > kSmallestRelativeDeterminant * norm * squares ? one : zero;
+  const Real cubes = squares * squares * squares;  // of the norm's square
+  found = determinant * determinant > kSmallestRelativeDeterminant * kSmallestRelativeDeterminant * cubes
+              ? one
+              : zero;
+  found = determinant > 0.0 ? found : zero;
   Real active = found;  // 1 or 0, as `found` is
   R = F;
   for (int iteration = 0; iteration < kMaxIterations && any(active); ++iteration) {
@@ -56,18 +58,20 @@ ARGIL_INLINE void iterate_rotation(const Real33<Real>& F, Real33<Real>& R, Real&
     Real change;
     add_squares(difference, change);
     const Real far = change >= 1e-2 ? active : zero;
-    Real gamma = one;
+    Real share = 0.5 * one;
+    Real inverse_share = share;
     if (any(far)) {
       Real size, inverse_size, root;
+      Real gamma = one;
       add_squares(R, size);
       add_squares(inverse, inverse_size);
       const Real ratio = inverse_size / size;
       set_root(root, ratio);
       set_root(gamma, root);
       gamma = far != 0.0 ? gamma : one;
+      share = 0.5 * gamma;
+      inverse_share = 0.5 / gamma;
     }
-    const Real share = 0.5 * gamma;
-    const Real inverse_share = 0.5 / gamma;
     for (int k = 0; k < 9; ++k) {
       const Real next = share * R.m[k] + inverse_share * inverse.m[k];
       R.m[k] = active != 0.0 ? next : R.m[k];

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "base/check.h"
@@ -94,13 +96,15 @@ bool Solid::is_placed(int support) const {
 /// Rows of the free nodes and the matrix's pattern.
 void Solid::number_rows() {
   m_row_of_node.assign(static_cast<std::size_t>(m_elements.num_nodes()), -1);
-  for (int n = 0; n < m_elements.num_nodes(); ++n) {
+  for (int n = 0; n < m_elements.num_nodes(); ++n)
     for (int k = 0; k < 3; ++k)
       if (const int support = m_constraints.support(k, n); support >= 0 && is_placed(support))
         m_placed_components.push_back({n, k});
-    if (!m_constraints.is_held(n)) m_node_of_row.push_back(n);
-  }
-  mesh::sort_along_curve(m_elements.rest, m_node_of_row);
+  m_nodes_along_curve.resize(m_row_of_node.size());
+  std::iota(m_nodes_along_curve.begin(), m_nodes_along_curve.end(), 0);
+  mesh::sort_along_curve(m_elements.rest, m_nodes_along_curve);
+  std::copy_if(m_nodes_along_curve.begin(), m_nodes_along_curve.end(), std::back_inserter(m_node_of_row),
+               [this](int n) { return !m_constraints.is_held(n); });
   for (int row = 0; row < num_free(); ++row) {
     const int n = m_node_of_row[static_cast<std::size_t>(row)];
     m_row_of_node[static_cast<std::size_t>(n)] = row;

@@ -359,6 +359,7 @@ class Solid {
   Points m_internal_force;
 
   std::vector<int> m_row_of_node;  // −1: held in all directions
+  std::vector<int> m_nodes_along_curve;
   std::vector<int> m_node_of_row;
   std::vector<std::array<int, 2>> m_placed_components;  // node and direction of what is_placed
   std::vector<int> m_held_rows;                         // rows with a held component

@@ -182,36 +182,75 @@ ARGIL_EVERY_PROCESSOR double compute_energy(const ForceArrays& tets, std::ptrdif
   return sum;
 }
 
+/// A 3×3 block, column by column.
+struct Block {
+  Lanes eight;
+  double last;
+};
+
+ARGIL_INLINE void add(const Block& a, Block& sum) {
+  sum.eight += a.eight;
+  sum.last += a.last;
+}
+
+/// Asks for what the row of one corner is gathered from, which lies here and there.
+ARGIL_INLINE void prefetch_corner(const RowArrays& rows, int corner) {
+  const std::ptrdiff_t tet = corner / 4;
+  __builtin_prefetch(rows.turned_gradient + 12 * tet);
+  __builtin_prefetch(rows.turned_gradient + 12 * tet + 8);
+  __builtin_prefetch(rows.block_of_pair + 4 * static_cast<std::ptrdiff_t>(corner));
+  __builtin_prefetch(rows.weight + tet);
+  __builtin_prefetch(rows.lambda + tet);
+  __builtin_prefetch(rows.mu + tet);
+}
+
 ARGIL_EVERY_PROCESSOR void set_isotropic_row(const RowArrays& rows, int begin, int end, int first_block,
                                              int num_blocks) {
-  // A column is a Quad.
-  Quad sum[3 * kLongestRow];
-  for (int k = 0; k < 3 * num_blocks; ++k) sum[k] = Quad{};
+  Block sum[kLongestRow + 1];  // the last one is of nodes without a row
+  std::fill(sum, sum + num_blocks + 1, Block{});
+  constexpr int kAhead = 5;
+  int diagonal = 0;
   for (int c = begin; c < end; ++c) {
+    prefetch_corner(rows, rows.corners[std::min(c + kAhead, end - 1)]);
     const int corner = rows.corners[c];
+    const int i = corner % 4;
     const std::ptrdiff_t tet = corner / 4;
     const double* gradient = rows.turned_gradient + 12 * tet;
-    const double* own = gradient + 3 * (corner % 4);
+    const double* own = gradient + 3 * i;
     const Quad ci = {own[0], own[1], own[2], 0.0};
     const double weight = rows.scale * rows.weight[tet];
     const Quad li = weight * rows.lambda[tet] * ci;
     const Quad mi = weight * rows.mu[tet] * ci;
+    const Lanes li_rows = __builtin_shufflevector(li, li, 0, 1, 2, 0, 1, 2, 0, 1);
+    const Lanes mi_columns = __builtin_shufflevector(mi, mi, 0, 0, 0, 1, 1, 1, 2, 2);
+    const double last = li[2] + mi[2];
     const int* blocks = rows.block_of_pair + 4 * static_cast<std::ptrdiff_t>(corner);
+    diagonal = blocks[i] - first_block;
     for (int j = 0; j < 4; ++j) {
-      if (blocks[j] < 0) continue;
+      if (j == i) continue;
       const double* other = gradient + 3 * j;
       const Quad cj = {other[0], other[1], other[2], 0.0};
       const Quad product = mi * cj;
       const double dot = product[0] + product[1] + product[2];
-      Quad* block = sum + 3 * (blocks[j] - first_block);
-      block[0] += li * cj[0] + cj * mi[0] + Quad{dot, 0.0, 0.0, 0.0};
-      block[1] += li * cj[1] + cj * mi[1] + Quad{0.0, dot, 0.0, 0.0};
-      block[2] += li * cj[2] + cj * mi[2] + Quad{0.0, 0.0, dot, 0.0};
+      const Lanes cj_rows = __builtin_shufflevector(cj, cj, 0, 1, 2, 0, 1, 2, 0, 1);
+      const Lanes cj_columns = __builtin_shufflevector(cj, cj, 0, 0, 0, 1, 1, 1, 2, 2);
+      Block& block = sum[blocks[j] < 0 ? num_blocks : blocks[j] - first_block];
+      block.eight +=
+          li_rows * cj_columns + cj_rows * mi_columns + Lanes{dot, 0.0, 0.0, 0.0, dot, 0.0, 0.0, 0.0};
+      block.last += last * cj[2] + dot;
     }
   }
+  // The gradients of a tet add up to nothing, and so do the blocks of a row.
+  Block others = {};
+  for (int k = 0; k <= num_blocks; ++k)
+    if (k != diagonal) add(sum[k], others);
+  sum[diagonal].eight = -others.eight;
+  sum[diagonal].last = -others.last;
   double* out = rows.values + 9 * static_cast<std::ptrdiff_t>(first_block);
-  for (int k = 0; k < 3 * num_blocks; ++k)
-    for (int i = 0; i < 3; ++i) out[3 * k + i] = sum[k][i];
+  for (int k = 0; k < num_blocks; ++k) {
+    write(sum[k].eight, out + 9 * k);
+    out[9 * k + 8] = sum[k].last;
+  }
 }
 
 ARGIL_EVERY_PROCESSOR void sum_corner_forces(const double* corner_force, const int* corners, int begin,
