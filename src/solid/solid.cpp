@@ -38,7 +38,7 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   const Eigen::Index num_points = m_elements.num_points();
   const Eigen::Index num_nodes = m_elements.num_nodes();
   m_material.resize(static_cast<std::size_t>(m_elements.num_tets()));
-  m_deformation.resize(3, 3 * num_points);
+  if (keeps_deformation()) m_deformation.resize(3, 3 * num_points);
   m_rotation.resize(3, 3 * num_points);
   m_strain.setZero(6, num_points);
   m_volume_ratio.setOnes(num_points);
@@ -243,8 +243,14 @@ Elasticity Solid::elasticity(int tet) const {
 }
 
 PointMotion Solid::motion(int point) const {
-  return {m_deformation.middleCols<3>(3 * static_cast<Eigen::Index>(point)),
-          m_rotation.middleCols<3>(3 * static_cast<Eigen::Index>(point))};
+  const Mat3 R = m_rotation.middleCols<3>(3 * static_cast<Eigen::Index>(point));
+  if (keeps_deformation()) return {m_deformation.middleCols<3>(3 * static_cast<Eigen::Index>(point)), R};
+  return {R * (Mat3::Identity() + from_mandel(m_strain.col(point))), R};
+}
+
+/// Does strain not say all that the law wants to know of F?
+bool Solid::keeps_deformation() const {
+  return m_elements.nodes_per_tet != 4 || m_params.model == StrainModel::neo_hookean;
 }
 
 /// How far the frames of the matrix may lag behind R: a step that is solved to a tolerance may as well have a
@@ -260,7 +266,7 @@ void Solid::set_tet_motion(const Points& x, bool keeps_frame) {
                        m_elements.nodes.data(),
                        m_elements.gradient.data(),
                        m_params.model == StrainModel::linear,
-                       m_deformation.data(),
+                       keeps_deformation() ? m_deformation.data() : nullptr,
                        m_rotation.data(),
                        keeps_frame ? nullptr : m_turned_gradient.data(),
                        m_frame.data(),

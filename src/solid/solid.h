@@ -253,6 +253,7 @@ class Solid {
   void set_quadratic_motion(const Points& x, bool keeps_frame);
   Elasticity elasticity(int tet) const;
   PointMotion motion(int point) const;
+  bool keeps_deformation() const;
   void compute_volume_changes(const TensorField& plastic_strain, Field& change) const;
   void update_volume_change(const TensorField& plastic_strain);
   StepStatus update_motion(const Points& x, Tick tick, bool keeps_frame);
@@ -337,7 +338,7 @@ class Solid {
   std::vector<Mat6> m_stiffness;        // empty while every tet is isotropic
   Field m_lambda, m_mu, m_excess_bulk;  // of each tet as elasticity() has them
 
-  Eigen::Matrix3Xd m_deformation;  // F, 3 columns a point
+  Eigen::Matrix3Xd m_deformation;  // F, 3 columns a point, where keeps_deformation()
   Eigen::Matrix3Xd m_rotation;     // R, 3 columns a point
   TensorField m_strain;
   Field m_volume_ratio;                      // det F

@@ -84,7 +84,7 @@ ARGIL_EVERY_PROCESSOR void compute_motions(const TetArrays& tets, std::ptrdiff_t
   Lanes determinant;
   set_cofactor(F, cofactor, determinant);
 
-  write_lanes<9>(F.m, begin, end, tets.F);
+  if (tets.F) write_lanes<9>(F.m, begin, end, tets.F);
   write_lanes<9>(R.m, begin, end, tets.R);
   write_lanes<6>(strain, begin, end, tets.strain);
   write_lanes<1>(&determinant, begin, end, tets.volume_ratio);

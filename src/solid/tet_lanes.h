@@ -15,7 +15,7 @@ struct TetArrays {
   const int* nodes = nullptr;         ///< 4 a tet
   const double* gradient = nullptr;   ///< ∇Nᵢ, 12 a tet
   bool is_linear = false;             ///< R = 1
-  double* F = nullptr;                ///< 9 a tet
+  double* F = nullptr;                ///< 9 a tet; may be null: not wanted
   double* R = nullptr;                ///< 9 a tet
   double* turned_gradient = nullptr;  ///< Q ∇Nᵢ, 12 a tet; may be null: not wanted
   double* frame = nullptr;            ///< Q, 9 a tet: R, or an earlier one that is still near
