@@ -20,8 +20,8 @@ class LastChanges {
 
   /// What a solve of A x = r goes on from.
   struct Start {
-    double energy = 0.0;  ///< taken away from that of the error, ½ xᵀA x, twice
-    int products = 0;     ///< with the matrix
+    double energy = 0.0;  ///< eᵀA e of the error e, by how much it is less
+    int products = 0;     ///< with the matrix; iterations count them
   };
   /// x = Σ aₖ dₖ with the aₖ that take most of the error's energy away, r −= A x; nothing while it rests.
   Start begin(const ShortBlocks& matrix, Operator& whole, const OrderedRuns& runs, std::ptrdiff_t num_rows,
