@@ -3,10 +3,11 @@
 of the region that the hand feels (`fidelity: auto`), and of the region that moves (`extent: local`), and how far their
 forces are off.
 
-    scripts/bench_extent.py [--build BUILD] [--cells 14 46 144] [--scenes light push slide]
+    scripts/bench_extent.py [--build BUILD] [--cells 14 46 144] [--scenes light push thin slide]
 
-light: a sphere of 8 mm presses 0.5 mm; push: the same, 1.5 mm, and moves 6 mm aside; slide: a sphere of 24 mm presses 1.5 mm
-and slides (traces/block_slide.csv), on cells half as large again. Writes results/bench/extent.csv. One thread, time
+light: a sphere of 8 mm presses 0.5 mm; push: the same, 1.5 mm, and moves 6 mm aside; thin: that push on slabs half as thick
+and so much wider that they have as many tets; slide: a sphere of 24 mm presses 1.5 mm and slides (traces/block_slide.csv), on
+cells half as large again. Writes results/bench/extent.csv. One thread, time
 of the steps' stages: what is written is not counted; the median of three runs. A slab of 144 cells a side has 995 328 tets, whose whole takes half
 a second a step: `--most-whole TETS` leaves it out, and what it is compared with.
 """
@@ -33,16 +34,22 @@ class Scene(NamedTuple):
     cell: float  # [m]
     depth: float = 0.0  # [m] of the press; 0: motion and tool of the scenario
     aside: float = 0.0  # [m]
+    layers: int = LAYERS  # of cells
+
+    def widen(self, cells):
+        """Cells a side with which a slab of these layers has as many as one of LAYERS."""
+        return round(cells * (LAYERS / self.layers) ** 0.5)
 
 
-SCENES = {"light": Scene(0.0025, 0.0005), "push": Scene(0.0025, 0.0015, 0.006), "slide": Scene(0.00375)}
+SCENES = {"light": Scene(0.0025, 0.0005), "push": Scene(0.0025, 0.0015, 0.006),
+          "thin": Scene(0.0025, 0.0015, 0.006, LAYERS // 2), "slide": Scene(0.00375)}
 MODES = {"whole": ["/dynamics/extent=whole"], "auto": ["/fidelity/mode=auto"],
          "local 0.01": ["/dynamics/extent=local", "/dynamics/region_tolerance=0.01"]}
 
 
 def write_push(file, scene):
     """Down at 20 mm/s from 0.2 mm above the slab, aside at 30 mm/s, up again."""
-    top = LAYERS * scene.cell + SMALL_TOOL["radius_m"]
+    top = scene.layers * scene.cell + SMALL_TOOL["radius_m"]
     with open(file, "w", encoding="ascii") as out:
         out.write("# argil-trace: 1\n# device: press\n# units: m\ntime_s,x_m,y_m,z_m,qx,qy,qz,qw,mode\n")
         for tick in range(401):
@@ -52,12 +59,12 @@ def write_push(file, scene):
             out.write(f"{time:.3f},{x:.9g},0,{top - max(depth, -0.0005):.9g},0,0,0,1,push\n")
 
 
-def write_slab(file, cells, cell):
-    """`cells` by `cells` by LAYERS cells of six tets each, about the axis x = y = 0, on z = 0."""
+def write_slab(file, cells, layers, cell):
+    """`cells` by `cells` by `layers` cells of six tets each, about the axis x = y = 0, on z = 0."""
     line = (np.arange(cells + 1) - cells / 2) * cell
-    z, y, x = np.meshgrid(np.arange(LAYERS + 1) * cell, line, line, indexing="ij")
+    z, y, x = np.meshgrid(np.arange(layers + 1) * cell, line, line, indexing="ij")
     number = np.arange(x.size).reshape(x.shape)
-    k, j, i = (a.ravel() for a in np.meshgrid(np.arange(LAYERS), np.arange(cells), np.arange(cells), indexing="ij"))
+    k, j, i = (a.ravel() for a in np.meshgrid(np.arange(layers), np.arange(cells), np.arange(cells), indexing="ij"))
     corner = {(a, b, c): number[k + c, j + b, i + a] for a in (0, 1) for b in (0, 1) for c in (0, 1)}
     tets = []
     for axes in ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)):
@@ -93,7 +100,7 @@ def write_scene(folder, scene, cells):
         scenario["trace"]["file"] = "push.csv"
         write_push(folder / "push.csv", scene)
     (folder / "slab.json").write_text(json.dumps(scenario), encoding="utf-8")
-    return write_slab(folder / "slab.msh", cells, scene.cell)
+    return write_slab(folder / "slab.msh", scene.widen(cells), scene.layers, scene.cell)
 
 
 def run(argil, folder, settings):
