@@ -80,7 +80,7 @@ void LastChanges::judge(const Start& start, double energy) {
 }
 
 void LastChanges::keep(const OrderedRuns& runs, std::ptrdiff_t num_rows, const float* x, double scale) {
-  constexpr double kLargest = 1e30;  // beside which the new change is nothing
+  constexpr double kLargest = 1e6;  // beside which the new change is lost in rounding
   const double ratio = m_scale / scale;
   const float old = ratio < kLargest ? static_cast<float>(ratio) : 0.0F;
   m_scale = scale;

@@ -371,6 +371,8 @@ TEST_F(BeginsWithTheLastChanges, OfASolutionThatIsLikeTheLast) {
   EXPECT_EQ(count_iterations(-3.0 * b), kProducts);   // the very direction
   EXPECT_EQ(count_iterations(1e-50 * b), kProducts);  // beyond what a float holds
   EXPECT_EQ(count_iterations(1e60 * b), kProducts);
+  for (const double size : {1e40, 1e20, 1e10, 1.0})  // each change small beside the one before
+    EXPECT_EQ(count_iterations(size * b), kProducts) << size;
   EXPECT_LT(count_iterations(b + 0.001 * make_random_vector(60, 37)), cold - 10);
   EXPECT_LE(count_iterations(make_random_vector(60, 38)), cold + kProducts);  // of no use, in no one's way
 }
