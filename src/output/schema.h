@@ -78,7 +78,7 @@ inline constexpr std::array kFidelityStep = {
            1,
            {"1", "what was computed: 0 nothing, the body sleeps; 1 no solve, it coasts; 2 the whole step"}},
     Column{"bound", real64, 1, {"N", "error that the force at the hand may have"}},
-    Column{"estimate", real64, 1, {"N", "that it has at most, by what was left out"}},
+    Column{"estimate", real64, 1, {"N", "by what the step left out"}},
     Column{"large_strain",
            real64,
            1,

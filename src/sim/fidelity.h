@@ -32,7 +32,7 @@ enum class Rung : std::uint8_t {
 struct FidelityRecord {
   Rung rung = Rung::solved;
   double bound = 0.0;     ///< [N] error that the force at the hand may have
-  double estimate = 0.0;  ///< [N] that it has, at most
+  double estimate = 0.0;  ///< [N] that the step adds by what it leaves out
   double error = 0.0;     ///< check: [N] that it had since the last step
   double large_strain =
       0.0;  ///< of the force, by which another law of elasticity may differ: the mean strain [–]

@@ -149,7 +149,10 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
   loads.region_slack = m_fidelity.region_slack();
   if (load.is_pressed)
     loads.mobility = [this, &load](Eigen::Index node) { return clay_factor(node, load, step_seconds()); };
-  ARGIL_TRY(m_solid.begin_step(solid, loads, h, time_at_end(), tick()));
+  {
+    const StageScope scope(m_observer, Stage::assemble);
+    ARGIL_TRY(m_solid.begin_step(solid, loads, h, time_at_end(), tick()));
+  }
   for (bool solved = false; !solved;) {
     {
       const StageScope scope(m_observer, Stage::assemble);

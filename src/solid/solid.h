@@ -56,7 +56,7 @@ struct StepCounters {
   int linear_iterations = 0;
   bool has_solved = false;  ///< by iterations or a factor; not where the first guess would do
   double residual = 0.0;    ///< relative, of the last linear solve
-  double imbalance = 0.0;   ///< [N] that an iteration left: norm of force over all nodes
+  double imbalance = 0.0;   ///< [N] that an iteration and frames that lag left: norm of force over all nodes
   int assembled_rows = 0;   ///< rows of the matrix that were gathered anew; the others stayed as they were
 };
 

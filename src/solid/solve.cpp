@@ -150,7 +150,8 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
   m_counters.linear_iterations += report.iterations;
   m_counters.has_solved |= report.iterations > 0 || linear::is_direct(m_params.solver.kind);
   m_counters.residual = report.relative_residual;
-  m_counters.imbalance = report.relative_residual * report.first / m_tau;
+  const double lag = m_counters.has_solved ? frame_tolerance() : 0.0;
+  m_counters.imbalance = (report.relative_residual + lag) * report.first / m_tau;
   m_frame_slack =
       loads.slack == 0.0 ? 0.0 : m_tau * loads.slack / std::max(report.first, m_tau * loads.slack);
   return report;

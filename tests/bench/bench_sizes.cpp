@@ -6,6 +6,8 @@
 // longest).
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -109,6 +111,26 @@ std::string begin(Press& press, const Target& target, const std::string& fidelit
   return "";
 }
 
+/// Counters of auto beside the full model, if that has run: the largest error of the force at the hand over
+/// all steps [N], and over its bound.
+void compare_forces(benchmark::State& state, const Target& target, const std::string& fidelity, int tets,
+                    const std::vector<Vec3>& forces) {
+  static std::map<std::pair<std::string, int>, std::vector<Vec3>> full;
+  const std::pair<std::string, int> key(target.name, tets);
+  if (fidelity == "full") full[key] = forces;
+  const auto at = full.find(key);
+  if (fidelity == "full" || at == full.end() || at->second.size() != forces.size()) return;
+  const sim::FidelityParams bound;
+  double largest = 0.0, over = 0.0;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const double error = (forces[i] - at->second[i]).norm();
+    largest = std::max(largest, error);
+    over = std::max(over, error / std::max(bound.force_floor, bound.force_tolerance * at->second[i].norm()));
+  }
+  state.counters["error_N"] = largest;
+  state.counters["error_over_bound"] = over;
+}
+
 void run_steps(benchmark::State& state, const Target& target, const std::string& fidelity, int tets,
                int threads) {
   Press press(target, fidelity, tets, threads);
@@ -116,8 +138,15 @@ void run_steps(benchmark::State& state, const Target& target, const std::string&
     state.SkipWithError(fault.c_str());
     return;
   }
-  bench::measure_steps(state, press.simulation(), [&] { return press.step(); });
-  state.counters["force_N"] = press.simulation().haptic_record().force.norm();
+  std::vector<Vec3> forces;
+  forces.reserve(static_cast<std::size_t>(state.max_iterations));
+  bench::measure_steps(state, press.simulation(), [&] {
+    std::string fault = press.step();
+    forces.push_back(press.simulation().haptic_record().force);
+    return fault;
+  });
+  state.counters["force_N"] = forces.back().norm();
+  compare_forces(state, target, fidelity, tets, forces);
 }
 
 void register_all() {
