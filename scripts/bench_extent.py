@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 import h5py
 import numpy as np
+import provenance
 
 ROOT = Path(__file__).resolve().parent.parent
 LAYERS = 8
@@ -125,9 +126,7 @@ def main():
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
     options = parser.parse_args()
     argil = options.build / "bin" / "argil"
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
-                            check=True).stdout.strip()
-    lines = [f"# commit {commit}, one thread; ms a step in which the tool touches",
+    lines = [f"# {provenance.describe()}, one thread; ms a step in which the tool touches",
              "scene,tets,mode,nodes_mean,nodes_most,ms_a_step,peak_N,error_N,error_over_bound"]
     for name in options.scenes:
         for cells in options.cells:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import argil_plot as ap
 import h5py
 import numpy as np
+import provenance
 from argil_plot import COLOURS, GREY, MILLIMETRES, plt
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -77,7 +78,7 @@ def read(file):
     with h5py.File(file) as result:
         steps = {name: data[:] for name, data in result["fidelity"].items()} if "fidelity" in result else None
         return (result["haptic/force"][:], result["timing/cpu"][-1], len(result["mesh/tets"]),
-                result["physics/iterations"][:], steps)
+                result["physics/iterations"][:], result["physics/active_nodes"][:], steps)
 
 
 def measure(argil, name, scene, folder):
@@ -92,8 +93,8 @@ def measure(argil, name, scene, folder):
         if cpu["full"] > LONG:
             break
     full_cpu, lean_cpu = cpu.values()
-    force, _, tets, full_iterations, _ = read(files["full"])
-    lean_force, _, _, iterations, steps = read(files["auto"])
+    force, _, tets, full_iterations, _, _ = read(files["full"])
+    lean_force, _, _, iterations, nodes, steps = read(files["auto"])
     off = np.linalg.norm(lean_force - force, axis=1)
     size = np.linalg.norm(force, axis=1)
     bound = np.maximum(0.02, 0.01 * size)
@@ -102,15 +103,16 @@ def measure(argil, name, scene, folder):
     awake = steps["rung"] > 0
     asleep = steps["rung"] == 0
     counts = size[period - 1::period] > 0.0  # the hand feels something
-    switches = np.flatnonzero(np.diff(asleep.astype(int)))
+    switches = np.diff(steps["rung"].astype(int)) != 0
+    resized = ~switches & (np.diff(nodes) != 0)  # the region
     jumps = np.linalg.norm(np.diff(lean_force - force, axis=0), axis=1)  # of the error, from tick to tick
-    kick = jumps[(switches + 1) * period - 1].max(initial=0.0)
+    kick = jumps[(np.flatnonzero(switches | resized) + 1) * period - 1].max(initial=0.0)
     row = {"scene": name, "breaks": scene.breaks, "tets": tets, "steps": len(steps["tick"]), "peak_N": f"{size.max():.3f}",
            "error_N": f"{off.max():.4f}", "error_over_bound": f"{(off / bound).max():.3f}",
            "error_over_peak": f"{off.max() / size.max():.2e}", "within": f"{(off <= bound).mean():.4f}",
            "estimate_missed": f"{(at_step > steps['estimate'])[counts].mean() if counts.any() else 0:.3f}",
-           "asleep": f"{asleep.mean():.3f}", "coasting": f"{(steps['rung'] == 1).mean():.3f}", "switches": len(switches),
-           "kick_N": f"{kick:.4f}", "large_strain": f"{steps['large_strain'].max():.3f}",
+           "asleep": f"{asleep.mean():.3f}", "coasting": f"{(steps['rung'] == 1).mean():.3f}", "switches": switches.sum(),
+           "resized": resized.sum(), "kick_N": f"{kick:.4f}", "large_strain": f"{steps['large_strain'].max():.3f}",
            "iterations_full": int(full_iterations[awake].sum()), "iterations_auto": int(iterations[awake].sum()),
            "cpu_full_s": f"{full_cpu:.3f}", "cpu_auto_s": f"{lean_cpu:.3f}", "cost_ratio": f"{lean_cpu / full_cpu:.3f}"}
     return row, (name, size, off, bound, asleep, steps["estimate"], period)
@@ -145,6 +147,7 @@ def main():
     parser.add_argument("--keep", type=Path, help="folder for the result files, which are thrown away otherwise")
     options = parser.parse_args()
     argil = options.build / "bin" / "argil"
+    about = provenance.describe()
     rows, pictures = [], []
     with tempfile.TemporaryDirectory() as name:
         folder = options.keep or Path(name)
@@ -157,6 +160,7 @@ def main():
         return
     RESULTS.mkdir(parents=True, exist_ok=True)
     with open(RESULTS / "fidelity.csv", "w", encoding="utf-8", newline="") as out:
+        out.write(f"# {about}, one thread\n")
         writer = csv.DictWriter(out, rows[0], lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)

@@ -79,12 +79,13 @@ ARGIL_EVERY_PROCESSOR void multiply_rows_by_several(const BlockMatrix& pattern, 
   }
 }
 
-ARGIL_EVERY_PROCESSOR void advance_rows(const float* inverse, float alpha, float beta, const float* w,
-                                        std::ptrdiff_t begin, std::ptrdiff_t end,
-                                        const ShortBlocks::Iterate& to, ShortBlocks::Sums& sums) {
+ARGIL_EVERY_PROCESSOR void advance_rows(const float* inverse, float alpha, float beta, const float* z,
+                                        float* w, std::ptrdiff_t begin, std::ptrdiff_t end,
+                                        const ShortBlocks::Iterate& at, ShortBlocks::Sums& sums) {
+  const ShortBlocks::Iterate to = at;  // which stores below do not change
   Floats4 rr = {}, rz = {};
   for (std::ptrdiff_t i = 4 * begin; i < 4 * end; i += 4) {
-    const Floats4 p = *four_at(to.z + i) + beta * *four_at(to.p + i);
+    const Floats4 p = *four_at(z + i) + beta * *four_at(to.p + i);
     const Floats4 q = *four_at(w + i) + beta * *four_at(to.q + i);
     const Floats4 r = *four_at(to.r + i) - alpha * q;
     *four_at(to.p + i) = p;
@@ -92,10 +93,10 @@ ARGIL_EVERY_PROCESSOR void advance_rows(const float* inverse, float alpha, float
     *four_at(to.x + i) += alpha * p;
     *four_at(to.r + i) = r;
     const float* a = inverse + 3 * i;
-    const Floats4 z = *four_at(a) * r[0] + *four_at(a + 4) * r[1] + *four_at(a + 8) * r[2];
-    *four_at(to.z + i) = z;
+    const Floats4 next = *four_at(a) * r[0] + *four_at(a + 4) * r[1] + *four_at(a + 8) * r[2];
+    *four_at(w + i) = next;
     rr += r * r;
-    rz += r * z;
+    rz += r * next;
   }
   sums = {static_cast<double>(rr[0] + rr[1] + rr[2]), static_cast<double>(rz[0] + rz[1] + rz[2])};
 }
@@ -206,9 +207,9 @@ void ShortBlocks::combine(std::ptrdiff_t begin, std::ptrdiff_t end, const float 
 }
 
 ShortBlocks::Sums ShortBlocks::advance(std::ptrdiff_t begin, std::ptrdiff_t end, float alpha, float beta,
-                                       const float* w, const Iterate& to) const {
+                                       const float* z, float* w, const Iterate& to) const {
   Sums sums;
-  advance_rows(m_inverse.data(), alpha, beta, w, begin, end, to, sums);
+  advance_rows(m_inverse.data(), alpha, beta, z, w, begin, end, to, sums);
   return sums;
 }
 

@@ -24,11 +24,10 @@ class ShortBlocks {
     float* q = nullptr;  ///< A p
     float* x = nullptr;
     float* r = nullptr;  ///< b − A x
-    float* z = nullptr;  ///< D⁻¹ r
   };
   struct Sums {
     double rr = 0.0;  ///< r·r
-    double rz = 0.0;  ///< r·z
+    double rz = 0.0;  ///< r·D⁻¹ r
   };
 
   // Rows begin … end−1:
@@ -50,8 +49,8 @@ class ShortBlocks {
   static void combine(std::ptrdiff_t begin, std::ptrdiff_t end, const float (&a)[kSeveral],
                       const float* const (&d)[kSeveral], const float* const (&y)[kSeveral], float* x,
                       float* r);
-  /// p = z + β p, q = w + β q, x += α p, r −= α q, z = D⁻¹ r.
-  Sums advance(std::ptrdiff_t begin, std::ptrdiff_t end, float alpha, float beta, const float* w,
+  /// p = z + β p, q = w + β q, x += α p, r −= α q; then D⁻¹ r in the place of w.
+  Sums advance(std::ptrdiff_t begin, std::ptrdiff_t end, float alpha, float beta, const float* z, float* w,
                const Iterate& to) const;
 
  private:

@@ -74,7 +74,8 @@ void ShortIteration::clear_left_rows() {
   const auto clear = [&](int run) {
     const std::ptrdiff_t begin = run * length;
     const std::ptrdiff_t end = std::min(begin + length, size);
-    std::fill(m_z.begin() + 4 * begin, m_z.begin() + 4 * end, 0.0F);
+    for (std::vector<float>* vector : {&m_z, &m_w})
+      std::fill(vector->begin() + 4 * begin, vector->begin() + 4 * end, 0.0F);
     m_last.clear(begin, end);
   };
   const auto is_visited = [&](int run) {
@@ -92,13 +93,15 @@ void ShortIteration::clear_left_rows() {
 /// A x = r / `first`, which has the norm 1, until what is left of it is below `goal`.
 SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, int max_iterations) {
   const std::ptrdiff_t num_rows = m_product.cols();
-  const ShortBlocks::Iterate to{m_p.data(), m_q.data(), m_x.data(), m_r.data(), m_z.data()};
+  const ShortBlocks::Iterate to{m_p.data(), m_q.data(), m_x.data(), m_r.data()};
   ShortBlocks::Sums sums;
   const auto advance = [&](double alpha, double beta) {
     m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
-      m_sums[static_cast<std::size_t>(i)] =
-          m_blocks.advance(begin, end, static_cast<float>(alpha), static_cast<float>(beta), m_w.data(), to);
+      m_sums[static_cast<std::size_t>(i)] = m_blocks.advance(
+          begin, end, static_cast<float>(alpha), static_cast<float>(beta), m_z.data(), m_w.data(), to);
     });
+    // What other threads have read is written anew only when the next product passes over it.
+    m_z.swap(m_w);
     sums = {};
     for (const ShortBlocks::Sums& run : m_sums) {
       sums.rr += run.rr;
