@@ -1,0 +1,275 @@
+#include "preconditioners/short_ssor.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/lanes.h"
+#include "base/parallel.h"
+
+namespace argil::bench {
+
+/// The rows of a kind of blocks, as sweeps see them.
+struct BlockRows {
+  const int* begin;
+  const int* column;
+  const float* values;
+};
+
+struct SsorArrays {
+  BlockRows upper, other, lower;
+  const float* unscale;
+  float *r, *p, *t, *s, *x;
+};
+
+namespace {
+
+using Floats4 = float __attribute__((vector_size(16)));
+using Floats8 = float __attribute__((vector_size(32)));
+using Floats4At __attribute__((aligned(4), may_alias)) = Floats4;
+using Floats8At __attribute__((aligned(4), may_alias)) = Floats8;
+
+ARGIL_INLINE Floats4At* four_at(float* at) {
+  return reinterpret_cast<Floats4At*>(at);
+}
+ARGIL_INLINE const Floats4At* four_at(const float* at) {
+  return reinterpret_cast<const Floats4At*>(at);
+}
+
+/// As in linear/short_blocks.cpp: eight numbers of a block at once, its last one alone.
+struct RowSum {
+  Floats8 eight = {};
+  float last = 0.0F;
+};
+
+ARGIL_INLINE void add_block(const float* block, const float* x, RowSum& sum) {
+  const Floats4 p = *four_at(x);
+  sum.eight +=
+      *reinterpret_cast<const Floats8At*>(block) * __builtin_shufflevector(p, p, 0, 0, 0, 1, 1, 1, 2, 2);
+  sum.last += block[8] * p[2];
+}
+
+ARGIL_INLINE void add_row(const BlockRows& blocks, std::ptrdiff_t row, const float* x, RowSum& even,
+                          RowSum& odd) {
+  std::ptrdiff_t b = blocks.begin[row];
+  const std::ptrdiff_t end = blocks.begin[row + 1];
+  const float* block = blocks.values + 9 * b;
+  for (; b + 1 < end; b += 2, block += 18) {
+    add_block(block, x + 4 * static_cast<std::ptrdiff_t>(blocks.column[b]), even);
+    add_block(block + 9, x + 4 * static_cast<std::ptrdiff_t>(blocks.column[b + 1]), odd);
+  }
+  if (b < end) add_block(block, x + 4 * static_cast<std::ptrdiff_t>(blocks.column[b]), even);
+}
+
+ARGIL_INLINE Floats4 add_up(const RowSum& even, const RowSum& odd) {
+  const Floats8 sum = even.eight + odd.eight;
+  return Floats4{sum[0] + sum[3] + sum[6], sum[1] + sum[4] + sum[7], sum[2] + sum[5] + (even.last + odd.last),
+                 0.0F};
+}
+
+ARGIL_INLINE double add_lanes(const Floats4& a) {
+  return static_cast<double>(a[0] + a[1] + a[2]);
+}
+
+// Rows begin … end−1, which are a group:
+
+/// p = r + β p, t = (1+L)⁻ᵀ p.
+ARGIL_EVERY_PROCESSOR void sweep_back(const SsorArrays& a, float beta, std::ptrdiff_t begin,
+                                      std::ptrdiff_t end) {
+  for (std::ptrdiff_t row = end - 1; row >= begin; --row) {
+    RowSum even, odd;
+    add_row(a.upper, row, a.t, even, odd);
+    const Floats4 p = *four_at(a.r + 4 * row) + beta * *four_at(a.p + 4 * row);
+    *four_at(a.p + 4 * row) = p;
+    *four_at(a.t + 4 * row) = p + add_up(even, odd);
+  }
+}
+
+/// s = (1+L)⁻¹ (p − t + R t); returns p·(t + s).
+ARGIL_EVERY_PROCESSOR double sweep_forth(const SsorArrays& a, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  Floats4 dot = {};
+  for (std::ptrdiff_t row = begin; row < end; ++row) {
+    RowSum even, odd;
+    add_row(a.other, row, a.t, even, odd);
+    add_row(a.lower, row, a.s, even, odd);
+    const Floats4 p = *four_at(a.p + 4 * row);
+    const Floats4 t = *four_at(a.t + 4 * row);
+    const Floats4 s = p - t + add_up(even, odd);
+    *four_at(a.s + 4 * row) = s;
+    dot += p * (t + s);
+  }
+  return add_lanes(dot);
+}
+
+/// x += α t, r −= α (t + s); returns r·r.
+ARGIL_EVERY_PROCESSOR double advance(const SsorArrays& a, float alpha, std::ptrdiff_t begin,
+                                     std::ptrdiff_t end) {
+  Floats4 rr = {};
+  for (std::ptrdiff_t i = 4 * begin; i < 4 * end; i += 4) {
+    const Floats4 t = *four_at(a.t + i);
+    const Floats4 r = *four_at(a.r + i) - alpha * (t + *four_at(a.s + i));
+    *four_at(a.x + i) += alpha * t;
+    *four_at(a.r + i) = r;
+    rr += r * r;
+  }
+  return add_lanes(rr);
+}
+
+/// r = (1+L)⁻¹ r; returns r·r.
+ARGIL_EVERY_PROCESSOR double substitute(const SsorArrays& a, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  Floats4 rr = {};
+  for (std::ptrdiff_t row = begin; row < end; ++row) {
+    RowSum even, odd;
+    add_row(a.lower, row, a.r, even, odd);
+    const Floats4 r = *four_at(a.r + 4 * row) + add_up(even, odd);
+    *four_at(a.r + 4 * row) = r;
+    rr += r * r;
+  }
+  return add_lanes(rr);
+}
+
+/// ‖C (1+L) r‖², which is that of b − A x.
+ARGIL_EVERY_PROCESSOR double compute_residual(const SsorArrays& a, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  Floats4 squares = {};
+  for (std::ptrdiff_t row = begin; row < end; ++row) {
+    RowSum even, odd;
+    add_row(a.lower, row, a.r, even, odd);
+    const Floats4 r = *four_at(a.r + 4 * row) - add_up(even, odd);
+    const float* c = a.unscale + 12 * row;
+    const Floats4 unscaled = *four_at(c) * r[0] + *four_at(c + 4) * r[1] + *four_at(c + 8) * r[2];
+    squares += unscaled * unscaled;
+  }
+  return add_lanes(squares);
+}
+
+}  // namespace
+
+void ShortSsor::Blocks::add_row(const std::vector<int>& places, const linear::BlockMatrix& matrix) {
+  for (const int place : places) {
+    source.push_back(place);
+    column.push_back(matrix.column[static_cast<std::size_t>(place)]);
+  }
+  begin.push_back(static_cast<int>(column.size()));
+}
+
+ShortSsor::ShortSsor(const linear::BlockMatrix& matrix, std::vector<int> group_begin, int threads)
+    : m_group_begin(std::move(group_begin)), m_threads(threads), m_sums(m_group_begin.size() - 1) {
+  for (std::size_t g = 0; g + 1 < m_group_begin.size(); ++g)
+    for (int row = m_group_begin[g]; row < m_group_begin[g + 1]; ++row) {
+      std::vector<int> upper, other, lower;
+      for (int b = matrix.row_begin[static_cast<std::size_t>(row)];
+           b < matrix.row_begin[static_cast<std::size_t>(row) + 1]; ++b) {
+        const int column = matrix.column[static_cast<std::size_t>(b)];
+        if (column < m_group_begin[g] || column >= m_group_begin[g + 1])
+          other.push_back(b);
+        else if (column < row)
+          lower.push_back(b);
+        else if (column > row)
+          upper.insert(upper.begin(), b);
+      }
+      m_upper.add_row(upper, matrix);
+      m_other.add_row(other, matrix);
+      m_lower.add_row(lower, matrix);
+    }
+  for (Blocks* blocks : {&m_upper, &m_other, &m_lower}) blocks->values.resize(9 * blocks->source.size() + 1);
+  const auto num_rows = static_cast<std::size_t>(matrix.num_rows());
+  for (std::vector<float>* vector : {&m_r, &m_p, &m_t, &m_s, &m_x}) vector->assign(4 * num_rows, 0.0F);
+  m_unscale.assign(12 * num_rows, 0.0F);
+  m_scale.resize(3, 3 * matrix.num_rows());
+}
+
+/// With rows and columns scaled: Cᵢ⁻¹ Aᵢⱼ Cⱼ⁻ᵀ.
+void ShortSsor::update(const linear::BlockMatrix& matrix) {
+  const int num_rows = matrix.num_rows();
+  for (int row = 0; row < num_rows; ++row) {
+    const Mat3 diagonal = matrix.block(matrix.diagonal[static_cast<std::size_t>(row)]);
+    const Mat3 C = diagonal.llt().matrixL();
+    m_scale.middleCols<3>(3 * row) = C.inverse();
+    for (int k = 0; k < 9; ++k)
+      m_unscale[static_cast<std::size_t>(12 * row + 4 * (k / 3) + k % 3)] = static_cast<float>(C(k));
+  }
+  const auto take = [&](Blocks& blocks, double sign) {
+    for (int row = 0; row < num_rows; ++row)
+      for (int b = blocks.begin[static_cast<std::size_t>(row)];
+           b < blocks.begin[static_cast<std::size_t>(row) + 1]; ++b) {
+        const auto place = static_cast<std::size_t>(b);
+        Eigen::Map<Eigen::Matrix3f>(&blocks.values[9 * place]) =
+            (sign * m_scale.middleCols<3>(3 * row) * matrix.block(blocks.source[place]) *
+             m_scale.middleCols<3>(3 * blocks.column[place]).transpose())
+                .cast<float>();
+      }
+  };
+  take(m_upper, -1.0);
+  take(m_other, 1.0);
+  take(m_lower, -1.0);
+}
+
+SsorArrays ShortSsor::arrays() {
+  const auto rows = [](const Blocks& blocks) {
+    return BlockRows{blocks.begin.data(), blocks.column.data(), blocks.values.data()};
+  };
+  return {rows(m_upper), rows(m_other), rows(m_lower), m_unscale.data(), m_r.data(),
+          m_p.data(),    m_t.data(),    m_s.data(),    m_x.data()};
+}
+
+template <class Body>
+double ShortSsor::sum_groups(Body body) {
+  parallel_for(static_cast<std::ptrdiff_t>(m_sums.size()), m_threads, [&](std::ptrdiff_t group) {
+    const auto g = static_cast<std::size_t>(group);
+    m_sums[g] = body(m_group_begin[g], m_group_begin[g + 1]);
+  });
+  double total = 0.0;
+  for (const double sum : m_sums) total += sum;
+  return total;
+}
+
+ShortSsor::Report ShortSsor::solve(const Points& b, double tolerance, int max_iterations, Points& x) {
+  const double first = b.norm();
+  const SsorArrays a = arrays();
+  double rr = sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t row = begin; row < end; ++row) {
+      const Vec3 scaled = m_scale.middleCols<3>(3 * row) * b.col(row) / first;
+      for (std::ptrdiff_t k = 0; k < 3; ++k) a.r[4 * row + k] = static_cast<float>(scaled(k));
+      *four_at(a.p + 4 * row) = *four_at(a.x + 4 * row) = Floats4{};
+    }
+    return substitute(a, begin, end);
+  });
+  Report report;
+  report.residual = 1.0;
+  double unscale = 1.0 / std::sqrt(rr);  // residual over ‖r‖
+  double last_rr = std::numeric_limits<double>::infinity();
+  while (report.residual > tolerance && report.iterations < max_iterations) {
+    const auto beta = static_cast<float>(rr / last_rr);
+    sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      sweep_back(a, beta, begin, end);
+      return 0.0;
+    });
+    const double curvature =
+        sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) { return sweep_forth(a, begin, end); });
+    if (!(curvature > 0.0)) return report;
+    const auto alpha = static_cast<float>(rr / curvature);
+    last_rr = rr;
+    rr = sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) { return advance(a, alpha, begin, end); });
+    ++report.iterations;
+    if (unscale * std::sqrt(rr) > tolerance) continue;
+    report.residual = std::sqrt(sum_groups(
+        [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return compute_residual(a, begin, end); }));
+    unscale = report.residual / std::sqrt(rr);
+    ++report.checks;
+  }
+  report.converged = report.residual <= tolerance;
+  x.resize(3, b.cols());
+  sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t row = begin; row < end; ++row) {
+      const Vec3 scaled(a.x[4 * row], a.x[4 * row + 1], a.x[4 * row + 2]);
+      x.col(row) = first * (m_scale.middleCols<3>(3 * row).transpose() * scaled);
+    }
+    return 0.0;
+  });
+  return report;
+}
+
+}  // namespace argil::bench
