@@ -14,7 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "base/check.h"
 #include "linear/pcg.h"
+#include "preconditioners/double_designs.h"
 #include "preconditioners/pressed_cube.h"
 #include "preconditioners/short_jacobi.h"
 #include "preconditioners/short_ssor.h"
@@ -102,6 +104,46 @@ void add_eisenstat(const StepSystem& system, std::vector<Design>& designs) {
   for (const int threads : {1, 2}) add("eisenstat_floats_256_rows", num_small, threads);
 }
 
+/// Made and set up by `make`.
+template <class Make>
+void add_double(const StepSystem& system, const std::string& name, Make make, std::vector<Design>& designs) {
+  decltype(make()) made;
+  const double setup = seconds_of([&] { made = make(); });
+  designs.push_back(make_double(system, name, setup, made));
+}
+
+/// A kept factor and what stands for it.
+struct KeptFactor final : linear::Preconditioner {
+  explicit KeptFactor(const linear::BlockMatrix& matrix) : factor(matrix) {
+    ARGIL_ASSERT(factor.factorise(matrix));
+  }
+  double apply(const Points& r, Points& z) override { return stale.apply(r, z); }
+  linear::CholeskyFactor factor;
+  OrderedRuns rows{1};
+  linear::StaleCholesky stale{factor, rows};
+};
+
+void add_others(const StepSystem& system, std::vector<Design>& designs) {
+  using Kind = BlockFactor::Kind;
+  add_double(
+      system, "kept_factor", [&] { return std::make_shared<KeptFactor>(system.before); }, designs);
+  add_double(
+      system, "kept_scalar_factor", [&] { return std::make_shared<ScalarFactor>(system.before); }, designs);
+  for (const int steps : {2, 3, 4})
+    add_double(
+        system, "chebyshev" + std::to_string(steps),
+        [&] { return std::make_shared<Chebyshev>(system.matrix, steps); }, designs);
+  add_double(
+      system, "block_ssor", [&] { return std::make_shared<BlockFactor>(system.matrix, Kind::ssor); },
+      designs);
+  add_double(
+      system, "block_ic0", [&] { return std::make_shared<BlockFactor>(system.matrix, Kind::incomplete); },
+      designs);
+  add_double(
+      system, "two_level_additive", [&] { return std::make_shared<TwoLevel>(system.matrix, system.rest); },
+      designs);
+}
+
 /// ‖b − A x‖ / ‖b‖ in double.
 double compute_residual(const StepSystem& system, const Points& x) {
   Points product(3, x.cols());
@@ -157,6 +199,7 @@ bool run(int target_tets, int rounds) {
   }
   std::vector<Design> designs;
   add_jacobi(system, designs);
+  add_others(system, designs);
   add_eisenstat(system, designs);
   const bool is_good = measure(system, rounds, designs);
   if (is_good) print(system, designs);
