@@ -73,13 +73,6 @@ Design make_short(const StepSystem& system, const std::string& name, int threads
   return design;
 }
 
-/// So many groups of rows, equal but for one.
-std::vector<int> make_groups(int num_rows, int count) {
-  std::vector<int> begin;
-  for (int g = 0; g <= count; ++g) begin.push_back(static_cast<int>(std::int64_t{num_rows} * g / count));
-  return begin;
-}
-
 void add_jacobi(const StepSystem& system, std::vector<Design>& designs) {
   auto jacobi = std::make_shared<linear::BlockJacobi>(1);
   linear::MatrixOperator product(system.matrix, 1);
@@ -94,14 +87,16 @@ void add_eisenstat(const StepSystem& system, std::vector<Design>& designs) {
   constexpr int kGroup = 256;
   const int num_rows = system.matrix.num_rows();
   const int num_small = std::max(1, (num_rows + kGroup / 2) / kGroup);
-  const auto add = [&](const char* name, int groups, int threads) {
-    designs.push_back(
-        make_short(system, name, threads,
-                   std::make_shared<ShortSsor>(system.matrix, make_groups(num_rows, groups), threads)));
+  const auto add = [&](const std::string& name, const SsorOrder& order, int most_threads) {
+    for (int threads = 1; threads <= most_threads; ++threads)
+      designs.push_back(make_short(system, "eisenstat_floats_" + name, threads,
+                                   std::make_shared<ShortSsor>(system.matrix, order, threads)));
   };
-  add("eisenstat_floats_whole", 1, 1);
-  for (const int threads : {1, 2}) add("eisenstat_floats_8_groups", 8, threads);
-  for (const int threads : {1, 2}) add("eisenstat_floats_256_rows", num_small, threads);
+  add("whole", make_groups(num_rows, 1), 1);
+  for (const int groups : {2, 8}) add(std::to_string(groups) + "_groups", make_groups(num_rows, groups), 2);
+  add("256_rows", make_groups(num_rows, num_small), 2);
+  for (const int groups : {2, 4})
+    add(std::to_string(groups) + "_separated", make_separated_groups(system.matrix, groups), 2);
 }
 
 /// Made and set up by `make`.

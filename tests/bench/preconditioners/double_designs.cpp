@@ -72,7 +72,7 @@ Chebyshev::Chebyshev(const linear::BlockMatrix& matrix, int steps)
 }
 
 double Chebyshev::apply(const Points& r, Points& z) {
-  constexpr double kShare = 0.05;  // of 0.02, 0.05, 0.1, 0.3 the best or near it at all sizes
+  constexpr double kShare = 0.1;  // of 0.02, 0.05, 0.1, 0.3 the best or near it at all sizes
   const double theta = 0.5 * m_largest * (1.0 + kShare);
   const double delta = 0.5 * m_largest * (1.0 - kShare);
   const double sigma = theta / delta;

@@ -3,7 +3,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -52,10 +54,9 @@ ARGIL_INLINE void add_block(const float* block, const float* x, RowSum& sum) {
   sum.last += block[8] * p[2];
 }
 
-ARGIL_INLINE void add_row(const BlockRows& blocks, std::ptrdiff_t row, const float* x, RowSum& even,
-                          RowSum& odd) {
-  std::ptrdiff_t b = blocks.begin[row];
-  const std::ptrdiff_t end = blocks.begin[row + 1];
+ARGIL_INLINE void add_blocks(const BlockRows& blocks, std::ptrdiff_t begin, std::ptrdiff_t end,
+                             const float* x, RowSum& even, RowSum& odd) {
+  std::ptrdiff_t b = begin;
   const float* block = blocks.values + 9 * b;
   for (; b + 1 < end; b += 2, block += 18) {
     add_block(block, x + 4 * static_cast<std::ptrdiff_t>(blocks.column[b]), even);
@@ -70,6 +71,24 @@ ARGIL_INLINE Floats4 add_up(const RowSum& even, const RowSum& odd) {
                  0.0F};
 }
 
+/// `known` + the row of `blocks` times x + what the sums hold. The last block meets what was found just
+/// before, and goes column by column, which is the shortest way from there to here.
+ARGIL_INLINE Floats4 finish_row(const BlockRows& blocks, std::ptrdiff_t row, const float* x,
+                                const Floats4& known, RowSum& even, RowSum& odd) {
+  const std::ptrdiff_t begin = blocks.begin[row];
+  const std::ptrdiff_t last = blocks.begin[row + 1] - 1;
+  if (last < begin) return known + add_up(even, odd);
+  add_blocks(blocks, begin, last, x, even, odd);
+  const Floats4 sum = known + add_up(even, odd);
+  const float* block = blocks.values + 9 * last;
+  const Floats4 p = *four_at(x + 4 * static_cast<std::ptrdiff_t>(blocks.column[last]));
+  const Floats4 zero = {};
+  const Floats4 a = __builtin_shufflevector(*four_at(block), zero, 0, 1, 2, 4);
+  const Floats4 b = __builtin_shufflevector(*four_at(block + 3), zero, 0, 1, 2, 4);
+  const Floats4 c = __builtin_shufflevector(*four_at(block + 6), zero, 0, 1, 2, 4);
+  return (sum + a * p[0]) + (b * p[1] + c * p[2]);
+}
+
 ARGIL_INLINE double add_lanes(const Floats4& a) {
   return static_cast<double>(a[0] + a[1] + a[2]);
 }
@@ -81,10 +100,9 @@ ARGIL_EVERY_PROCESSOR void sweep_back(const SsorArrays& a, float beta, std::ptrd
                                       std::ptrdiff_t end) {
   for (std::ptrdiff_t row = end - 1; row >= begin; --row) {
     RowSum even, odd;
-    add_row(a.upper, row, a.t, even, odd);
     const Floats4 p = *four_at(a.r + 4 * row) + beta * *four_at(a.p + 4 * row);
     *four_at(a.p + 4 * row) = p;
-    *four_at(a.t + 4 * row) = p + add_up(even, odd);
+    *four_at(a.t + 4 * row) = finish_row(a.upper, row, a.t, p, even, odd);
   }
 }
 
@@ -93,11 +111,10 @@ ARGIL_EVERY_PROCESSOR double sweep_forth(const SsorArrays& a, std::ptrdiff_t beg
   Floats4 dot = {};
   for (std::ptrdiff_t row = begin; row < end; ++row) {
     RowSum even, odd;
-    add_row(a.other, row, a.t, even, odd);
-    add_row(a.lower, row, a.s, even, odd);
+    add_blocks(a.other, a.other.begin[row], a.other.begin[row + 1], a.t, even, odd);
     const Floats4 p = *four_at(a.p + 4 * row);
     const Floats4 t = *four_at(a.t + 4 * row);
-    const Floats4 s = p - t + add_up(even, odd);
+    const Floats4 s = finish_row(a.lower, row, a.s, p - t, even, odd);
     *four_at(a.s + 4 * row) = s;
     dot += p * (t + s);
   }
@@ -123,8 +140,7 @@ ARGIL_EVERY_PROCESSOR double substitute(const SsorArrays& a, std::ptrdiff_t begi
   Floats4 rr = {};
   for (std::ptrdiff_t row = begin; row < end; ++row) {
     RowSum even, odd;
-    add_row(a.lower, row, a.r, even, odd);
-    const Floats4 r = *four_at(a.r + 4 * row) + add_up(even, odd);
+    const Floats4 r = finish_row(a.lower, row, a.r, *four_at(a.r + 4 * row), even, odd);
     *four_at(a.r + 4 * row) = r;
     rr += r * r;
   }
@@ -136,7 +152,7 @@ ARGIL_EVERY_PROCESSOR double compute_residual(const SsorArrays& a, std::ptrdiff_
   Floats4 squares = {};
   for (std::ptrdiff_t row = begin; row < end; ++row) {
     RowSum even, odd;
-    add_row(a.lower, row, a.r, even, odd);
+    add_blocks(a.lower, a.lower.begin[row], a.lower.begin[row + 1], a.r, even, odd);
     const Floats4 r = *four_at(a.r + 4 * row) - add_up(even, odd);
     const float* c = a.unscale + 12 * row;
     const Floats4 unscaled = *four_at(c) * r[0] + *four_at(c + 4) * r[1] + *four_at(c + 8) * r[2];
@@ -147,34 +163,67 @@ ARGIL_EVERY_PROCESSOR double compute_residual(const SsorArrays& a, std::ptrdiff_
 
 }  // namespace
 
-void ShortSsor::Blocks::add_row(const std::vector<int>& places, const linear::BlockMatrix& matrix) {
-  for (const int place : places) {
-    source.push_back(place);
-    column.push_back(matrix.column[static_cast<std::size_t>(place)]);
-  }
-  begin.push_back(static_cast<int>(column.size()));
+SsorOrder make_groups(int num_rows, int count) {
+  SsorOrder order;
+  for (int row = 0; row < num_rows; ++row) order.rows.push_back(row);
+  for (int g = 0; g <= count; ++g)
+    order.group_begin.push_back(static_cast<int>(std::int64_t{num_rows} * g / count));
+  return order;
 }
 
-ShortSsor::ShortSsor(const linear::BlockMatrix& matrix, std::vector<int> group_begin, int threads)
-    : m_group_begin(std::move(group_begin)), m_threads(threads), m_sums(m_group_begin.size() - 1) {
-  for (std::size_t g = 0; g + 1 < m_group_begin.size(); ++g)
-    for (int row = m_group_begin[g]; row < m_group_begin[g + 1]; ++row) {
-      std::vector<int> upper, other, lower;
-      for (int b = matrix.row_begin[static_cast<std::size_t>(row)];
-           b < matrix.row_begin[static_cast<std::size_t>(row) + 1]; ++b) {
-        const int column = matrix.column[static_cast<std::size_t>(b)];
-        if (column < m_group_begin[g] || column >= m_group_begin[g + 1])
-          other.push_back(b);
-        else if (column < row)
-          lower.push_back(b);
-        else if (column > row)
-          upper.insert(upper.begin(), b);
-      }
-      m_upper.add_row(upper, matrix);
-      m_other.add_row(other, matrix);
-      m_lower.add_row(lower, matrix);
+SsorOrder make_separated_groups(const linear::BlockMatrix& matrix, int count) {
+  const std::vector<int> begin = make_groups(matrix.num_rows(), count).group_begin;
+  SsorOrder order;
+  order.is_last_apart = true;
+  std::vector<int> last;
+  for (std::size_t g = 0; g + 1 < begin.size(); ++g) {
+    order.group_begin.push_back(static_cast<int>(order.rows.size()));
+    for (int row = begin[g]; row < begin[g + 1]; ++row) {
+      const int first = matrix.row_begin[static_cast<std::size_t>(row)];
+      const bool is_coupled = matrix.column[static_cast<std::size_t>(first)] < begin[g];
+      (is_coupled ? last : order.rows).push_back(row);
     }
-  for (Blocks* blocks : {&m_upper, &m_other, &m_lower}) blocks->values.resize(9 * blocks->source.size() + 1);
+  }
+  order.group_begin.push_back(static_cast<int>(order.rows.size()));
+  order.rows.insert(order.rows.end(), last.begin(), last.end());
+  order.group_begin.push_back(static_cast<int>(order.rows.size()));
+  return order;
+}
+
+ShortSsor::ShortSsor(const linear::BlockMatrix& matrix, SsorOrder order, int threads)
+    : m_order(std::move(order)), m_threads(threads), m_sums(m_order.group_begin.size() - 1) {
+  std::vector<int> place(m_order.rows.size()), group(m_order.rows.size());
+  const std::vector<int>& begin = m_order.group_begin;
+  for (std::size_t g = 0; g + 1 < begin.size(); ++g)
+    for (int i = begin[g]; i < begin[g + 1]; ++i) {
+      const auto row = static_cast<std::size_t>(m_order.rows[static_cast<std::size_t>(i)]);
+      place[row] = i;
+      group[row] = static_cast<int>(g);
+    }
+  const int apart = m_order.is_last_apart ? static_cast<int>(begin.size()) - 2 : -1;
+  std::vector<std::pair<int, int>> blocks;  // of a row, by place
+  for (const int row : m_order.rows) {
+    const auto r = static_cast<std::size_t>(row);
+    blocks.clear();
+    for (int b = matrix.row_begin[r]; b < matrix.row_begin[r + 1]; ++b)
+      blocks.emplace_back(place[static_cast<std::size_t>(matrix.column[static_cast<std::size_t>(b)])], b);
+    std::sort(blocks.begin(), blocks.end());
+    const auto is_swept = [&](int column) {
+      const int other = group[static_cast<std::size_t>(m_order.rows[static_cast<std::size_t>(column)])];
+      return other == group[r] || other == apart || group[r] == apart;
+    };
+    for (const auto& [column, b] : blocks)
+      if (!is_swept(column))
+        m_other.add(column, b);
+      else if (column < place[r])
+        m_lower.add(column, b);
+    std::reverse(blocks.begin(), blocks.end());
+    for (const auto& [column, b] : blocks)
+      if (is_swept(column) && column > place[r]) m_upper.add(column, b);
+    for (Blocks* kind : {&m_upper, &m_other, &m_lower})
+      kind->begin.push_back(static_cast<int>(kind->column.size()));
+  }
+  for (Blocks* kind : {&m_upper, &m_other, &m_lower}) kind->values.resize(9 * kind->source.size() + 1);
   const auto num_rows = static_cast<std::size_t>(matrix.num_rows());
   for (std::vector<float>* vector : {&m_r, &m_p, &m_t, &m_s, &m_x}) vector->assign(4 * num_rows, 0.0F);
   m_unscale.assign(12 * num_rows, 0.0F);
@@ -185,7 +234,8 @@ ShortSsor::ShortSsor(const linear::BlockMatrix& matrix, std::vector<int> group_b
 void ShortSsor::update(const linear::BlockMatrix& matrix) {
   const int num_rows = matrix.num_rows();
   for (int row = 0; row < num_rows; ++row) {
-    const Mat3 diagonal = matrix.block(matrix.diagonal[static_cast<std::size_t>(row)]);
+    const int from = m_order.rows[static_cast<std::size_t>(row)];
+    const Mat3 diagonal = matrix.block(matrix.diagonal[static_cast<std::size_t>(from)]);
     const Mat3 C = diagonal.llt().matrixL();
     m_scale.middleCols<3>(3 * row) = C.inverse();
     for (int k = 0; k < 9; ++k)
@@ -215,40 +265,61 @@ SsorArrays ShortSsor::arrays() {
           m_p.data(),    m_t.data(),    m_s.data(),    m_x.data()};
 }
 
+/// Σ body(begin, end) over groups first … last−1, on all threads.
+template <class Body>
+double ShortSsor::sum_groups(std::size_t first, std::size_t last, Body body) {
+  const std::vector<int>& begin = m_order.group_begin;
+  parallel_for(static_cast<std::ptrdiff_t>(last - first), last - first > 1 ? m_threads : 1,
+               [&](std::ptrdiff_t i) {
+                 const std::size_t g = first + static_cast<std::size_t>(i);
+                 m_sums[g] = body(begin[g], begin[g + 1]);
+               });
+  double total = 0.0;
+  for (std::size_t g = first; g < last; ++g) total += m_sums[g];
+  return total;
+}
+
+/// Over all of them, each by itself.
 template <class Body>
 double ShortSsor::sum_groups(Body body) {
-  parallel_for(static_cast<std::ptrdiff_t>(m_sums.size()), m_threads, [&](std::ptrdiff_t group) {
-    const auto g = static_cast<std::size_t>(group);
-    m_sums[g] = body(m_group_begin[g], m_group_begin[g + 1]);
-  });
-  double total = 0.0;
-  for (const double sum : m_sums) total += sum;
-  return total;
+  return sum_groups(0, m_sums.size(), body);
 }
 
 ShortSsor::Report ShortSsor::solve(const Points& b, double tolerance, int max_iterations, Points& x) {
   const double first = b.norm();
   const SsorArrays a = arrays();
-  double rr = sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row) {
-      const Vec3 scaled = m_scale.middleCols<3>(3 * row) * b.col(row) / first;
+      const Vec3 scaled =
+          m_scale.middleCols<3>(3 * row) * b.col(m_order.rows[static_cast<std::size_t>(row)]) / first;
       for (std::ptrdiff_t k = 0; k < 3; ++k) a.r[4 * row + k] = static_cast<float>(scaled(k));
       *four_at(a.p + 4 * row) = *four_at(a.x + 4 * row) = Floats4{};
     }
-    return substitute(a, begin, end);
+    return 0.0;
   });
+  const std::size_t num_groups = m_sums.size();
+  const std::size_t num_first = m_order.is_last_apart ? num_groups - 1 : num_groups;
+  const auto go_forth = [&](const auto& body) {
+    const double sum = sum_groups(0, num_first, body);
+    return sum + sum_groups(num_first, num_groups, body);
+  };
+  const auto go_back = [&](const auto& body) {
+    sum_groups(num_first, num_groups, body);
+    sum_groups(0, num_first, body);
+  };
+  double rr = go_forth([&](std::ptrdiff_t begin, std::ptrdiff_t end) { return substitute(a, begin, end); });
   Report report;
   report.residual = 1.0;
   double unscale = 1.0 / std::sqrt(rr);  // residual over ‖r‖
   double last_rr = std::numeric_limits<double>::infinity();
   while (report.residual > tolerance && report.iterations < max_iterations) {
     const auto beta = static_cast<float>(rr / last_rr);
-    sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    go_back([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       sweep_back(a, beta, begin, end);
       return 0.0;
     });
     const double curvature =
-        sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) { return sweep_forth(a, begin, end); });
+        go_forth([&](std::ptrdiff_t begin, std::ptrdiff_t end) { return sweep_forth(a, begin, end); });
     if (!(curvature > 0.0)) return report;
     const auto alpha = static_cast<float>(rr / curvature);
     last_rr = rr;
@@ -265,7 +336,8 @@ ShortSsor::Report ShortSsor::solve(const Points& b, double tolerance, int max_it
   sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row) {
       const Vec3 scaled(a.x[4 * row], a.x[4 * row + 1], a.x[4 * row + 2]);
-      x.col(row) = first * (m_scale.middleCols<3>(3 * row).transpose() * scaled);
+      x.col(m_order.rows[static_cast<std::size_t>(row)]) =
+          first * (m_scale.middleCols<3>(3 * row).transpose() * scaled);
     }
     return 0.0;
   });

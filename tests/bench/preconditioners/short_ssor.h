@@ -8,15 +8,28 @@ namespace argil::bench {
 
 struct SsorArrays;
 
-/// Conjugate gradients in floats over symmetric block Gauss–Seidel within groups of consecutive rows, by
-/// Eisenstat's trick [Eisenstat1981]. With the rows scaled so that the diagonal blocks are 1,
-///   A = L + 1 + Lᵀ + R,   L within the groups below the diagonal, R what couples groups,
+/// In which order rows are gone through.
+struct SsorOrder {
+  std::vector<int> rows;
+  std::vector<int> group_begin;  ///< places where groups of them begin, and how many rows there are
+  bool is_last_apart = false;    ///< the last group is gone through after all others, which may couple with
+                                 ///< it but with none of them among each other
+};
+
+/// Groups of consecutive rows of about equal length.
+SsorOrder make_groups(int num_rows, int count);
+
+/// The same without the rows that couple with an earlier group: these come last.
+SsorOrder make_separated_groups(const linear::BlockMatrix& matrix, int count);
+
+/// Conjugate gradients in floats over symmetric block Gauss–Seidel within groups of rows, by Eisenstat's
+/// trick [Eisenstat1981]. With the rows scaled so that the diagonal blocks are 1,
+///   A = L + 1 + Lᵀ + R,   L below the diagonal within groups and of the last one, R what couples groups,
 ///   Â = (1+L)⁻¹ A (1+L)⁻ᵀ:   t = (1+L)⁻ᵀ p,   Â p = t + (1+L)⁻¹ (p − t + R t),
 /// an iteration reads each block once. Groups go on different threads; bits do not depend on these.
 class ShortSsor {
  public:
-  /// Groups begin at `group_begin`, which ends with the number of rows.
-  ShortSsor(const linear::BlockMatrix& matrix, std::vector<int> group_begin, int threads);
+  ShortSsor(const linear::BlockMatrix& matrix, SsorOrder order, int threads);
 
   void update(const linear::BlockMatrix& matrix);
 
@@ -32,19 +45,24 @@ class ShortSsor {
   Report solve(const Points& b, double tolerance, int max_iterations, Points& x);
 
  private:
-  /// Blocks of some kind, row by row.
+  /// Blocks of some kind, row by row; rows and columns by their places in the order.
   struct Blocks {
     std::vector<int> begin = {0};
     std::vector<int> column;
-    std::vector<int> source;    // place in the matrix
+    std::vector<int> source;    // where they are in the matrix
     std::vector<float> values;  // 9 each, and one more
-    void add_row(const std::vector<int>& places, const linear::BlockMatrix& matrix);
+    void add(int to_column, int from) {
+      column.push_back(to_column);
+      source.push_back(from);
+    }
   };
   SsorArrays arrays();
   template <class Body>
   double sum_groups(Body body);
+  template <class Body>
+  double sum_groups(std::size_t first, std::size_t last, Body body);
 
-  std::vector<int> m_group_begin;
+  SsorOrder m_order;
   int m_threads;
   Blocks m_upper;                              // −Lᵀ, columns falling: what was found last comes last
   Blocks m_other;                              // R
