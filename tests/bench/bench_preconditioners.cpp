@@ -25,6 +25,7 @@ namespace argil::bench {
 namespace {
 
 constexpr int kMostIterations = 1000;
+constexpr int kSetups = 5;  // of which the least counts
 constexpr double kTolerances[] = {1e-1, 1e-2, 1e-3, 1e-8};
 
 double seconds_of(const std::function<void()>& what) {
@@ -62,10 +63,14 @@ Design make_double(const StepSystem& system, const std::string& name, double set
 
 /// Designs with an iteration of their own, in floats.
 template <class Made>
-Design make_short(const StepSystem& system, const std::string& name, int threads,
+Design make_short(StepSystem& system, const std::string& name, int threads,
                   const std::shared_ptr<Made>& made) {
   Design design{name, threads, true, 0.0, {}};
-  design.setup = seconds_of([&] { made->update(system.matrix); });
+  for (int k = 0; k < kSetups; ++k) {
+    for (std::uint32_t& revision : system.matrix.revision) ++revision;
+    const double seconds = seconds_of([&] { made->update(system.matrix); });
+    design.setup = k == 0 ? seconds : std::min(design.setup, seconds);
+  }
   design.solve = [&system, made](double tolerance, Points& x) {
     const auto report = made->solve(system.b, tolerance, kMostIterations, x);
     return report.converged ? report.iterations : -1;
@@ -73,7 +78,7 @@ Design make_short(const StepSystem& system, const std::string& name, int threads
   return design;
 }
 
-void add_jacobi(const StepSystem& system, std::vector<Design>& designs) {
+void add_jacobi(StepSystem& system, std::vector<Design>& designs) {
   auto jacobi = std::make_shared<linear::BlockJacobi>(1);
   linear::MatrixOperator product(system.matrix, 1);
   const double setup = seconds_of([&] { jacobi->update(system.matrix, product); });
@@ -83,7 +88,7 @@ void add_jacobi(const StepSystem& system, std::vector<Design>& designs) {
         make_short(system, "block_jacobi_floats", threads, std::make_shared<ShortJacobi>(threads)));
 }
 
-void add_eisenstat(const StepSystem& system, std::vector<Design>& designs) {
+void add_eisenstat(StepSystem& system, std::vector<Design>& designs) {
   constexpr int kGroup = 256;
   const int num_rows = system.matrix.num_rows();
   const int num_small = std::max(1, (num_rows + kGroup / 2) / kGroup);
@@ -160,7 +165,8 @@ bool is_right(const StepSystem& system, const Design& design, double tolerance, 
 bool measure(const StepSystem& system, int rounds, std::vector<Design>& designs) {
   Points x;
   for (int round = 0; round < rounds; ++round)
-    for (Design& design : designs)
+    for (Design& design : designs) {
+      (void)design.solve(kTolerances[0], x);  // brings its numbers into the cache
       for (std::size_t k = 0; k < (design.is_short ? 3 : 4); ++k) {
         int iterations = 0;
         const double seconds = seconds_of([&] { iterations = design.solve(kTolerances[k], x); });
@@ -168,6 +174,7 @@ bool measure(const StepSystem& system, int rounds, std::vector<Design>& designs)
         design.iterations[k] = iterations;
         if (round == 0 && !is_right(system, design, kTolerances[k], iterations, x)) return false;
       }
+    }
   return true;
 }
 
@@ -187,7 +194,7 @@ void print(const StepSystem& system, const std::vector<Design>& designs) {
 
 bool run(int target_tets, int rounds) {
   constexpr double kRounding = 1e-6;  // of the solid's own step, solved to 1e-10
-  const StepSystem system = make_pressed_cube(target_tets);
+  StepSystem system = make_pressed_cube(target_tets);
   if (!(system.off <= kRounding)) {
     std::fprintf(stderr, "%d tets: the system is not the solid's, off by %g\n", system.num_tets, system.off);
     return false;
@@ -228,9 +235,11 @@ int main(int argc, char** argv) {
   std::vector<int> sizes;
   for (int i = 2; i < argc; ++i) sizes.push_back(std::atoi(argv[i]));
   if (sizes.empty()) sizes = {2000, 10000, 40000};
-  std::printf("# commit %s, gcc %s, %s, least wall time of %d\n",
-              read_line("git rev-parse --short HEAD 2>/dev/null").c_str(), __VERSION__,
-              find_processor().c_str(), rounds);
+  std::printf(
+      "# an elastic cube of 6 cm, E = 140 kPa, h = 1 ms, pressed on a spot; commit %s, gcc %s, %s, least "
+      "wall time of %d\n",
+      read_line("git rev-parse --short HEAD 2>/dev/null").c_str(), __VERSION__, find_processor().c_str(),
+      rounds);
   std::printf(
       "tets,design,threads,rows,setup_ms,iterations_1e-1,ms_1e-1,iterations_1e-2,ms_1e-2,iterations_1e-3,ms_"
       "1e-3,"

@@ -1,8 +1,5 @@
 #include "preconditioners/short_ssor.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -93,6 +90,15 @@ ARGIL_INLINE double add_lanes(const Floats4& a) {
   return static_cast<double>(a[0] + a[1] + a[2]);
 }
 
+/// a times b, or aᵀ times b, of 3 columns of four.
+ARGIL_INLINE Floats4 multiply(const float* a, const Floats4& b) {
+  return *four_at(a) * b[0] + *four_at(a + 4) * b[1] + *four_at(a + 8) * b[2];
+}
+ARGIL_INLINE Floats4 multiply_transposed(const float* a, const Floats4& b) {
+  const Floats4 x = *four_at(a) * b, y = *four_at(a + 4) * b, z = *four_at(a + 8) * b;
+  return Floats4{x[0] + x[1] + x[2], y[0] + y[1] + y[2], z[0] + z[1] + z[2], 0.0F};
+}
+
 // Rows begin … end−1, which are a group:
 
 /// p = r + β p, t = (1+L)⁻ᵀ p.
@@ -154,11 +160,52 @@ ARGIL_EVERY_PROCESSOR double compute_residual(const SsorArrays& a, std::ptrdiff_
     RowSum even, odd;
     add_blocks(a.lower, a.lower.begin[row], a.lower.begin[row + 1], a.r, even, odd);
     const Floats4 r = *four_at(a.r + 4 * row) - add_up(even, odd);
-    const float* c = a.unscale + 12 * row;
-    const Floats4 unscaled = *four_at(c) * r[0] + *four_at(c + 4) * r[1] + *four_at(c + 8) * r[2];
+    const Floats4 unscaled = multiply(a.unscale + 12 * row, r);
     squares += unscaled * unscaled;
   }
   return add_lanes(squares);
+}
+
+/// C with C Cᵀ = D, and C⁻¹; both 0 above the diagonal.
+void factorise(const Mat3& D, Mat3& C, Mat3& inverse) {
+  C.setZero();
+  inverse.setZero();
+  C(0, 0) = std::sqrt(D(0, 0));
+  inverse(0, 0) = 1.0 / C(0, 0);
+  C(1, 0) = D(1, 0) * inverse(0, 0);
+  C(2, 0) = D(2, 0) * inverse(0, 0);
+  C(1, 1) = std::sqrt(D(1, 1) - C(1, 0) * C(1, 0));
+  inverse(1, 1) = 1.0 / C(1, 1);
+  C(2, 1) = (D(2, 1) - C(2, 0) * C(1, 0)) * inverse(1, 1);
+  C(2, 2) = std::sqrt(D(2, 2) - C(2, 0) * C(2, 0) - C(2, 1) * C(2, 1));
+  inverse(2, 2) = 1.0 / C(2, 2);
+  inverse(1, 0) = -C(1, 0) * inverse(0, 0) * inverse(1, 1);
+  inverse(2, 1) = -C(2, 1) * inverse(1, 1) * inverse(2, 2);
+  inverse(2, 0) = -(C(2, 0) * inverse(0, 0) + C(2, 1) * inverse(1, 0)) * inverse(2, 2);
+}
+
+/// With rows and columns scaled: sign Cᵢ⁻¹ Aᵢⱼ Cⱼ⁻ᵀ of all blocks of a kind. `scale`: C⁻¹, below the diagonal
+/// and on it, 3 columns of four a row.
+ARGIL_EVERY_PROCESSOR void scale_blocks(const BlockRows& blocks, const int* source, const double* from,
+                                        const float* scale, float sign, std::ptrdiff_t num_rows, float* to) {
+  for (std::ptrdiff_t row = 0; row < num_rows; ++row) {
+    Floats4 left[3];
+    for (int k = 0; k < 3; ++k) left[k] = sign * *four_at(scale + 12 * row + 4 * k);
+    for (std::ptrdiff_t b = blocks.begin[row]; b < blocks.begin[row + 1]; ++b) {
+      const float* right = scale + 12 * static_cast<std::ptrdiff_t>(blocks.column[b]);
+      Floats4 a[3];
+      for (int k = 0; k < 3; ++k) {
+        Quad column;
+        read(from + 9 * static_cast<std::ptrdiff_t>(source[b]) + 3 * k, column);
+        a[k] = __builtin_convertvector(column, Floats4);
+      }
+      const Floats4 scaled[3] = {a[0] * right[0], a[0] * right[1] + a[1] * right[5],
+                                 a[0] * right[2] + a[1] * right[6] + a[2] * right[10]};
+      for (int k = 0; k < 3; ++k)  // the fourth number is the first of what is written next
+        *four_at(to + 9 * b + 3 * k) =
+            left[0] * scaled[k][0] + left[1] * scaled[k][1] + left[2] * scaled[k][2];
+    }
+  }
 }
 
 }  // namespace
@@ -227,34 +274,29 @@ ShortSsor::ShortSsor(const linear::BlockMatrix& matrix, SsorOrder order, int thr
   const auto num_rows = static_cast<std::size_t>(matrix.num_rows());
   for (std::vector<float>* vector : {&m_r, &m_p, &m_t, &m_s, &m_x}) vector->assign(4 * num_rows, 0.0F);
   m_unscale.assign(12 * num_rows, 0.0F);
-  m_scale.resize(3, 3 * matrix.num_rows());
+  m_scale.assign(12 * num_rows, 0.0F);
 }
 
-/// With rows and columns scaled: Cᵢ⁻¹ Aᵢⱼ Cⱼ⁻ᵀ.
 void ShortSsor::update(const linear::BlockMatrix& matrix) {
   const int num_rows = matrix.num_rows();
   for (int row = 0; row < num_rows; ++row) {
     const int from = m_order.rows[static_cast<std::size_t>(row)];
     const Mat3 diagonal = matrix.block(matrix.diagonal[static_cast<std::size_t>(from)]);
-    const Mat3 C = diagonal.llt().matrixL();
-    m_scale.middleCols<3>(3 * row) = C.inverse();
-    for (int k = 0; k < 9; ++k)
-      m_unscale[static_cast<std::size_t>(12 * row + 4 * (k / 3) + k % 3)] = static_cast<float>(C(k));
+    Mat3 C, inverse;
+    factorise(diagonal, C, inverse);
+    for (int k = 0; k < 9; ++k) {
+      const auto at = static_cast<std::size_t>(12 * row + 4 * (k / 3) + k % 3);
+      m_unscale[at] = static_cast<float>(C(k));
+      m_scale[at] = static_cast<float>(inverse(k));
+    }
   }
-  const auto take = [&](Blocks& blocks, double sign) {
-    for (int row = 0; row < num_rows; ++row)
-      for (int b = blocks.begin[static_cast<std::size_t>(row)];
-           b < blocks.begin[static_cast<std::size_t>(row) + 1]; ++b) {
-        const auto place = static_cast<std::size_t>(b);
-        Eigen::Map<Eigen::Matrix3f>(&blocks.values[9 * place]) =
-            (sign * m_scale.middleCols<3>(3 * row) * matrix.block(blocks.source[place]) *
-             m_scale.middleCols<3>(3 * blocks.column[place]).transpose())
-                .cast<float>();
-      }
+  const auto take = [&](Blocks& blocks, float sign) {
+    scale_blocks({blocks.begin.data(), blocks.column.data(), nullptr}, blocks.source.data(),
+                 matrix.values.data(), m_scale.data(), sign, num_rows, blocks.values.data());
   };
-  take(m_upper, -1.0);
-  take(m_other, 1.0);
-  take(m_lower, -1.0);
+  take(m_upper, -1.0F);
+  take(m_other, 1.0F);
+  take(m_lower, -1.0F);
 }
 
 SsorArrays ShortSsor::arrays() {
@@ -285,28 +327,52 @@ double ShortSsor::sum_groups(Body body) {
   return sum_groups(0, m_sums.size(), body);
 }
 
-ShortSsor::Report ShortSsor::solve(const Points& b, double tolerance, int max_iterations, Points& x) {
-  const double first = b.norm();
+/// Groups as they must come for (1+L)⁻¹, and for (1+L)⁻ᵀ.
+template <class Body>
+double ShortSsor::go_forth(Body body) {
+  const std::size_t num_first = m_sums.size() - (m_order.is_last_apart ? 1 : 0);
+  const double sum = sum_groups(0, num_first, body);
+  return sum + sum_groups(num_first, m_sums.size(), body);
+}
+template <class Body>
+void ShortSsor::go_back(Body body) {
+  const std::size_t num_first = m_sums.size() - (m_order.is_last_apart ? 1 : 0);
+  sum_groups(num_first, m_sums.size(), body);
+  sum_groups(0, num_first, body);
+}
+
+/// r = C⁻¹ b / first, p = x = 0.
+void ShortSsor::set_start(const Points& b, double first) {
   const SsorArrays a = arrays();
   sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row) {
-      const Vec3 scaled =
-          m_scale.middleCols<3>(3 * row) * b.col(m_order.rows[static_cast<std::size_t>(row)]) / first;
-      for (std::ptrdiff_t k = 0; k < 3; ++k) a.r[4 * row + k] = static_cast<float>(scaled(k));
+      const double* from = b.data() + 3 * m_order.rows.data()[row];
+      const Floats4 of_row = {static_cast<float>(from[0] / first), static_cast<float>(from[1] / first),
+                              static_cast<float>(from[2] / first), 0.0F};
+      *four_at(a.r + 4 * row) = multiply(m_scale.data() + 12 * row, of_row);
       *four_at(a.p + 4 * row) = *four_at(a.x + 4 * row) = Floats4{};
     }
     return 0.0;
   });
-  const std::size_t num_groups = m_sums.size();
-  const std::size_t num_first = m_order.is_last_apart ? num_groups - 1 : num_groups;
-  const auto go_forth = [&](const auto& body) {
-    const double sum = sum_groups(0, num_first, body);
-    return sum + sum_groups(num_first, num_groups, body);
-  };
-  const auto go_back = [&](const auto& body) {
-    sum_groups(num_first, num_groups, body);
-    sum_groups(0, num_first, body);
-  };
+}
+
+/// x = first C⁻ᵀ x.
+void ShortSsor::write_solution(double first, Points& x) {
+  const SsorArrays a = arrays();
+  x.resize(3, static_cast<Eigen::Index>(m_order.rows.size()));
+  sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t row = begin; row < end; ++row) {
+      const Floats4 of_row = multiply_transposed(m_scale.data() + 12 * row, *four_at(a.x + 4 * row));
+      for (int k = 0; k < 3; ++k) x(k, m_order.rows.data()[row]) = first * static_cast<double>(of_row[k]);
+    }
+    return 0.0;
+  });
+}
+
+ShortSsor::Report ShortSsor::solve(const Points& b, double tolerance, int max_iterations, Points& x) {
+  const double first = b.norm();
+  const SsorArrays a = arrays();
+  set_start(b, first);
   double rr = go_forth([&](std::ptrdiff_t begin, std::ptrdiff_t end) { return substitute(a, begin, end); });
   Report report;
   report.residual = 1.0;
@@ -332,15 +398,7 @@ ShortSsor::Report ShortSsor::solve(const Points& b, double tolerance, int max_it
     ++report.checks;
   }
   report.converged = report.residual <= tolerance;
-  x.resize(3, b.cols());
-  sum_groups([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    for (std::ptrdiff_t row = begin; row < end; ++row) {
-      const Vec3 scaled(a.x[4 * row], a.x[4 * row + 1], a.x[4 * row + 2]);
-      x.col(m_order.rows[static_cast<std::size_t>(row)]) =
-          first * (m_scale.middleCols<3>(3 * row).transpose() * scaled);
-    }
-    return 0.0;
-  });
+  write_solution(first, x);
   return report;
 }
 

@@ -61,14 +61,19 @@ class ShortSsor {
   double sum_groups(Body body);
   template <class Body>
   double sum_groups(std::size_t first, std::size_t last, Body body);
+  template <class Body>
+  double go_forth(Body body);
+  template <class Body>
+  void go_back(Body body);
+  void set_start(const Points& b, double first);
+  void write_solution(double first, Points& x);
 
   SsorOrder m_order;
   int m_threads;
-  Blocks m_upper;                              // −Lᵀ, columns falling: what was found last comes last
-  Blocks m_other;                              // R
-  Blocks m_lower;                              // −L
-  Eigen::Matrix3Xd m_scale;                    // C⁻¹ of each diagonal block C Cᵀ
-  std::vector<float> m_unscale;                // C, 3 columns of four a row
+  Blocks m_upper;                         // −Lᵀ, columns falling: what was found last comes last
+  Blocks m_other;                         // R
+  Blocks m_lower;                         // −L
+  std::vector<float> m_scale, m_unscale;  // C⁻¹ and C of each diagonal block C Cᵀ, 3 columns of four a row
   std::vector<float> m_r, m_p, m_t, m_s, m_x;  // four a row
   std::vector<double> m_sums;                  // of each group
 };
