@@ -58,7 +58,11 @@ class OrderedItems {
   }
   template <class Term, class Join>
   void find_of_blocks(std::ptrdiff_t count, Term term, Join join) const {
-    m_of_block.resize(static_cast<std::size_t>((count_visited(count) + kLength - 1) / kLength));
+    const auto count_blocks = [](std::ptrdiff_t items) {
+      return static_cast<std::size_t>((items + kLength - 1) / kLength);
+    };
+    m_of_block.reserve(count_blocks(count));  // whichever are visited
+    m_of_block.resize(count_blocks(count_visited(count)));
     each_block(count, [&](std::ptrdiff_t block, std::ptrdiff_t begin, std::ptrdiff_t end) {
       double of_block = 0.0;
       for (std::ptrdiff_t i = begin; i < end; ++i) of_block = join(of_block, term(item(i)));

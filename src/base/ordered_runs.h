@@ -15,11 +15,11 @@ class OrderedRuns {
   explicit OrderedRuns(int threads) : m_threads(threads) {}
 
   /// body(begin, end) for every run; its number is added to the sum that is returned. No allocation after the
-  /// first call of one size.
+  /// first call of one count, whichever runs are visited.
   template <class Body>
   double sum(std::ptrdiff_t count, Body body) {
-    const auto runs = static_cast<std::size_t>(count_runs(count));
-    if (m_sums.size() != runs) m_sums.resize(runs);
+    m_sums.reserve(static_cast<std::size_t>(count_all_runs(count)));
+    m_sums.resize(static_cast<std::size_t>(count_runs(count)));
     double* sums = m_sums.data();
     each_run(count, [sums, &body](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
       sums[i] = body(begin, end);
@@ -43,7 +43,10 @@ class OrderedRuns {
   }
   /// How many runs are visited.
   std::ptrdiff_t count_runs(std::ptrdiff_t count) const {
-    return m_visited ? static_cast<std::ptrdiff_t>(m_visited->size()) : (count + kLength - 1) / kLength;
+    return m_visited ? static_cast<std::ptrdiff_t>(m_visited->size()) : count_all_runs(count);
+  }
+  static constexpr std::ptrdiff_t count_all_runs(std::ptrdiff_t count) {
+    return (count + kLength - 1) / kLength;
   }
   /// From now on only these runs, increasing; the list must outlive them. Null: all.
   void visit(const std::vector<int>* runs) { m_visited = runs; }

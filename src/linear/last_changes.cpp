@@ -35,6 +35,7 @@ Vec3 find_shares(Mat3 G, Vec3 g) {
 void LastChanges::prepare(std::ptrdiff_t num_rows) {
   for (auto* vectors : {&m_d, &m_product})
     for (std::vector<float>& vector : *vectors) vector.resize(4 * static_cast<std::size_t>(num_rows));
+  m_products.reserve(static_cast<std::size_t>(OrderedRuns::count_all_runs(num_rows)));
 }
 
 LastChanges::Start LastChanges::begin(const ShortBlocks& matrix, Operator& whole, const OrderedRuns& runs,

@@ -56,6 +56,10 @@ void ShortIteration::exchange_state(Archive& archive, const std::string& prefix)
 void ShortIteration::prepare(const BlockMatrix& pattern) {
   const auto num_rows = static_cast<std::size_t>(pattern.num_rows());
   for (std::vector<float>* vector : {&m_r, &m_z, &m_w, &m_p, &m_q, &m_x}) vector->resize(4 * num_rows);
+  const auto num_runs = static_cast<std::size_t>(OrderedRuns::count_all_runs(pattern.num_rows()));
+  m_products.reserve(num_runs);
+  m_sums.reserve(num_runs);
+  m_solved.reserve(num_runs);
   m_last.prepare(pattern.num_rows());
   m_product.resize(3, pattern.num_rows());
   m_blocks.prepare(pattern);

@@ -72,6 +72,7 @@ void HandSide::see(BodyAnswer& answer) {
   } else {
     if (!m_is_surface_known && !m_state.has_moved) m_state.surface_x = m_state.contact_x;
     m_is_surface_known = true;
+    m_moved.reserve(static_cast<std::size_t>(m_state.surface_x.cols()));
     for (std::size_t i = 0; i < answer.moved.size(); ++i)
       m_state.surface_x.col(answer.moved[i]) = answer.surface_x.col(static_cast<Eigen::Index>(i));
     m_moved.insert(m_moved.end(), answer.moved.begin(), answer.moved.end());

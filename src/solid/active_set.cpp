@@ -59,6 +59,7 @@ ActiveSet::ActiveSet(const Elements& elements, const std::vector<int>& node_of_r
   m_batch_marks.resize(static_cast<std::size_t>(num_batches));
   m_run_marks.resize(m_state.size());
   m_node_marks.resize(static_cast<std::size_t>(elements.num_nodes()));
+  m_fringe.reserve(m_state.size());  // the others are as long as they can be: all is awake
   update();
 }
 

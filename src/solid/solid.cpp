@@ -67,6 +67,8 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   constexpr int kLarge = 1500;  // rows; with fewer, keeping the lists costs what a smaller solve saves
   if (m_params.extent == Extent::local || (m_params.extent == Extent::automatic && num_free() >= kLarge)) {
     m_region = std::make_unique<ActiveSet>(m_elements, m_node_of_row, m_row_of_node);
+    m_pulls.reserve(m_region->awake().size());
+    m_run_speed.reserve(m_region->awake().size());
     visit_region();
   }
 }

@@ -137,7 +137,9 @@ class Solid {
   double sum_moving_points(Body body) {
     const std::ptrdiff_t count = m_elements.num_points();
     const std::vector<int>* batches = m_region ? &m_region->batches() : nullptr;
-    m_point_sums.resize(batches ? batches->size() : static_cast<std::size_t>((count + kLanes - 1) / kLanes));
+    const auto num_batches = static_cast<std::size_t>((count + kLanes - 1) / kLanes);
+    m_point_sums.reserve(num_batches);
+    m_point_sums.resize(batches ? batches->size() : num_batches);
     double* sums = m_point_sums.data();
     parallel_for(static_cast<std::ptrdiff_t>(m_point_sums.size()), m_threads, [=, &body](std::ptrdiff_t i) {
       const std::ptrdiff_t batch = batches ? (*batches)[static_cast<std::size_t>(i)] : i;
