@@ -2,8 +2,8 @@
 """Steps in a second while a tool pushes, pulls, wets and dries the paper's three kinds of body.
 
 Usage: paper_rates.py ARGIL [-o TABLE.csv] [--tets 5000]. Each run is 0.4 s of contact at one place, solid and water once
-a tick of 1 ms; the rate is ticks over seconds of processor time, of the ticks alone;
-`wall_share` is what share of it the clock on the wall saw, at the worst of the four. Best of three runs unless said otherwise.
+a tick of 1 ms; the rate is ticks over seconds of processor time, of the ticks alone, and `wall_share` what share of it the
+clock on the wall saw, at the worst of the four. Best of three runs unless said otherwise.
 """
 import argparse
 import csv
