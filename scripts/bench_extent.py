@@ -9,12 +9,16 @@ light: a sphere of 8 mm presses 0.5 mm; push: the same, 1.5 mm, and moves 6 mm a
 and so much wider that they have as many tets; slide: a sphere of 24 mm presses 1.5 mm and slides (traces/block_slide.csv), on
 cells half as large again. Writes results/bench/extent.csv. One thread, time
 of the steps' stages: what is written is not counted; the median of three runs. A slab of 144 cells a side has 995 328 tets, whose whole takes half
-a second a step: `--most-whole TETS` leaves it out, and what it is compared with.
+a second a step: `--most-whole TETS` leaves it out, and what it is compared with. `start_s` is the wall time of a run of one tick, from
+the process's start to its end, least of three: mesh read, body made, first frame written; `peak_MiB` the largest resident
+memory of all runs.
 """
 import argparse
 import json
+import os
 import subprocess
 import tempfile
+import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -104,18 +108,41 @@ def write_scene(folder, scene, cells):
     return write_slab(folder / "slab.msh", scene.widen(cells), scene.layers, scene.cell)
 
 
-def run(argil, folder, settings):
-    """Forces, numbers of nodes that steps solved for, and milliseconds of a step in which the tool touches."""
+def call(argil, folder, settings):
+    """Seconds of a run, and its largest resident memory [MiB]."""
     sets = [word for setting in settings for word in ("--set", setting)]
+    start = time.perf_counter()
+    process = subprocess.Popen([argil, "run", folder / "slab.json", "-q", "-o", folder / "slab.h5", "--threads", "1", *sets],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)  # of this child alone
+    seconds = time.perf_counter() - start
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        raise subprocess.CalledProcessError(process.returncode, process.args)
+    return seconds, usage.ru_maxrss / 1024
+
+
+class Figures(NamedTuple):
+    """Of the runs of a mode."""
+
+    force: np.ndarray
+    active: np.ndarray  # nodes that steps solved for
+    ms: float  # of a step in which the tool touches
+    start: float  # [s]
+    peak: float  # [MiB]
+
+
+def run(argil, folder, settings):
+    calls = [call(argil, folder, [*settings, "/trace/duration_s=0.001"]) for _ in range(REPEATS)]
+    start = min(seconds for seconds, _ in calls)
     times = []
     for _ in range(REPEATS):
-        subprocess.run([argil, "run", folder / "slab.json", "-q", "-o", folder / "slab.h5", "--threads", "1", *sets],
-                       check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        calls.append(call(argil, folder, settings))
         with h5py.File(folder / "slab.h5") as file:
             force, active = file["haptic/force"][:], file["physics/active_nodes"][:]
             times.append(sum(file["timing"][stage][0] for stage in STAGES))
     touches = np.linalg.norm(force, axis=1) > 0  # before, the body rests
-    return force, active[active > 0], 1e3 * np.median(times) / touches.sum()
+    return Figures(force, active[active > 0], 1e3 * np.median(times) / touches.sum(), start, max(peak for _, peak in calls))
 
 
 def main():
@@ -127,7 +154,7 @@ def main():
     options = parser.parse_args()
     argil = options.build / "bin" / "argil"
     lines = [f"# {provenance.describe()}, one thread; ms a step in which the tool touches",
-             "scene,tets,mode,nodes_mean,nodes_most,ms_a_step,peak_N,error_N,error_over_bound"]
+             "scene,tets,mode,nodes_mean,nodes_most,ms_a_step,start_s,peak_MiB,peak_N,error_N,error_over_bound"]
     for name in options.scenes:
         for cells in options.cells:
             with tempfile.TemporaryDirectory() as folder:
@@ -136,10 +163,11 @@ def main():
                 for mode, settings in MODES.items():
                     if mode != "auto" and tets > options.most_whole:
                         continue
-                    force, active, time = run(argil, Path(folder), settings)
+                    force, active, *figures = run(argil, Path(folder), settings)
                     whole = force if mode == "whole" else whole
                     size = np.linalg.norm(force, axis=1)
-                    row = f"{name},{tets},{mode},{active.mean():.0f},{active.max()},{time:.3f},{size.max():.4f}"
+                    row = (f"{name},{tets},{mode},{active.mean():.0f},{active.max()},"
+                           + "{:.3f},{:.3f},{:.0f}".format(*figures) + f",{size.max():.4f}")
                     if whole is not None:
                         error = np.linalg.norm(force - whole, axis=1)
                         bound = np.maximum(0.02, 0.01 * np.linalg.norm(whole, axis=1))

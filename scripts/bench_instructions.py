@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Instructions of one step of the press, by callgrind, which the load of the machine does not touch.
 
-Usage: bench_instructions.py [TETS …]      writes a table (CSV) to standard output; default 2000 10000
+Usage: bench_instructions.py [TETS …]      writes a table (CSV) to standard output; default 2390 10000
 
 One thread; the mean over the benchmark's steps, in all and by stage. The processor that valgrind shows to the program
 has lanes of four numbers at most, so that one with eight needs fewer.
@@ -44,7 +44,7 @@ def count(tets, folder):
 def main():
     if shutil.which("valgrind") is None or not PROGRAM.exists():
         sys.exit(f"{sys.argv[0]}: needs Debian's valgrind and {PROGRAM}, which scripts/build bench_step makes")
-    sizes = sys.argv[1:] or ["2000", "10000"]
+    sizes = sys.argv[1:] or ["2390", "10000"]
     table = csv.DictWriter(sys.stdout, ["tets", *STAGES, "step"], lineterminator="\n")
     table.writeheader()
     with tempfile.TemporaryDirectory() as folder:

@@ -21,6 +21,7 @@ ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "results" / "fidelity"
 REPEATS = 2  # of each run, for the least processor time
 LONG = 60  # [s] of a run that is made once
+SMALL_TOOL = '/tool/shape={"kind": "sphere", "radius_m": 0.008, "subdivisions": 3}'
 UNDRAINED = ["/dynamics/element=p1_nodal", "/dynamics/allow_locking=false"]
 
 
@@ -61,6 +62,27 @@ SCENES = {
     "stabs": Scene("demo_dino_dry", with_trace("poke.csv"), "slack"),
     "undamped": Scene("study_light_press", ["/dynamics/rayleigh_stiffness_s=0", "/material/clay_kernel/form=off",
                                             "/material/plasticity/enabled=false"], "sleep"),
+    # A post bent to 90 degrees and back in 0.3 s, held by the rod all the time, of clay that resists fast strain: the matrix
+    # that brakes it is turned by frames that lag. Contacts are soft, so that theirs is not the error.
+    "sway": Scene("study_deep_bend", with_trace("post_sway.csv", "/dynamics/solver/tolerance=1e-4",
+                                                "/dynamics/rayleigh_stiffness_s=0.1",
+                                                "/contact/vertex_face_stiffness_N_per_m=20",
+                                                "/contact/edge_edge_stiffness_N_per_m=20"), "frames"),
+    # Slow clay goes on by itself in an even press; then the hand turns round within a tick.
+    "drive and reversal": Scene("study_light_press", with_trace("block_reversal.csv", "/dynamics/rayleigh_stiffness_s=0.05",
+                                                                "/material/plasticity/creep_per_s=0.5",
+                                                                "/material/clay_kernel/form=off"), "coasting"),
+    # Bent ever faster and evenly let go: contacts rattle as the post follows the rod.
+    "let go": Scene("study_deep_bend", with_trace("post_let_go.csv", "/dynamics/solver/tolerance=1e-4",
+                                                  "/dynamics/rayleigh_stiffness_s=0.03"), "solve"),
+    # A dent sleeps until the water from beside it arrives, which softens and swells it under the hand at rest.
+    "seep": Scene("study_light_press", with_trace("block_seep.csv", SMALL_TOOL,
+                                                  '/material/effective_medium={"scheme": "mori_tanaka", "aspect": 0.2}',
+                                                  '/material/moisture={"yield_law": "log_linear", '
+                                                  '"saturated_yield_ratio": 0.0286}',
+                                                  '/water={"porosity": 0.4, "diffusivity_m2_per_s": 7e-6, '
+                                                  '"wetting_flux_kg_per_m2_s": 40, "drying_flux_kg_per_m2_s": 40, "swelling": 0.05}'),
+                  "waking"),
     # Else auto's run would end where its force has trembled for 0.3 s, and full's would not.
     "unstable pull": Scene("study_light_press", with_trace("block_draw.csv", "/contact/vertex_face_stiffness_N_per_m=60",
                                                            "/contact/edge_edge_stiffness_N_per_m=60", "/haptics/chatter_limit=1"),

@@ -159,22 +159,60 @@ BEND = [  # push a post over with the middle of a rod of 60 mm held across it
 ]
 
 
-def follow_bend(place, half_width, foot, degrees, steps):
-    """Strokes of 0.1 s with which such a rod stays at one place of a post's side and square to it, 1.5 mm deep, as if all of
+def follow_bend(place, half_width, foot, degrees, steps, seconds=0.1):
+    """Strokes with which such a rod stays at one place of a post's side and square to it, 1.5 mm deep, as if all of
     the post from its foot [mm] below the place on bent to an arc; so that it does not slip off the top. A post that is
     stiffer than that lags behind: 130 degrees of the way turn its top by a little over 90."""
     radius = place.tool_radius
-    yield Stroke("push", 0.10, 1.0, -30.0, 90.0)
     for step in range(1, steps + 1):
         angle = math.radians(degrees) * step / steps
         over = half_width + radius - 1.5  # from the post's middle to the rod's
         along = foot * (1.0 - math.cos(angle)) / angle - over * math.cos(angle)
         up = foot * math.sin(angle) / angle + over * math.sin(angle)
-        yield Stroke("push", 0.10, -along - half_width - radius, -30.0, 90.0, foot - up)
-    yield Stroke("push", 0.20, -along - half_width - radius, -30.0, 90.0, foot - up)
+        yield Stroke("push", seconds, -along - half_width - radius, -30.0, 90.0, foot - up)
 
 
-FOLD = list(follow_bend(POST, 50.0 / 3.0, 85.0, 130.0, 12))  # until the top lies on its side
+def drive(start, pieces):
+    """Strokes of a tick from where one ended on: pieces of (seconds, first and last speed [mm/s] of the height), with jumps of
+    the speed between them, which a minimum-jerk stroke does not have."""
+    height = start.height
+    for seconds, first, last in pieces:
+        count = round(1000 * seconds)
+        for tick in range(count):
+            height += 1e-3 * (first + (last - first) * (tick + 0.5) / count)
+            yield start._replace(seconds=1e-3, height=height)
+
+
+ACROSS = Stroke("push", 0.10, 1.0, -30.0, 90.0)  # the rod beside the post
+TURNED = list(follow_bend(POST, 50.0 / 3.0, 85.0, 130.0, 12))
+FOLD = [ACROSS, *TURNED, TURNED[-1]._replace(seconds=0.2)]  # until the top lies on its side
+SWEPT = list(follow_bend(POST, 50.0 / 3.0, 85.0, 90.0, 8, 0.02))
+SWAY = [ACROSS, *2 * [*SWEPT, *SWEPT[-2::-1], ACROSS._replace(seconds=0.02)]]  # over and back in 0.3 s, twice
+
+BESIDE = ACROSS._replace(height=0.5)
+LET_GO = [BESIDE, *drive(BESIDE, [(0.05, 0.0, -8.0), (0.6, -8.0, -40.0), (0.1, 0.0, 0.0), (0.3, 40.0, 40.0), (0.2, 0.0, 0.0)]),
+          BESIDE._replace(seconds=0.2, height=2.0)]  # bend the post ever faster, stop at once, and leave at an even speed
+
+OVER = Stroke("push", 0.10, 0.5, 0.0, 0.0)
+REVERSAL = [OVER, *drive(OVER, [(0.05, 0.0, -8.0), (0.12, -20.0, -20.0), (0.05, 20.0, 20.0), (0.2, 0.0, 0.0)]),
+            OVER._replace(seconds=0.15, height=2.0)]  # press and turn round at once
+
+SEEP = [  # press a dent, leave, wet the clay beside it, and rest in the dent while the water comes
+    Stroke("push", 0.10, 1.0, 3.0, 0.0),
+    Stroke("push", 0.12, -4.0, 3.0, 0.0),
+    Stroke("push", 0.10, -4.0, 3.0, 0.0),
+    Stroke("push", 0.10, 2.0, 3.0, 0.0),
+    Stroke("push", 0.30, 2.0, 3.0, 0.0),
+    Stroke("wet", 0.10, 1.0, -8.0, 0.0),
+    Stroke("wet", 0.05, -0.5, -8.0, 0.0),
+    Stroke("wet", 0.30, -0.5, -8.0, 0.0),
+    Stroke("push", 0.05, 3.0, -8.0, 0.0),
+    Stroke("push", 0.15, 3.0, 3.0, 0.0),
+    Stroke("push", 0.30, -2.0, 3.0, 0.0),
+    Stroke("push", 2.00, -2.0, 3.0, 0.0),
+    Stroke("push", 0.10, 3.0, 3.0, 0.0),
+    Stroke("push", 0.30, 3.0, 3.0, 0.0),
+]
 
 WET_LIGHT = [  # wet a place, then press it
     Stroke("wet", 0.10, 1.0, 0.0, 0.0),
@@ -219,6 +257,10 @@ TRACES = {  # file: place, strokes before time zero of the tremor, strokes from 
     "block_draw.csv": (BLOCK, [], DRAW),
     "post_bend.csv": (POST, [], BEND),
     "post_fold.csv": (POST, [], FOLD),
+    "post_sway.csv": (POST, [], SWAY),
+    "post_let_go.csv": (POST, [], LET_GO),
+    "block_reversal.csv": (BLOCK, [], REVERSAL),
+    "block_seep.csv": (BLOCK._replace(tool_radius=8.0), [], SEEP),
     "sculpt.csv": (HAUNCH, SCULPT_WET, PRESS + SCULPT_PULL + SCULPT_DRY + PRESS),
     "long_session.csv": (HAUNCH, [], WET + PRESS + PULL + DRY + PRESS),
 }

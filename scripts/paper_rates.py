@@ -2,20 +2,19 @@
 """Steps in a second while a tool pushes, pulls, wets and dries the paper's three kinds of body.
 
 Usage: paper_rates.py ARGIL [-o TABLE.csv] [--tets 5000]. Each run is 0.4 s of contact at one place, solid and water once
-a tick of 1 ms; the rate is ticks over wall-clock seconds of the loop, everything in it. Best of three runs
-unless said otherwise.
+a tick of 1 ms; the rate is ticks over seconds of processor time, of the ticks alone, and `wall_share` what share of it the
+clock on the wall saw, at the worst of the four. Best of three runs unless said otherwise.
 """
 import argparse
 import csv
 import json
-import os
-import platform
 import subprocess
 import tempfile
 from pathlib import Path
 
 import argil_plot as ap
 import make_traces
+import provenance
 from argil_plot import np
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -80,11 +79,9 @@ def main():
     parser.add_argument("--tets", type=int, default=5000)
     parser.add_argument("--repeats", type=int, default=3)
     options = parser.parse_args()
-    machine = next((line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines()
-                    if line.startswith("model name")), platform.machine())
+    about = provenance.describe()  # before the table is written, which may be one of the project's
     with open(options.output, "w", newline="", encoding="utf-8") as file, tempfile.TemporaryDirectory() as folder:
-        file.write(f"# {machine}, one thread; ticks in a second of processor time, best of {options.repeats}; "
-                   f"load before it {os.getloadavg()[0]:.1f}\n")
+        file.write(f"# {about}, one thread; ticks in a second of processor time, best of {options.repeats}\n")
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["body", "tets", *(f"{mode}_Hz" for mode in DEPTH), "nodes_solved_in_push", "wall_share"])
         for body in BODIES:

@@ -96,7 +96,9 @@ class Traces(unittest.TestCase):
             # motions of studies come down 24 mm, block_slide.csv 7 mm aside with it, in 100 ms.
             way, time = (24.0, 100.0) if name.startswith("block_") else (23.0, 500.0)
             way, time = {"poke.csv": (20.0, 37.5), "post_bend.csv": (math.hypot(24.0, 30.0), 100.0),
-                         "post_fold.csv": (math.hypot(24.0, 30.0), 100.0), "block_slide.csv": (25.0, 100.0)}.get(name, (way, time))
+                         "post_fold.csv": (math.hypot(24.0, 30.0), 100.0), "block_slide.csv": (25.0, 100.0),
+                         "post_let_go.csv": (math.hypot(24.5, 30.0), 100.0), "post_sway.csv": (12.0, 20.0),
+                         "block_reversal.csv": (24.5, 100.0)}.get(name, (way, time))
             fastest = 15.0 / 8.0 * way / time
             self.assertLess(longest, fastest + 2 * math.sqrt(3) * 0.06)
             if name == "poke.csv":
