@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "linear/short_vectors.h"
+
 namespace argil::linear {
 namespace {
 
@@ -30,6 +32,39 @@ Vec3 find_shares(Mat3 G, Vec3 g) {
   return a;
 }
 
+constexpr int kKept = LastChanges::kKept;
+
+ARGIL_EVERY_PROCESSOR void compute_products(const float* const (&d)[kKept], const float* const (&y)[kKept],
+                                            const float* r, std::ptrdiff_t begin, std::ptrdiff_t end,
+                                            LastChanges::Products& products) {
+  Quad dy[kKept][kKept] = {};
+  Quad dr[kKept] = {};
+  for (std::ptrdiff_t i = 4 * begin; i < 4 * end; i += 4)
+    for (int k = 0; k < kKept; ++k) {
+      for (int j = k; j < kKept; ++j) add_up(*four_at(d[j] + i) * *four_at(y[k] + i), dy[k][j]);
+      add_up(*four_at(d[k] + i) * *four_at(r + i), dr[k]);
+    }
+  for (int k = 0; k < kKept; ++k) {
+    for (int j = k; j < kKept; ++j) products.dy[k][j] = add_lanes(dy[k][j]);
+    products.dr[k] = add_lanes(dr[k]);
+  }
+}
+
+/// x = Σ aₖ dₖ, r −= Σ aₖ yₖ.
+ARGIL_EVERY_PROCESSOR void combine(const float (&a)[kKept], const float* const (&d)[kKept],
+                                   const float* const (&y)[kKept], std::ptrdiff_t begin, std::ptrdiff_t end,
+                                   float* x, float* r) {
+  for (std::ptrdiff_t i = 4 * begin; i < 4 * end; i += 4) {
+    Floats4 of_d = {}, of_y = {};
+    for (int k = 0; k < kKept; ++k) {
+      of_d += a[k] * *four_at(d[k] + i);
+      of_y += a[k] * *four_at(y[k] + i);
+    }
+    *four_at(x + i) = of_d;
+    *four_at(r + i) -= of_y;
+  }
+}
+
 }  // namespace
 
 void LastChanges::prepare(std::ptrdiff_t num_rows) {
@@ -38,9 +73,8 @@ void LastChanges::prepare(std::ptrdiff_t num_rows) {
   m_products.reserve(static_cast<std::size_t>(OrderedRuns::count_all_runs(num_rows)));
 }
 
-LastChanges::Start LastChanges::begin(const ShortBlocks& matrix, Operator& whole, const OrderedRuns& runs,
+LastChanges::Start LastChanges::begin(const ShortRows& matrix, Operator& whole, const OrderedRuns& runs,
                                       std::ptrdiff_t num_rows, float* x, float* r) {
-  static_assert(kKept == 3);
   if (m_rest > 0) {
     --m_rest;
     return {};
@@ -49,25 +83,24 @@ LastChanges::Start LastChanges::begin(const ShortBlocks& matrix, Operator& whole
   float* const Ad[kKept] = {m_product[0].data(), m_product[1].data(), m_product[2].data()};
   m_products.resize(static_cast<std::size_t>(runs.count_runs(num_rows)));
   runs.each(num_rows,
-            [&](std::ptrdiff_t begin, std::ptrdiff_t end) { matrix.multiply_several(begin, end, d, Ad); });
+            [&](std::ptrdiff_t begin, std::ptrdiff_t end) { multiply_three(matrix, begin, end, d, Ad); });
   for (int k = 0; k < kKept; ++k) whole.add_unstored(d[k], Ad[k]);
   runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
-    m_products[static_cast<std::size_t>(i)] = ShortBlocks::compute_products(begin, end, d, Ad, r);
+    compute_products(d, Ad, r, begin, end, m_products[static_cast<std::size_t>(i)]);
   });
   Mat3 G = Mat3::Zero();
   Vec3 g = Vec3::Zero();
-  for (const ShortBlocks::Products& run : m_products) {
+  for (const Products& run : m_products) {
     for (int k = 0; k < kKept; ++k) {
-      for (int i = k; i < kKept; ++i) G(i, k) += run.xy[k][i];
-      g(k) += run.xr[k];
+      for (int i = k; i < kKept; ++i) G(i, k) += run.dy[k][i];
+      g(k) += run.dr[k];
     }
   }
   if (!(G(0, 0) > 0.0)) return {};  // nothing is kept
   const Vec3 a = find_shares(G, g);
   const float share[kKept] = {static_cast<float>(a(0)), static_cast<float>(a(1)), static_cast<float>(a(2))};
-  runs.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    ShortBlocks::combine(begin, end, share, d, Ad, x, r);
-  });
+  runs.each(num_rows,
+            [&](std::ptrdiff_t begin, std::ptrdiff_t end) { combine(share, d, Ad, begin, end, x, r); });
   return {g.dot(a), kKept};
 }
 

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "base/archive.h"
-#include "linear/short_blocks.h"
+#include "base/ordered_runs.h"
+#include "linear/operator.h"
+#include "linear/short_rows.h"
 
 namespace argil::linear {
 
@@ -13,7 +15,7 @@ namespace argil::linear {
 /// little use, none does for a while, which is the longer the more often that happens.
 class LastChanges {
  public:
-  static constexpr int kKept = ShortBlocks::kSeveral;
+  static constexpr int kKept = 3;
 
   /// Takes the memory for so many rows; what is kept stays as it is.
   void prepare(std::ptrdiff_t num_rows);
@@ -24,7 +26,7 @@ class LastChanges {
     int products = 0;     ///< with the matrix; iterations count them
   };
   /// x = Σ aₖ dₖ with the aₖ that take most of the error's energy away, r −= A x; nothing while it rests.
-  Start begin(const ShortBlocks& matrix, Operator& whole, const OrderedRuns& runs, std::ptrdiff_t num_rows,
+  Start begin(const ShortRows& matrix, Operator& whole, const OrderedRuns& runs, std::ptrdiff_t num_rows,
               float* x, float* r);
   /// What begin took away of the energy and what the solve took in all.
   void judge(const Start& start, double energy);
@@ -34,16 +36,22 @@ class LastChanges {
   void clear(std::ptrdiff_t begin, std::ptrdiff_t end);
   void exchange_state(Archive& archive, const std::string& prefix);
 
+  /// Of changes and what they are multiplied to with one another, i ≥ k, and of changes with r.
+  struct Products {
+    double dy[kKept][kKept] = {};  ///< [k][i]: dᵢ·A dₖ
+    double dr[kKept] = {};
+  };
+
  private:
   // The last change d₀, how much more that was than the one before, d₁, and how much more d₁ grew, d₂: alike
   // changes have small differences, which stay apart where the changes themselves would not. Four a row, in
   // units of m_scale.
   std::vector<float> m_d[kKept];
   double m_scale = 0.0;
-  std::vector<float> m_product[kKept];            // A dₖ
-  std::vector<ShortBlocks::Products> m_products;  // of each run
-  int m_rest = 0;                                 // solves to come that do without
-  int m_next_rest = 1;                            // after the next one that they were of little use to
+  std::vector<float> m_product[kKept];  // A dₖ
+  std::vector<Products> m_products;     // of each run
+  int m_rest = 0;                       // solves to come that do without
+  int m_next_rest = 1;                  // after the next one that they were of little use to
 };
 
 }  // namespace argil::linear

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/parallel.h"
 #include "linear/vectors.h"
 
 namespace argil::linear {
@@ -13,10 +14,12 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
   constexpr double kRounding = 1e-14;  // of ‖b‖
   const std::ptrdiff_t num_rows = b.cols();
   prepare(matrix);
-  if (m_is_changed) clear_left_rows();
+  if (m_is_changed) {
+    clear_left_rows();
+    m_blocks.arrange(matrix, m_visited);
+  }
   m_is_changed = false;
-  m_products.resize(static_cast<std::size_t>(m_runs.count_runs(num_rows)));
-  m_sums.resize(m_products.size());
+  m_sums.resize(static_cast<std::size_t>(m_runs.count_runs(num_rows)));
 
   whole.multiply(x, m_product);
   const double first = std::sqrt(m_runs.sum(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -55,9 +58,8 @@ void ShortIteration::exchange_state(Archive& archive, const std::string& prefix)
 
 void ShortIteration::prepare(const BlockMatrix& pattern) {
   const auto num_rows = static_cast<std::size_t>(pattern.num_rows());
-  for (std::vector<float>* vector : {&m_r, &m_z, &m_w, &m_p, &m_q, &m_x}) vector->resize(4 * num_rows);
+  for (std::vector<float>* vector : {&m_r, &m_t, &m_s, &m_p, &m_rho, &m_x}) vector->resize(4 * num_rows);
   const auto num_runs = static_cast<std::size_t>(OrderedRuns::count_all_runs(pattern.num_rows()));
-  m_products.reserve(num_runs);
   m_sums.reserve(num_runs);
   m_solved.reserve(num_runs);
   m_last.prepare(pattern.num_rows());
@@ -74,11 +76,11 @@ void ShortIteration::visit(const std::vector<int>* runs) {
 /// Rows beside those that are visited are read: what the last solve left there goes.
 void ShortIteration::clear_left_rows() {
   constexpr std::ptrdiff_t length = OrderedRuns::kLength;
-  const auto size = static_cast<std::ptrdiff_t>(m_z.size() / 4);
+  const auto size = static_cast<std::ptrdiff_t>(m_t.size() / 4);
   const auto clear = [&](int run) {
     const std::ptrdiff_t begin = run * length;
     const std::ptrdiff_t end = std::min(begin + length, size);
-    for (std::vector<float>* vector : {&m_z, &m_w})
+    for (std::vector<float>* vector : {&m_t, &m_s, &m_rho})
       std::fill(vector->begin() + 4 * begin, vector->begin() + 4 * end, 0.0F);
     m_last.clear(begin, end);
   };
@@ -97,43 +99,142 @@ void ShortIteration::clear_left_rows() {
 /// A x = r / `first`, which has the norm 1, until what is left of it is below `goal`.
 SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, int max_iterations) {
   const std::ptrdiff_t num_rows = m_product.cols();
-  const ShortBlocks::Iterate to{m_p.data(), m_q.data(), m_x.data(), m_r.data()};
-  ShortBlocks::Sums sums;
-  const auto advance = [&](double alpha, double beta) {
-    m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
-      m_sums[static_cast<std::size_t>(i)] = m_blocks.advance(
-          begin, end, static_cast<float>(alpha), static_cast<float>(beta), m_z.data(), m_w.data(), to);
-    });
-    // What other threads have read is written anew only when the next product passes over it.
-    m_z.swap(m_w);
-    sums = {};
-    for (const ShortBlocks::Sums& run : m_sums) {
-      sums.rr += run.rr;
-      sums.rz += run.rz;
-    }
-  };
   m_runs.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row)
       for (std::ptrdiff_t k = 0; k < 4; ++k)
         m_r.data()[4 * row + k] = k < 3 ? static_cast<float>(m_product.data()[3 * row + k] / first) : 0.0F;
-    for (std::vector<float>* vector : {&m_x, &m_z, &m_p, &m_q, &m_w})
+    for (std::vector<float>* vector : {&m_x, &m_t, &m_p, &m_rho, &m_s})
       std::fill(vector->begin() + 4 * begin, vector->begin() + 4 * end, 0.0F);
   });
-  const LastChanges::Start start = m_last.begin(m_blocks, whole, m_runs, num_rows, m_x.data(), m_r.data());
-  advance(0.0, 0.0);  // z = D⁻¹ r
-  double residual = std::sqrt(sums.rr);
+  const LastChanges::Start start =
+      m_last.begin(m_blocks.rows(), whole, m_runs, num_rows, m_x.data(), m_r.data());
+  return whole.has_unstored() ? iterate_over_blocks(whole, start, goal, max_iterations)
+                              : sweep(start, goal, max_iterations);
+}
+
+/// body(group) of those that do not couple, each by itself.
+template <class Body>
+void ShortIteration::each_group(Body body) {
+  const SweepOrder& order = m_blocks.order();
+  const bool is_shared = order.begin(1) < order.end(1);
+  parallel_for(SweepOrder::kGroups, is_shared ? m_threads : 1,
+               [&](std::ptrdiff_t group) { body(static_cast<int>(group)); });
+}
+
+Substituted ShortIteration::substitute_groups() {
+  const ShortRows a = m_blocks.rows();
+  const SweepOrder& order = m_blocks.order();
+  Substituted sums[SweepOrder::kGroups + 1];
+  const auto substitute_group = [&](int group) {
+    sums[group] =
+        substitute(a, order.rows().data(), order.begin(group), order.end(group), m_r.data(), m_rho.data());
+  };
+  each_group(substitute_group);
+  substitute_group(SweepOrder::kLast);
+  Substituted total;
+  for (const Substituted& sum : sums) {
+    total.squares += sum.squares;
+    total.scaled += sum.scaled;
+  }
+  return total;
+}
+
+/// p = ρ + β p, t = (1+U)⁻¹ p, s = (1+L)⁻¹ (p − t); returns t·A t. A group goes back and forth at once: it
+/// meets no other but the last, which has gone back before and goes forth after.
+double ShortIteration::sweep_groups(float beta) {
+  const ShortRows a = m_blocks.rows();
+  const SweepOrder& order = m_blocks.order();
+  const int* rows = order.rows().data();
+  const auto go_back = [&](int group) {
+    sweep_back(a, rows, order.begin(group), order.end(group), beta, m_rho.data(), m_p.data(), m_t.data());
+  };
+  const auto go_forth = [&](int group) {
+    return sweep_forth(a, rows, order.begin(group), order.end(group), m_p.data(), m_t.data(), m_s.data());
+  };
+  double curvatures[SweepOrder::kGroups];
+  go_back(SweepOrder::kLast);
+  each_group([&](int group) {
+    go_back(group);
+    curvatures[group] = go_forth(group);
+  });
+  double curvature = go_forth(SweepOrder::kLast);
+  for (const double of_group : curvatures) curvature += of_group;
+  return curvature;
+}
+
+/// By sweeps. Iterations know ‖ρ‖ in the norm of D; when that is so small that the residual should be, by
+/// what the two were at last, the residual is taken: half a product.
+SolveReport ShortIteration::sweep(const LastChanges::Start& start, double goal, int max_iterations) {
+  const std::ptrdiff_t num_rows = m_product.cols();
+  const ShortRows a = m_blocks.rows();
+  const auto compute_residual = [&] {
+    return std::sqrt(m_runs.sum(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      return compute_squares(a, begin, end, m_rho.data());
+    }));
+  };
+  const Substituted substituted = substitute_groups();
+  double scaled = substituted.scaled;  // ρ·D ρ
+  double residual = std::sqrt(substituted.squares);
+  double ratio = residual / std::sqrt(scaled);
+  double last_scaled = std::numeric_limits<double>::infinity();  // later directions know nothing of the first
   double energy = start.energy;
-  double last_rz = std::numeric_limits<double>::infinity();  // later directions know nothing of the first
-  double curvature = 0.0;  // p·A p, by the recurrence that holds while directions are conjugate
   int iterations = start.products;
   bool is_positive = true;
   // Written so that a NaN residual leaves the loop as not converged.
   while (residual > goal && iterations < max_iterations) {
-    m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
-      m_products[static_cast<std::size_t>(i)] = m_blocks.multiply(begin, end, m_z.data(), m_w.data());
+    const double curvature = sweep_groups(static_cast<float>(scaled / last_scaled));
+    is_positive = curvature > 0.0;
+    if (!is_positive) break;
+    const double alpha = scaled / curvature;
+    last_scaled = scaled;
+    scaled = m_runs.sum(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      return advance(a, begin, end, static_cast<float>(alpha), m_t.data(), m_s.data(), m_x.data(),
+                     m_rho.data());
     });
-    double product = whole.add_unstored(m_z.data(), m_w.data());
-    for (const double run : m_products) product += run;
+    energy += alpha * last_scaled;
+    ++iterations;
+    residual = ratio * std::sqrt(scaled);
+    if (residual > goal && iterations < max_iterations) continue;
+    residual = compute_residual();
+    ratio = residual / std::sqrt(scaled);
+  }
+  m_last.judge(start, energy);
+  return {is_positive && residual <= goal, iterations,
+          is_positive ? residual : std::numeric_limits<double>::infinity()};
+}
+
+/// Over the diagonal blocks; goes over the rows twice an iteration.
+SolveReport ShortIteration::iterate_over_blocks(Operator& whole, const LastChanges::Start& start, double goal,
+                                                int max_iterations) {
+  const std::ptrdiff_t num_rows = m_product.cols();
+  const ShortRows a = m_blocks.rows();
+  const ShortIterate to{m_p.data(), m_rho.data(), m_x.data(), m_r.data()};
+  ShortSums sums;
+  const auto advance = [&](double alpha, double beta) {
+    m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
+      m_sums[static_cast<std::size_t>(i)] = advance_blocks(
+          a, begin, end, static_cast<float>(alpha), static_cast<float>(beta), m_t.data(), m_s.data(), to);
+    });
+    // What other threads have read is written anew only when the next product passes over it.
+    m_t.swap(m_s);
+    sums = {};
+    for (const ShortSums& run : m_sums) {
+      sums.rr += run.rr;
+      sums.rz += run.rz;
+    }
+  };
+  advance(0.0, 0.0);  // z = D⁻¹ r
+  double residual = std::sqrt(sums.rr);
+  double energy = start.energy;
+  double last_rz = std::numeric_limits<double>::infinity();
+  double curvature = 0.0;  // p·A p, by the recurrence that holds while directions are conjugate
+  int iterations = start.products;
+  bool is_positive = true;
+  while (residual > goal && iterations < max_iterations) {
+    double product = m_runs.sum(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      return multiply(a, begin, end, m_t.data(), m_s.data());
+    });
+    product += whole.add_unstored(m_t.data(), m_s.data());
     const double beta = sums.rz / last_rz;
     last_rz = sums.rz;
     curvature = product - beta * beta * curvature;

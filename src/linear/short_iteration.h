@@ -9,13 +9,18 @@
 
 namespace argil::linear {
 
-/// The method of ConjugateGradients over the diagonal blocks, in floats but for its sums: what is added to x
-/// is found from b − A x, which is taken in double, so that floats round only what the solve changes. For
-/// tolerances above kRoomForFloats. Each iteration goes over the rows twice. Begins with what the last solves
-/// added to their x. Bits do not depend on `threads`.
+/// Conjugate gradients in floats but for sums: what is added to x is found from b − A x, which is taken in
+/// double, so that floats round only what the solve changes. For tolerances above kRoomForFloats. Begins with
+/// what the last solves added to their x. Bits do not depend on `threads`.
+///
+/// A matrix that is stored whole is preconditioned by symmetric block Gauss–Seidel; by Eisenstat's trick
+/// [Eisenstat1981] that takes no product beside its sweeps. With A = D (L + 1 + U), see ShortRows, and
+/// ρ = (1+L)⁻¹ D⁻¹ (b − A x), directions t = (1+U)⁻¹ p change ρ by t + (1+L)⁻¹ (p − t), and an iteration
+/// reads each block once. Of one with unstored parts D and p − t would have to hold these too, large beside
+/// the curvature t·A t that is left of them: there the diagonal blocks precondition.
 class ShortIteration {
  public:
-  explicit ShortIteration(int threads) : m_runs(threads) {}
+  explicit ShortIteration(int threads) : m_threads(threads), m_runs(threads) {}
 
   /// `matrix` must be what it was in every call but for its values. `goal`: a norm of the residual that is
   /// small enough as well.
@@ -32,7 +37,15 @@ class ShortIteration {
  private:
   void clear_left_rows();
   SolveReport iterate(Operator& whole, double first, double goal, int max_iterations);
+  SolveReport sweep(const LastChanges::Start& start, double goal, int max_iterations);
+  SolveReport iterate_over_blocks(Operator& whole, const LastChanges::Start& start, double goal,
+                                  int max_iterations);
+  template <class Body>
+  void each_group(Body body);
+  Substituted substitute_groups();
+  double sweep_groups(float beta);
 
+  int m_threads;
   OrderedRuns m_runs;
   const std::vector<int>* m_visited = nullptr;
   std::vector<int> m_solved;      // runs of the last solve
@@ -41,9 +54,9 @@ class ShortIteration {
   ShortBlocks m_blocks;
   LastChanges m_last;
   Points m_product;
-  std::vector<float> m_r, m_z, m_w, m_p, m_q, m_x;  // four a row
-  std::vector<double> m_products;                   // z·w of each run
-  std::vector<ShortBlocks::Sums> m_sums;            // of each run
+  // Four numbers a row. Of block Jacobi z and w are in the places of t and s, q in that of ρ.
+  std::vector<float> m_r, m_t, m_s, m_p, m_rho, m_x;
+  std::vector<ShortSums> m_sums;  // of each run
 };
 
 }  // namespace argil::linear

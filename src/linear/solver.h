@@ -12,7 +12,8 @@ namespace argil::linear {
 enum class SolverKind {
   pcg,              ///< pcg_jacobi while it takes few iterations, pcg_cholesky from the first long solve on
   pcg_cholesky,     ///< conjugate gradients preconditioned by a kept simplicial factor
-  pcg_jacobi,       ///< conjugate gradients preconditioned by the 3×3 diagonal blocks
+  pcg_jacobi,       ///< conjugate gradients preconditioned by the 3×3 diagonal blocks, from kRoomForFloats
+                    ///< up by block Gauss–Seidel
   pcg_matrix_free,  ///< the same; the matrix holds its diagonal blocks only and the operator multiplies
   cholesky,         ///< simplicial LDLᵀ, renewed whenever the matrix changed: the bit-exact reference
   supernodal,       ///< supernodal LLᵀ by BLAS, renewed likewise

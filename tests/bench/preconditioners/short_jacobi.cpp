@@ -19,16 +19,17 @@ void ShortJacobi::update(const linear::BlockMatrix& matrix) {
 ShortJacobi::Report ShortJacobi::solve(const Points& b, double tolerance, int max_iterations, Points& x) {
   const std::ptrdiff_t num_rows = b.cols();
   const double first = b.norm();
-  const linear::ShortBlocks::Iterate to{m_p.data(), m_q.data(), m_x.data(), m_r.data()};
-  linear::ShortBlocks::Sums sums;
+  const linear::ShortIterate to{m_p.data(), m_q.data(), m_x.data(), m_r.data()};
+  linear::ShortSums sums;
   const auto advance = [&](double alpha, double beta) {
     m_runs.each_run(num_rows, [&](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {
-      m_sums[static_cast<std::size_t>(i)] = m_blocks.advance(
-          begin, end, static_cast<float>(alpha), static_cast<float>(beta), m_z.data(), m_w.data(), to);
+      m_sums[static_cast<std::size_t>(i)] =
+          linear::advance_blocks(m_blocks.rows(), begin, end, static_cast<float>(alpha),
+                                 static_cast<float>(beta), m_z.data(), m_w.data(), to);
     });
     m_z.swap(m_w);
     sums = {};
-    for (const linear::ShortBlocks::Sums& run : m_sums) {
+    for (const linear::ShortSums& run : m_sums) {
       sums.rr += run.rr;
       sums.rz += run.rz;
     }
@@ -46,7 +47,7 @@ ShortJacobi::Report ShortJacobi::solve(const Points& b, double tolerance, int ma
   double curvature = 0.0;
   while (sums.rr > tolerance * tolerance && report.iterations < max_iterations) {
     const double product = m_runs.sum(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      return m_blocks.multiply(begin, end, m_z.data(), m_w.data());
+      return linear::multiply(m_blocks.rows(), begin, end, m_z.data(), m_w.data());
     });
     const double beta = sums.rz / last_rz;
     last_rz = sums.rz;

@@ -22,7 +22,7 @@ class ShortJacobi {
   OrderedRuns m_runs;
   linear::ShortBlocks m_blocks;
   std::vector<float> m_r, m_z, m_w, m_p, m_q, m_x;  // four a row
-  std::vector<linear::ShortBlocks::Sums> m_sums;    // of each run
+  std::vector<linear::ShortSums> m_sums;            // of each run
 };
 
 }  // namespace argil::bench

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "base/lanes.h"
 #include "base/parallel.h"
+#include "linear/short_vectors.h"
 
 namespace argil::bench {
 
@@ -25,19 +25,11 @@ struct SsorArrays {
 
 namespace {
 
-using Floats4 = float __attribute__((vector_size(16)));
-using Floats8 = float __attribute__((vector_size(32)));
-using Floats4At __attribute__((aligned(4), may_alias)) = Floats4;
-using Floats8At __attribute__((aligned(4), may_alias)) = Floats8;
+using linear::Floats4;
+using linear::Floats8;
+using linear::four_at;
 
-ARGIL_INLINE Floats4At* four_at(float* at) {
-  return reinterpret_cast<Floats4At*>(at);
-}
-ARGIL_INLINE const Floats4At* four_at(const float* at) {
-  return reinterpret_cast<const Floats4At*>(at);
-}
-
-/// As in linear/short_blocks.cpp: eight numbers of a block at once, its last one alone.
+/// Eight numbers of a block at once, its last one alone.
 struct RowSum {
   Floats8 eight = {};
   float last = 0.0F;
@@ -45,8 +37,7 @@ struct RowSum {
 
 ARGIL_INLINE void add_block(const float* block, const float* x, RowSum& sum) {
   const Floats4 p = *four_at(x);
-  sum.eight +=
-      *reinterpret_cast<const Floats8At*>(block) * __builtin_shufflevector(p, p, 0, 0, 0, 1, 1, 1, 2, 2);
+  sum.eight += *linear::eight_at(block) * __builtin_shufflevector(p, p, 0, 0, 0, 1, 1, 1, 2, 2);
   sum.last += block[8] * p[2];
 }
 

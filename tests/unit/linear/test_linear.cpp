@@ -6,7 +6,6 @@
 
 #include "base/rng.h"
 #include "linear/pcg.h"
-#include "linear/short_blocks.h"
 #include "linear/short_iteration.h"
 #include "linear/solver.h"
 
@@ -85,6 +84,7 @@ class WithOuterProduct final : public Operator {
     y += along * m_u;
     return dot + along * along;
   }
+  bool has_unstored() const override { return true; }
   double add_unstored(const float* x, float* y) override {
     const Eigen::Map<const Eigen::Matrix4Xf> at(x, 4, m_u.cols());
     const Eigen::Matrix3Xf u = m_u.cast<float>();
@@ -143,16 +143,6 @@ TEST(BlockMatrix, MultipliesAsADenseMatrixDoes) {
     const Eigen::VectorXd expected = to_dense(a) * x.reshaped();
     EXPECT_LT((y.reshaped() - expected).norm(), 1e-14 * expected.norm()) << rows;
     EXPECT_NEAR(dot, expected.dot(x.reshaped()), 1e-13 * expected.norm() * x.norm()) << rows;
-    ShortBlocks rounded;
-    MatrixOperator product(a, 1);
-    rounded.update(a, product, runs);
-    Eigen::Matrix4Xf short_x = Eigen::Matrix4Xf::Zero(4, rows), short_y(4, rows);
-    short_x.topRows<3>() = x.cast<float>();
-    const double short_dot = rounded.multiply(0, rows, short_x.data(), short_y.data());
-    const Eigen::VectorXd found = short_y.topRows<3>().cast<double>().reshaped();
-    EXPECT_LT((found - expected).norm(), 2e-7 * expected.norm()) << rows;  // a float has 2⁻²⁴
-    EXPECT_GT((found - expected).norm(), 1e-10 * expected.norm()) << rows;
-    EXPECT_NEAR(short_dot, expected.dot(x.reshaped()), 1e-6 * expected.norm() * x.norm()) << rows;
   }
 }
 
@@ -311,12 +301,16 @@ TEST(IterativeSolver, TakesWhatTheMatrixDoesNotStore) {
   const Eigen::MatrixXd whole = to_dense(a) + u.reshaped() * u.reshaped().transpose();
   WithOuterProduct product(a, u);
   for (const SolverKind kind : {SolverKind::pcg, SolverKind::pcg_jacobi})
-    for (const double tolerance : {1e-3, 1e-10})      // in floats and in double
-      for (const int jacobi_iterations : {150, 2}) {  // the latter: pcg takes a factor of what is stored
+    for (const double tolerance : {1e-3, 1e-10})  // in floats and in double
+      for (const int jacobi_iterations : {150, 2}) {
         const auto solver =
             make_solver({.kind = kind, .tolerance = tolerance, .jacobi_iterations = jacobi_iterations});
         Points x = Points::Zero(3, 60);
-        ASSERT_TRUE(solver->solve(a, product, b, x).converged);
+        const SolveReport report = solver->solve(a, product, b, x);
+        const bool wants_factor = kind == SolverKind::pcg && jacobi_iterations == 2;  // of all of it
+        EXPECT_EQ(report.wants_stored, wants_factor);
+        ASSERT_EQ(report.converged, !wants_factor);
+        if (wants_factor) continue;
         EXPECT_LT((whole * x.reshaped() - b.reshaped()).norm(), 1.01 * tolerance * b.norm());
       }
 }
@@ -367,7 +361,7 @@ class BeginsWithTheLastChanges : public testing::Test {
 TEST_F(BeginsWithTheLastChanges, OfASolutionThatIsLikeTheLast) {
   const Points b = make_random_vector(60, 36);
   const int cold = count_iterations(b);
-  EXPECT_GT(cold, 40);
+  EXPECT_GT(cold, 20);
   EXPECT_EQ(count_iterations(-3.0 * b), kProducts);   // the very direction
   EXPECT_EQ(count_iterations(1e-50 * b), kProducts);  // beyond what a float holds
   EXPECT_EQ(count_iterations(1e60 * b), kProducts);
@@ -384,7 +378,7 @@ TEST_F(BeginsWithTheLastChanges, OfSolutionsThatGoOnAsASquareOfTime) {
   std::vector<int> iterations;
   for (const double t : {1.0, 1.1, 1.2, 1.3, 1.4, 1.5})
     iterations.push_back(count_iterations(b + t * speed + t * t * acceleration));
-  EXPECT_GT(iterations[0], 40);
+  EXPECT_GT(iterations[0], 20);
   for (std::size_t i = 3; i < iterations.size(); ++i) EXPECT_LE(iterations[i], 10) << i;
 }
 
