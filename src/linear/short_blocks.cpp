@@ -13,8 +13,9 @@ void shorten(const Mat3& block, float* to) {
 
 void ShortBlocks::prepare(const BlockMatrix& pattern) {
   const auto num_rows = static_cast<std::size_t>(pattern.num_rows());
-  if (m_pattern == &pattern && m_revision.size() == num_rows) return;
+  if (m_pattern == &pattern && m_num_blocks == pattern.num_blocks() && m_revision.size() == num_rows) return;
   m_pattern = &pattern;
+  m_num_blocks = pattern.num_blocks();
   m_order.prepare(pattern);
   m_parts.resize(num_rows);
   int num_pairs = 0;
@@ -34,9 +35,13 @@ void ShortBlocks::prepare(const BlockMatrix& pattern) {
   m_is_arranged = false;
 }
 
-void ShortBlocks::arrange(const BlockMatrix& pattern, const std::vector<int>* runs) {
-  prepare(pattern);
-  m_order.arrange(pattern, runs);
+void ShortBlocks::visit(const std::vector<int>* runs) {
+  m_visited = runs;
+  m_is_arranged = false;
+}
+
+void ShortBlocks::arrange(const BlockMatrix& pattern) {
+  m_order.arrange(pattern, m_visited);
   for (const int row : m_order.rows()) arrange_row(pattern, row);
   m_is_arranged = true;
 }
@@ -75,7 +80,7 @@ void ShortBlocks::arrange_row(const BlockMatrix& pattern, int row) {
 
 void ShortBlocks::update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs) {
   prepare(matrix);
-  if (!m_is_arranged) arrange(matrix, nullptr);
+  if (!m_is_arranged) arrange(matrix);
   const bool has_unstored = whole.has_unstored();
   if (has_unstored != m_had_unstored) std::fill(m_is_taken.begin(), m_is_taken.end(), std::uint8_t{0});
   m_had_unstored = has_unstored;

@@ -15,8 +15,8 @@ class ShortBlocks {
  public:
   /// Takes the memory for matrices of this pattern; the functions below do the same.
   void prepare(const BlockMatrix& pattern);
-  /// Puts the rows of these runs into the order of their sweeps; null: all.
-  void arrange(const BlockMatrix& pattern, const std::vector<int>* runs);
+  /// From now on sweeps go over the rows of these runs; null: all. The list must outlive the updates.
+  void visit(const std::vector<int>* runs);
   /// Takes the rows that have changed since the last update; the inverses hold what `whole` does not store,
   /// too.
   void update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs);
@@ -25,10 +25,13 @@ class ShortBlocks {
   const SweepOrder& order() const { return m_order; }
 
  private:
+  void arrange(const BlockMatrix& pattern);
   void arrange_row(const BlockMatrix& pattern, int row);
   void take_row(const BlockMatrix& matrix, int row);
 
   const BlockMatrix* m_pattern = nullptr;
+  int m_num_blocks = 0;
+  const std::vector<int>* m_visited = nullptr;
   SweepOrder m_order;
   bool m_is_arranged = false;
   bool m_had_unstored = false;

@@ -16,7 +16,7 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
   prepare(matrix);
   if (m_is_changed) {
     clear_left_rows();
-    m_blocks.arrange(matrix, m_visited);
+    m_blocks.visit(m_visited);
   }
   m_is_changed = false;
   m_sums.resize(static_cast<std::size_t>(m_runs.count_runs(num_rows)));

@@ -41,6 +41,20 @@ BlockMatrix make_box(int edge, std::uint64_t seed) {
   return matrix;
 }
 
+/// Its blocks of neighbouring rows alone.
+BlockMatrix make_chain_of(const BlockMatrix& matrix) {
+  std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(matrix.num_rows()));
+  for (int row = 0; row < matrix.num_rows(); ++row)
+    for (const int column : {row - 1, row, row + 1})
+      if (column >= 0 && find_block(matrix, row, column) >= 0)
+        neighbours[static_cast<std::size_t>(row)].push_back(column);
+  BlockMatrix chain = make_block_matrix(neighbours);
+  for (int row = 0; row < matrix.num_rows(); ++row)
+    for (const int column : neighbours[static_cast<std::size_t>(row)])
+      chain.block(find_block(chain, row, column)) = matrix.block(find_block(matrix, row, column));
+  return chain;
+}
+
 Eigen::MatrixXd to_dense(const BlockMatrix& a) {
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * a.num_rows(), 3 * a.num_rows());
   for (int row = 0; row < a.num_rows(); ++row)
@@ -246,6 +260,19 @@ TEST(ShortIteration, SolvesForSomeRowsAsIfThereWereNoOthers) {
       if (threads == 1) of_one_thread.push_back(x);
       EXPECT_TRUE((x.array() == of_one_thread[number++].array()).all()) << threads;
     }
+  }
+}
+
+TEST(ShortIteration, TakesAMatrixWhosePatternHasGrown) {
+  BlockMatrix matrix = make_chain_of(make_box(9, 17));
+  const Points b = make_random_vector(matrix.num_rows(), 18).reshaped(3, matrix.num_rows());
+  ShortIteration iteration(1);
+  for (int step = 0; step < 2; ++step) {
+    MatrixOperator product(matrix, 1);
+    Points x = Points::Zero(3, b.cols());
+    ASSERT_TRUE(iteration.solve(matrix, product, b, 1e-4, 100, x).converged);
+    EXPECT_LT((to_dense(matrix) * x.reshaped() - b.reshaped()).norm(), 1.001e-4 * b.norm());
+    matrix = make_box(9, 17);
   }
 }
 
