@@ -211,10 +211,11 @@ bool Solid::correct_solution(const StepLoads& loads) {
   const double of_solve = m_tau * m_counters.imbalance;
   double left = find_left(product);
   const double of_frames = std::sqrt(std::max(0.0, left * left - of_solve * of_solve));
-  const double share = std::max(m_params.solver.tolerance * m_first_residual, m_tau * loads.slack);
+  const double share = m_tau * loads.slack;
   if (may_lag_further())
     m_frame_slack = frame_tolerance() * (of_frames * kMore > share ? share / of_frames : kMore);
-  const double enough = std::min(2.0 * share, m_tau * loads.limit);
+  const double enough =
+      std::min(2.0 * std::max(m_params.solver.tolerance * m_first_residual, share), m_tau * loads.limit);
   m_correction.resize(3, num_free());
   m_solver->set_goal(0.5 * enough);
   bool has_changed = false;
