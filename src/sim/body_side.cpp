@@ -33,7 +33,7 @@ BodySide::BodySide(Body body, const Params& params)
       m_solid(m_body.mesh, m_body.topology, m_body.supports, make_solid_params(params), params.threads),
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation),
       m_surface(params.contact_surface, m_body, m_solid.elements()),
-      m_fidelity(params.fidelity) {
+      m_fidelity(params.fidelity, params.solid.rayleigh_stiffness / step_seconds()) {
   const Eigen::Index n = m_solid.elements().num_nodes();
   m_state.solid = m_solid.make_rest_state();
   m_load_force = solid::compute_load_force(m_solid.elements(), m_body.topology.boundary, m_body.loads);

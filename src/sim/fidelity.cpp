@@ -37,7 +37,11 @@ double Fidelity::lasting_share() const {
 }
 
 double Fidelity::solve_slack() const {
-  return is_full() ? 0.0 : kSolve * lasting_share();
+  return is_full() ? 0.0 : kSolve * lasting_share() / m_stiffening;
+}
+
+double Fidelity::solve_limit() const {
+  return m_record.bound / (m_reach * m_stiffening);
 }
 
 double Fidelity::region_slack() const {
@@ -63,7 +67,7 @@ bool Fidelity::sleeps_on(double imbalance, double held_back) {
 
 void Fidelity::set_made(bool is_solved, double imbalance, double held_back) {
   m_record.rung = is_solved ? Rung::solved : Rung::coasting;
-  m_record.estimate = m_reach * imbalance + held_back;
+  m_record.estimate = m_reach * m_stiffening * imbalance + held_back;
 }
 
 void Fidelity::exchange_state(Archive& archive) {

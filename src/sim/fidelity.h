@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "base/archive.h"
@@ -44,7 +45,9 @@ struct FidelityRecord {
 /// is read off the body: what the hand has done to it so far, over the largest displacement.
 class Fidelity {
  public:
-  explicit Fidelity(const FidelityParams& params) : m_params(params) {}
+  /// `damped_steps`: over so many steps damping spreads what the body does under a force, β/τ.
+  explicit Fidelity(const FidelityParams& params, double damped_steps = 0.0)
+      : m_params(params), m_stiffening(std::max(1.0, damped_steps)) {}
 
   bool is_full() const { return m_params.mode == FidelityMode::full; }
   /// A step begins while the hand feels a force [N].
@@ -56,6 +59,8 @@ class Fidelity {
   /// enlarged: so they have shares of the floor, and less while the force changes fast.
   double solve_slack() const;
   double region_slack() const;
+  /// No solve may leave more [N]: the hand would feel it by more than the bound.
+  double solve_limit() const;
   /// May a body that would hold `imbalance` [N] back, were it stopped, stop now? Of it, `held_back` [N] more
   /// is felt by what does not move as it is. It must have been so for some steps in a row, and not flow.
   bool falls_asleep(double imbalance, double held_back, bool flows);
@@ -72,6 +77,7 @@ class Fidelity {
   double lasting_share() const;
 
   FidelityParams m_params;
+  double m_stiffening;  // of a body within a step by its damping, over the same left to its time
   FidelityRecord m_record;
   double m_reach = 1.0;
   Vec3 m_felt_force = Vec3::Zero();

@@ -146,6 +146,7 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
   solid::StepLoads loads{m_external_force, load.stiffness};
   loads.changed = &m_changed_nodes;
   loads.slack = m_fidelity.solve_slack();
+  loads.limit = m_fidelity.solve_limit();
   loads.region_slack = m_fidelity.region_slack();
   if (load.is_pressed)
     loads.mobility = [this, &load](Eigen::Index node) { return clay_factor(node, load, step_seconds()); };

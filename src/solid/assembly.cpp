@@ -59,7 +59,7 @@ void Solid::set_tet_forces() {
 }
 
 /// Nodes along the curve: by the thread that has just set the forces around them.
-void Solid::gather(Points& force) const {
+void Solid::gather(const Eigen::Matrix3Xd& corner_force, Points& force) const {
   constexpr std::size_t kAhead = 2;
   const std::vector<int>& nodes = m_nodes.visited() ? *m_nodes.visited() : m_nodes_along_curve;
   const int* corners = m_elements.node_corners.data();
@@ -69,7 +69,7 @@ void Solid::gather(Points& force) const {
     const auto next = static_cast<std::size_t>(nodes[std::min(i + kAhead, nodes.size() - 1)]);
     __builtin_prefetch(corners + m_elements.node_begin[next]);
     __builtin_prefetch(corners + m_elements.node_begin[next] + 16);
-    sum_corner_forces(m_corner_force.data(), corners, m_elements.node_begin[n], m_elements.node_begin[n + 1],
+    sum_corner_forces(corner_force.data(), corners, m_elements.node_begin[n], m_elements.node_begin[n + 1],
                       force.data() + 3 * n);
   });
 }
@@ -83,7 +83,7 @@ void Solid::assemble_internal_force() {
   else
     set_corner_forces<10>();
   if (m_region && m_has_old_forces) m_nodes.visit(nullptr);
-  gather(m_internal_force);
+  gather(m_corner_force, m_internal_force);
   if (m_region && m_has_old_forces) m_nodes.visit(&m_region->nodes());
   m_has_old_forces = false;
 }
@@ -139,7 +139,28 @@ void Solid::compute_stiffness_product(const Points& u, double kept, double exact
     set_corner_products<4>(u, kept, exact);
   else
     set_corner_products<10>(u, kept, exact);
-  gather(force);
+  gather(m_corner_force, force);
+}
+
+/// K u with the present rotations where those of the stored matrix lag: of nodes that move, for isotropic
+/// laws of 4-node tets.
+void Solid::compute_present_product(const Points& u, Points& force) {
+  m_change.strain.resize(6, m_elements.num_tets());
+  m_change.corner_force.resize(3, m_corner_force.cols());
+  const StrainArrays strains{u.data(), m_elements.nodes.data(), m_elements.gradient.data(), m_rotation.data(),
+                             m_change.strain.data()};
+  each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_strains(strains, begin, end); });
+  ForceArrays forces = make_force_arrays(m_change.strain, m_change.corner_force.data());
+  forces.strain = m_change.strain.data();
+  forces.plastic_strain = nullptr;
+  if (m_nodal) {
+    m_change.volume = m_change.strain.topRows<3>().colwise().sum().transpose();
+    m_nodal->average(m_change.volume, m_change.pressure);
+    m_change.pressure.array() *= m_excess_bulk.array();
+    forces.pressure = m_change.pressure.data();
+  }
+  each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_corner_forces(forces, begin, end); });
+  gather(m_change.corner_force, force);
 }
 
 Mat3 Solid::volume_gradient(int tet) const {

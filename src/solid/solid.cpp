@@ -263,6 +263,11 @@ double Solid::frame_tolerance() const {
   return std::min(kLargest, std::max(m_params.solver.tolerance, m_frame_slack));
 }
 
+/// May they lag more than that where a step has slack? Only where what it leaves is known all the same.
+bool Solid::may_lag_further() const {
+  return has_plain_tets() && frame_tolerance() > 0.0;
+}
+
 void Solid::set_tet_motion(const Points& x, bool keeps_frame) {
   const TetArrays tets{x.data(),
                        m_elements.nodes.data(),

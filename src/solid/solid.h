@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -56,7 +57,7 @@ struct StepCounters {
   int linear_iterations = 0;
   bool has_solved = false;  ///< by iterations or a factor; not where the first guess would do
   double residual = 0.0;    ///< relative, of the last linear solve
-  double imbalance = 0.0;   ///< [N] that an iteration and frames that lag left: norm of force over all nodes
+  double imbalance = 0.0;   ///< [N] that a solve left, with a slack also frames that lag: norm over all nodes
   int assembled_rows = 0;   ///< rows of the matrix that were gathered anew; the others stayed as they were
 };
 
@@ -69,6 +70,8 @@ struct StepLoads {
   /// Forces [N] without balance, Euclidean norm over all nodes, that a step's solve may leave; 0: the
   /// tolerance of the parameters decides.
   double slack = 0.0;
+  /// And what it leaves at most where there is slack, whatever the tolerance.
+  double limit = std::numeric_limits<double>::infinity();
   /// Extent::local: by how much the hand's force may be off [N] for what is left as it is; 0: as for slack.
   double region_slack = 0.0;
   /// Extent::local: nodes whose force may be another than in the last step; null: any.
@@ -251,6 +254,7 @@ class Solid {
   double find_felt_pull(int run, const LargestWay& largest, const StepLoads& loads) const;
   void visit_region();
   double frame_tolerance() const;
+  bool may_lag_further() const;
   void set_tet_motion(const Points& x, bool keeps_frame);
   void set_quadratic_motion(const Points& x, bool keeps_frame);
   Elasticity elasticity(int tet) const;
@@ -271,9 +275,10 @@ class Solid {
   template <int N>
   void set_corner_products(const Points& u, double kept, double exact);
   void compute_stiffness_product(const Points& u, double kept, double exact, Points& force);
+  void compute_present_product(const Points& u, Points& force);
   Mat3 volume_gradient(int tet) const;
   Mat3 kept_rotation(int point) const;
-  void gather(Points& force) const;
+  void gather(const Eigen::Matrix3Xd& corner_force, Points& force) const;
   void clear_held(Points& u) const;
 
   // contacts.cpp
@@ -318,6 +323,8 @@ class Solid {
   void set_residual_scale(const StepLoads& loads);
   double compute_potential(const StepLoads& loads);
   static linear::SolverParams make_exact(linear::SolverParams solver);
+  double find_left(Product& product);
+  bool correct_solution(const StepLoads& loads);
   linear::SolveReport solve_system(const StepLoads& loads, bool is_first);
   StepStatus search_line(const StepLoads& loads, Tick tick);
   void set_iterate(double share);
@@ -403,6 +410,13 @@ class Solid {
   const TensorField* m_plastic_strain = nullptr;  // the state's, during a step
   Points m_product, m_direction, m_zero;          // working arrays, 3×n; the last one stays zero
   Points m_rhs, m_delta;                          // a column a row
+  Points m_left, m_correction;                    // likewise: what δ leaves of the step, and what to add
+  struct {
+    TensorField strain;
+    Eigen::Matrix3Xd corner_force;
+    Field volume, pressure;
+  } m_change;                     // of 4-node tets by a small displacement, the present rotations kept
+  double m_first_residual = 0.0;  // of the first guess of its first solve
   double m_residual_scale = 0.0;
   double m_corner_scale = 0.0;      // Σ‖corner force‖²
   Field m_rounding;                 // what rounding alone leaves of the internal force at each node [N]

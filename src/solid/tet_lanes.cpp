@@ -22,6 +22,34 @@ void set_rotation_by_svd(const Real33<Lanes>& F, int lane, Real33<Lanes>& R) {
   for (int k = 0; k < 9; ++k) R.m[k][lane] = rotation(k);
 }
 
+/// Σ uᵢ ⊗ ∇Nᵢ of tets begin … end−1.
+ARGIL_INLINE void set_gradient(const double* u, const int* of_tet, const Lanes* gradient,
+                               std::ptrdiff_t begin, std::ptrdiff_t end, Real33<Lanes>& H) {
+  Lanes corner[12];
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const int* nodes = of_tet + 4 * std::min(begin + lane, end - 1);
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) corner[3 * i + k][lane] = u[3 * nodes[i] + k];
+  }
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      H.m[3 * c + r] = corner[r] * gradient[c] + corner[3 + r] * gradient[3 + c] +
+                       corner[6 + r] * gradient[6 + c] + corner[9 + r] * gradient[9 + c];
+}
+
+/// sym(RᵀH), Mandel.
+ARGIL_INLINE void set_turned_strain(const Real33<Lanes>& R, const Real33<Lanes>& H, Lanes* strain) {
+  Lanes S[9];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      S[3 * i + j] =
+          R.m[3 * i] * H.m[3 * j] + R.m[3 * i + 1] * H.m[3 * j + 1] + R.m[3 * i + 2] * H.m[3 * j + 2];
+  for (int k = 0; k < 3; ++k) strain[k] = S[4 * k];
+  strain[3] = kSqrt2 * (0.5 * (S[5] + S[7]));
+  strain[4] = kSqrt2 * (0.5 * (S[2] + S[6]));
+  strain[5] = kSqrt2 * (0.5 * (S[1] + S[3]));
+}
+
 /// Where R left the frame of the turned gradient: another frame, another gradient.
 ARGIL_INLINE void turn_frames(const TetArrays& tets, const Real33<Lanes>& R, const Lanes* gradient,
                               std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -45,20 +73,11 @@ ARGIL_INLINE void turn_frames(const TetArrays& tets, const Real33<Lanes>& R, con
 }  // namespace
 
 ARGIL_EVERY_PROCESSOR void compute_motions(const TetArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  Lanes corner[12];
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const int* nodes = tets.nodes + 4 * std::min(begin + lane, end - 1);
-    for (int i = 0; i < 4; ++i)
-      for (int k = 0; k < 3; ++k) corner[3 * i + k][lane] = tets.x[3 * nodes[i] + k];
-  }
   Lanes gradient[12];
   read_lanes<12>(tets.gradient, begin, end - 1, gradient);
 
   Real33<Lanes> F, R;
-  for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 3; ++r)
-      F.m[3 * c + r] = corner[r] * gradient[c] + corner[3 + r] * gradient[3 + c] +
-                       corner[6 + r] * gradient[6 + c] + corner[9 + r] * gradient[9 + c];
+  set_gradient(tets.x, tets.nodes, gradient, begin, end, F);
   if (tets.is_linear) {
     for (int k = 0; k < 9; ++k) R.m[k] = Lanes{} + (k % 4 == 0 ? 1.0 : 0.0);
   } else {
@@ -68,18 +87,9 @@ ARGIL_EVERY_PROCESSOR void compute_motions(const TetArrays& tets, std::ptrdiff_t
       if (found[lane] == 0.0) set_rotation_by_svd(F, lane, R);
   }
 
-  const auto set_dot = [&](int i, int j, Lanes& dot) __attribute__((always_inline)) {
-    dot = R.m[3 * i] * F.m[3 * j] + R.m[3 * i + 1] * F.m[3 * j + 1] + R.m[3 * i + 2] * F.m[3 * j + 2];
-  };
-  Lanes S[9];
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) set_dot(i, j, S[3 * i + j]);
-  const Lanes strain[6] = {S[0] - 1.0,
-                           S[4] - 1.0,
-                           S[8] - 1.0,
-                           kSqrt2 * (0.5 * (S[5] + S[7])),
-                           kSqrt2 * (0.5 * (S[2] + S[6])),
-                           kSqrt2 * (0.5 * (S[1] + S[3]))};
+  Lanes strain[6];
+  set_turned_strain(R, F, strain);
+  for (int k = 0; k < 3; ++k) strain[k] -= 1.0;
   Real33<Lanes> cofactor;
   Lanes determinant;
   set_cofactor(F, cofactor, determinant);
@@ -91,13 +101,24 @@ ARGIL_EVERY_PROCESSOR void compute_motions(const TetArrays& tets, std::ptrdiff_t
   if (tets.turned_gradient) turn_frames(tets, R, gradient, begin, end);
 }
 
+ARGIL_EVERY_PROCESSOR void compute_strains(const StrainArrays& tets, std::ptrdiff_t begin,
+                                           std::ptrdiff_t end) {
+  Lanes gradient[12], strain[6];
+  Real33<Lanes> R, H;
+  read_lanes<12>(tets.gradient, begin, end - 1, gradient);
+  read_lanes<9>(tets.R, begin, end - 1, R.m);
+  set_gradient(tets.u, tets.nodes, gradient, begin, end, H);
+  set_turned_strain(R, H, strain);
+  write_lanes<6>(strain, begin, end, tets.strain);
+}
+
 ARGIL_EVERY_PROCESSOR void compute_corner_forces(const ForceArrays& tets, std::ptrdiff_t begin,
                                                  std::ptrdiff_t end) {
   const std::ptrdiff_t last = end - 1;
-  Lanes strain[6], plastic[6], lambda, mu, weight, gradient[12];
+  Lanes strain[6], plastic[6] = {}, lambda, mu, weight, gradient[12];
   Real33<Lanes> R;
   read_lanes<6>(tets.strain, begin, last, strain);
-  read_lanes<6>(tets.plastic_strain, begin, last, plastic);
+  if (tets.plastic_strain) read_lanes<6>(tets.plastic_strain, begin, last, plastic);
   read_lanes<1>(tets.lambda, begin, last, &lambda);
   read_lanes<1>(tets.mu, begin, last, &mu);
   read_lanes<1>(tets.weight, begin, last, &weight);

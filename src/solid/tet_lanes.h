@@ -44,12 +44,24 @@ void for_batches(const std::vector<int>& batches, std::ptrdiff_t num_tets, int t
 /// F = Σ xᵢ ⊗ ∇Nᵢ, R, ε = sym(RᵀF) − 1 and det F of tets begin … end−1, at most kLanes of them.
 void compute_motions(const TetArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
 
+/// Strain of a small displacement of turned tets.
+struct StrainArrays {
+  const double* u = nullptr;         ///< 3 a node
+  const int* nodes = nullptr;        ///< 4 a tet
+  const double* gradient = nullptr;  ///< ∇Nᵢ, 12 a tet
+  const double* R = nullptr;         ///< 9 a tet
+  double* strain = nullptr;          ///< Mandel, 6 a tet
+};
+
+/// sym(RᵀH), H = Σ uᵢ ⊗ ∇Nᵢ, of tets begin … end−1, at most kLanes of them.
+void compute_strains(const StrainArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
+
 /// What forces are computed from.
 struct ForceArrays {
   const double* gradient = nullptr;        ///< 12 a tet
   const double* R = nullptr;               ///< 9 a tet
   const double* strain = nullptr;          ///< 6 a tet
-  const double* plastic_strain = nullptr;  ///< 6 a tet
+  const double* plastic_strain = nullptr;  ///< 6 a tet; may be null: none
   const double* weight = nullptr;          ///< volume
   const double* lambda = nullptr;          ///< 1 a tet [Pa]
   const double* mu = nullptr;              ///< 1 a tet [Pa]

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
@@ -19,12 +20,12 @@ constexpr double kHeight = 0.02;  // of the block [m]
 
 // The indicators alone.
 
-Fidelity make_fidelity() {
+Fidelity make_fidelity(double damped_steps = 0.0) {
   FidelityParams params;
   params.mode = FidelityMode::automatic;
   params.force_tolerance = 0.01;
   params.force_floor = 0.02;
-  return Fidelity(params);
+  return Fidelity(params, damped_steps);
 }
 
 /// ‖g‖ of Betti's theorem, with the factor 2 of the safety: √n where all nodes go with the hand, 1 where one
@@ -58,6 +59,23 @@ TEST(Fidelity, SolvesMoreExactlyWhileTheForceChanges) {
   const double changing = fidelity.solve_slack();
   fidelity.begin_step(Vec3(0, 0, 1.0));
   EXPECT_DOUBLE_EQ(fidelity.solve_slack(), changing * (0.02 + 1.0) / 0.02);
+}
+
+/// A damped body answers a contact that comes or goes with more than its stiffness at rest, and what its
+/// solves left lasts for as many steps.
+TEST(Fidelity, SolvesADampedBodyMoreExactly) {
+  constexpr double kDampedSteps = 30.0;
+  Fidelity free = make_fidelity(), damped = make_fidelity(kDampedSteps);
+  const double imbalance = 1e-5;
+  for (Fidelity* fidelity : {&free, &damped}) {
+    fidelity->begin_step(Vec3(0, 0, 1.0));
+    fidelity->find_reach(Points::Zero(3, 1), Points::Zero(3, 1), OrderedItems(1));
+    fidelity->set_made(true, imbalance, 0.0);
+  }
+  EXPECT_DOUBLE_EQ(damped.solve_slack(), free.solve_slack() / kDampedSteps);
+  EXPECT_DOUBLE_EQ(damped.record().estimate, kDampedSteps * free.record().estimate);
+  damped.set_made(true, damped.solve_limit(), 0.0);
+  EXPECT_DOUBLE_EQ(damped.record().estimate, damped.record().bound);
 }
 
 /// One mode that relaxes: its imbalance falls by e^{−h/τ} a step. It may stop when what is left of it is
@@ -211,6 +229,59 @@ TEST(FidelityAuto, DoesNotChatterAtTheEdgeOfSleep) {
     EXPECT_LE(rest.switches, 2 + 4 * 2) << amplitude;  // at most twice a half period
     EXPECT_LT(rest.error, 1.0) << amplitude;
     EXPECT_LT(rest.kick, 1.0) << amplitude;
+  }
+}
+
+/// A post of 100 mm that resists fast strain, bent by a soft tool at its side to and fro.
+struct Sway {
+  static constexpr Tick kTicks = 320;
+  static constexpr double kWidth = 0.024;
+
+  static device::DeviceSample hand_at(Tick tick) {
+    const auto t = static_cast<double>(tick);
+    const double way = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * t / 160.0);
+    device::DeviceSample sample;
+    sample.position = {-kToolRadius - 1e-3 + 0.05 * way, 0.5003 * kWidth, 0.0903 - 0.02 * way};
+    sample.mode = device::ToolMode::push;
+    return sample;
+  }
+  static Simulation make(FidelityMode mode, double tolerance) {
+    Params p;
+    p.elastic = {3e5, 0.3};
+    p.plasticity.enabled = false;
+    p.kernel.form = material::KernelForm::off;
+    p.contact = {60.0, 60.0};
+    p.solid.rayleigh_stiffness = 0.1;
+    p.solid.solver.tolerance = tolerance;
+    p.fidelity.mode = mode;
+    return {test::make_block_body(3, 3, 12, Vec3(kWidth, kWidth, 0.1)),
+            contact::make_sphere_tool(kToolRadius, 2), p, hand_at(0)};
+  }
+};
+
+/// Seen from a frame that lags, the turning of the post is a strain, which its damping resists.
+TEST(FidelityAuto, DampingDoesNotResistATurnByFramesThatLag) {
+  Simulation full = Sway::make(FidelityMode::full, 1e-4);
+  Simulation lean = Sway::make(FidelityMode::automatic, 1e-4);
+  double peak = 0.0, error = 0.0;
+  for (Tick k = 1; k <= Sway::kTicks; ++k) {
+    ASSERT_TRUE(full.tick(Sway::hand_at(k)).is_ok() && lean.tick(Sway::hand_at(k)).is_ok()) << k;
+    const FidelityRecord record = lean.physics_record().fidelity;
+    const Vec3 off = lean.hand_state().hand_force - full.hand_state().hand_force;
+    peak = std::max(peak, full.hand_state().hand_force.norm());
+    error = std::max(error, off.norm() / record.bound);
+  }
+  EXPECT_GT(peak, 0.5);
+  EXPECT_LT(error, 0.5);
+}
+
+/// With a solver so loose that it would leave more than the bound.
+TEST(FidelityAuto, NoStepIsKeptWhoseOwnEstimateIsAboveItsBound) {
+  Simulation lean = Sway::make(FidelityMode::automatic, 0.1);
+  for (Tick k = 1; k <= Sway::kTicks; ++k) {
+    ASSERT_TRUE(lean.tick(Sway::hand_at(k)).is_ok()) << k;
+    const FidelityRecord record = lean.physics_record().fidelity;
+    EXPECT_LE(record.estimate, record.bound * (1.0 + 1e-12)) << k;
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/mandel.h"
 #include "base/rng.h"
 #include "solid/element.h"
 
@@ -106,6 +107,40 @@ TEST_P(Lanes8, MoveAndPressAsTheLawOfAPointDoes) {
                 1e-12 * (1.0 + expected.norm()))
           << t;
     }
+  }
+}
+
+/// A small displacement of turned tets, and the force of its strain alone.
+TEST_P(Lanes8, StrainBySmallDisplacementsInTheTurnedFrame) {
+  Tets tets;
+  tets.move(GetParam());
+  Points u = Points::Zero(3, tets.x.cols());
+  Rng rng(7);
+  for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = rng.uniform(-1.0, 1.0);
+  const StrainArrays strains{u.data(), tets.nodes.data(), tets.gradient.data(), tets.R.data(),
+                             tets.strain.data()};
+  for_batches(kTets, 1,
+              [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_strains(strains, begin, end); });
+  const ForceArrays forces{tets.gradient.data(),
+                           tets.R.data(),
+                           tets.strain.data(),
+                           nullptr,
+                           tets.weight.data(),
+                           tets.lambda.data(),
+                           tets.mu.data(),
+                           nullptr,
+                           GetParam() == StrainModel::linear,
+                           tets.force.data()};
+  for_batches(kTets, 1,
+              [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_corner_forces(forces, begin, end); });
+  for (int t = 0; t < kTets; ++t) {
+    const Mat34 gradient = tets.gradient.middleCols<4>(4 * t);
+    const Mat3 R = tets.R.middleCols<3>(3 * t);
+    const Vec6 strain = compute_strain(R + u.middleCols<4>(4 * t) * gradient.transpose(), R);
+    const Mat3 sigma = from_mandel(compute_stress({tets.lambda(t), tets.mu(t)}, strain));
+    const Mat34 force = tets.weight(t) * R * sigma * gradient;
+    EXPECT_LT((tets.strain.col(t) - strain).norm(), 1e-13 * (1.0 + strain.norm())) << t;
+    EXPECT_LT((tets.force.middleCols<4>(4 * t) - force).norm(), 1e-12 * (1.0 + force.norm())) << t;
   }
 }
 

@@ -1,0 +1,159 @@
+#!/usr/bin/python3
+"""Writes the tables of results/bench/README.md from the CSV files beside it, each below the line of its columns.
+
+    scripts/bench_page.py [--check]
+
+With --check nothing is written; exit code 1 when a table is not that of its file.
+"""
+import csv
+import re
+import sys
+from pathlib import Path
+
+BENCH = Path(__file__).resolve().parent.parent / "results/bench"
+PAGE = BENCH / "README.md"
+
+
+def read(name):
+    with open(BENCH / f"{name}.csv", encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def read_commit(name):
+    return re.search(r"commit (\w+)", (BENCH / f"{name}.csv").read_text(encoding="utf-8"))[1]
+
+
+def three(value):
+    """Three digits, and no power of ten below a million."""
+    return f"{float(value):.0f}" if float(value) >= 100 else f"{float(value):#.3g}".rstrip(".")
+
+
+def ms(value):
+    """Of microseconds."""
+    return three(float(value) / 1000)
+
+
+def list_steps():
+    stages = "contact", "water", "assemble", "solve", "kinematics", "plasticity"
+    for row in read("step"):
+        mode, _, threads = row["name"].split("/")[:3]
+        yield [mode, row["tets"], threads.split(":")[1], *(f"{float(row[k]) / 1000:.3f}" if row[k] else "–" for k in stages),
+               ms(row["step"]), ms(row["step_p99"]), three(row["cg_iterations"]) if float(row["cg_iterations"]) else "0",
+               f"{float(row['steps_per_s']):.0f}", f"{float(row['real_time']) / float(row['cpu_time']):.2f}"]
+
+
+def list_sizes():
+    rows = {tuple(row["name"].split("/")[:4]): row for row in read("sizes")}
+    for body, fidelity, size, threads in rows:
+        if (fidelity, threads) != ("full", "threads:1"):
+            continue
+        runs = [rows[body, f, size, f"threads:{t}"] for f in ("full", "auto") for t in (1, 2)]
+        full, auto = float(runs[0]["force_N"]), float(runs[2]["force_N"])
+        yield [body, runs[0]["tets"], *(f"{ms(run['step'])} / {ms(run['step_p99'])}" for run in runs),
+               f"{100 * abs(auto / full - 1):.2f} %", f"{abs(auto - full) / max(0.02, 0.01 * full):.2f}"]
+
+
+def list_bullet():
+    rows = {tuple(row["name"].split("/iterations")[0].split("/")): row for row in read("bullet")}
+    for (program, *size), bullet in rows.items():
+        if program == "bullet":
+            argil = [rows["argil", *size, f"threads:{t}"] for t in (1, 2)]
+            yield [bullet["tets"], ms(bullet["step"]), *(ms(row["step"]) for row in argil),
+                   f"{float(bullet['step']) / float(argil[0]['step']):.0f}",
+                   f"{float(bullet['top_mm']):.3f}, {float(argil[0]['top_mm']):.3f}"]
+
+
+def list_tolerances():
+    rows = read("tolerance")
+    for tets, kernel in dict.fromkeys((row["tets"], row["clay_kernel"]) for row in rows):
+        of_scene = [row for row in rows if (row["tets"], row["clay_kernel"]) == (tets, kernel)]
+        yield [tets, "off" if kernel == "none" else "on",
+               *(f"{100 * float(row['largest_error_over_peak']):.2g}, {row['cg_iterations_mean']}" for row in of_scene)]
+
+
+DESIGNS = {"block Jacobi, double": ("block_jacobi", 1), "incomplete Cholesky, double": ("block_ic0", 1),
+           "block Jacobi, floats": ("block_jacobi_floats", 1), "the same, 2 threads": ("block_jacobi_floats", 2),
+           "Eisenstat, whole": ("eisenstat_floats_whole", 1), "Eisenstat, 8 groups": ("eisenstat_floats_8_groups", 1),
+           "Eisenstat, 2 separated": ("eisenstat_floats_2_separated", 1),
+           "the same, on 2 threads": ("eisenstat_floats_2_separated", 2)}
+
+
+def list_designs():
+    rows = read("preconditioners")
+    for name, (design, threads) in DESIGNS.items():
+        yield [name, *(f"{row['iterations_1e-3']}, {three(row['ms_1e-3'])}" for row in rows
+                       if (row["design"], row["threads"]) == (design, str(threads)))]
+
+
+def list_extents():
+    for row in read("extent"):
+        yield [row["scene"], row["tets"], row["mode"], row["nodes_mean"], f"{float(row['ms_a_step']):.2f}",
+               row["error_over_bound"] or "–", row["start_s"] or "–", row["peak_MiB"] or "–"]
+
+
+def list_bare_steps():
+    rows = read("elastic")
+    pairs = [(rows[i], rows[i + 1]) for i in range(0, len(rows), 2)]
+    for argil, other in sorted(pairs, key=lambda pair: (-float(pair[0]["tolerance"]), int(pair[0]["tets"]))):
+        yield [argil["tolerance"], argil["tets"], argil["threads"], three(argil["ms_median"]), three(other["ms_median"]),
+               argil["ratio"], f"{float(argil['ms_least']) / float(other['ms_least']):.2f}", argil["iterations"],
+               other["iterations"]]
+
+
+def list_instructions():
+    for row in read("instructions"):
+        yield [row["tets"], *(three(float(row[stage]) / 1e6)
+                              for stage in ("contact", "assemble", "solve", "kinematics", "plasticity", "step"))]
+
+
+def list_wet_ticks():
+    rows = read("water")
+    water = [row for row in rows if re.match(r"touch/edge:\d+/implicit:0/real_time", row["name"])]
+    ticks = [row for row in rows if row["name"].startswith("tick/")]
+    for touch, tick in zip(water, ticks, strict=True):
+        yield [touch["tets"], f"{float(touch['real_time']):.1f}", touch["active"], three(tick["real_time"]), tick["active"],
+               tick["contacts"], f"{float(tick['steps_per_s']):.0f}"]
+
+
+def list_contacts():
+    for row in read("contact"):
+        kind = row["name"].removeprefix("find_contacts/").split("/")[0]
+        yield [kind.replace("_", " "), row["triangles"], row["contacts"], three(row["cpu_time"])]
+
+
+TABLES = {
+    "| mode | tets | threads | contact |": list_steps,
+    "| body | tets | full, 1 thread |": list_sizes,
+    "| tets | Bullet [ms] |": list_bullet,
+    "| tets | clay kernel |": list_tolerances,
+    "| design |": list_designs,
+    "| scene | tets | mode |": list_extents,
+    "| tolerance | tets | threads |": list_bare_steps,
+    "| tets | contact | assemble |": list_instructions,
+    "| tets | water [µs] |": list_wet_ticks,
+    "| tool | triangles |": list_contacts,
+}
+
+
+def write_tables(page):
+    lines = page.split("\n")
+    for header, rows in TABLES.items():
+        first = next(i for i, line in enumerate(lines) if line.startswith(header)) + 2
+        end = next(i for i in range(first, len(lines) + 1) if i == len(lines) or not lines[i].startswith("|"))
+        table = [f"| {' | '.join(row)} |" for row in rows()]
+        columns = lines[first - 2].count("|")
+        assert all(row.count("|") == columns for row in table), f"{header}: not as many columns as the page has"
+        lines[first:end] = table
+    return re.sub(r"\((\w+)\.csv at \w+\)", lambda match: f"({match[1]}.csv at {read_commit(match[1])})", "\n".join(lines))
+
+
+def main():
+    page = PAGE.read_text(encoding="utf-8")
+    written = write_tables(page)
+    if "--check" in sys.argv[1:]:
+        sys.exit(0 if written == page else f"{PAGE}: its tables are not those of the files beside it: run scripts/bench_page.py")
+    PAGE.write_text(written, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
