@@ -33,6 +33,7 @@ void ShortBlocks::prepare(const BlockMatrix& pattern) {
   m_revision.resize(num_rows);
   m_is_taken.assign(num_rows, 0);
   m_is_arranged = false;
+  for (int row = 0; row < pattern.num_rows(); ++row) arrange_row(pattern, row);
 }
 
 void ShortBlocks::visit(const std::vector<int>* runs) {
@@ -42,7 +43,11 @@ void ShortBlocks::visit(const std::vector<int>* runs) {
 
 void ShortBlocks::arrange(const BlockMatrix& pattern) {
   m_order.arrange(pattern, m_visited);
-  for (const int row : m_order.rows()) arrange_row(pattern, row);
+  for (const int moved : m_order.moved()) {
+    const auto row = static_cast<std::size_t>(moved);
+    for (int b = pattern.row_begin[row]; b < pattern.row_begin[row + 1]; ++b)
+      arrange_row(pattern, pattern.column[static_cast<std::size_t>(b)]);
+  }
   m_is_arranged = true;
 }
 

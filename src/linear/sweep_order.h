@@ -13,8 +13,10 @@ class SweepOrder {
  public:
   /// Takes the memory for matrices of this pattern.
   void prepare(const BlockMatrix& pattern);
-  /// Of the rows of these runs (base/ordered_runs.h) alone; null: of all.
+  /// Of the rows of these runs (base/ordered_runs.h) alone; null: of all. moved() then has the rows that come
+  /// first or last where they did not before; in the order of numbers, which prepare leaves, none is last.
   void arrange(const BlockMatrix& pattern, const std::vector<int>* runs);
+  const std::vector<int>& moved() const { return m_moved; }
 
   /// Places of rows(): the group's first and the one after its last. kLast: the rows that couple the others.
   static constexpr int kGroups = 2;
@@ -30,13 +32,12 @@ class SweepOrder {
   }
 
  private:
-  void find_last(const BlockMatrix& pattern, std::ptrdiff_t first_of_second);
+  void find_last(const BlockMatrix& pattern, std::ptrdiff_t half);
 
   std::vector<int> m_rows;  // by place
   int m_begin[kGroups + 2] = {};
-  std::vector<int> m_last;
-  std::vector<std::uint8_t> m_is_last;   // of each row
-  std::vector<std::uint8_t> m_is_first;  // of each row: in the first group
+  std::vector<int> m_last, m_moved;
+  std::vector<std::uint8_t> m_is_last, m_is_visited;  // of each row
 };
 
 }  // namespace argil::linear
