@@ -324,6 +324,7 @@ class Solid {
   double compute_potential(const StepLoads& loads);
   static linear::SolverParams make_exact(linear::SolverParams solver);
   double find_left(Product& product);
+  double estimate_left(Product& product, double share);
   bool correct_solution(const StepLoads& loads);
   linear::SolveReport solve_system(const StepLoads& loads, bool is_first);
   StepStatus search_line(const StepLoads& loads, Tick tick);
@@ -386,6 +387,11 @@ class Solid {
   bool m_has_old_nodes = true;          // what a step takes of nodes that do not move: not taken up yet
   double m_fastest = 0.0;               // speed of the last step [m/s]
   double m_frame_slack = 0.0;           // by how much frames may lag where the force at the hand allows it
+  struct {
+    double left = 0.0;   // by frames that lag, in terms of the right-hand side
+    double way = 0.0;    // their lag times the body's speed
+    int steps = 0;       // for so many more it is not found anew
+  } m_frame_error;       // as it was last found
   double m_region_slack = 0.0;          // of the present step [N]
   double m_held_back = 0.0;
   std::vector<std::pair<double, int>> m_pulls;  // on runs that sleep [N], and their numbers

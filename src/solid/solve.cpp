@@ -200,22 +200,45 @@ double Solid::find_left(Product& product) {
   }));
 }
 
+/// What solve and frames have left. What frames leave goes with their lag and the body's speed; it is found,
+/// by a pass over the tets, every few steps and where it may be more than `share` [of the right-hand side].
+/// Frames lag the less the more that was, and slowly more again.
+double Solid::estimate_left(Product& product, double share) {
+  constexpr double kAim = 0.8;     // of the share
+  constexpr double kMargin = 1.5;  // beside what is expected
+  constexpr double kGrown = 2.0;
+  constexpr int kStands = 8;
+  constexpr double kMore = 2.0;  // times the lag of the last step
+  const double of_solve = m_tau * m_counters.imbalance;
+  if (!may_lag_further()) return of_solve;
+  const double way =
+      frame_tolerance() * std::sqrt(m_rows.sum(num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        return m_delta.middleCols(begin, end - begin).squaredNorm();
+      }));
+  auto& known = m_frame_error;
+  const double expected = kMargin * known.left * (known.way > 0.0 ? way / known.way : 1.0);
+  if (known.steps > 0 && expected <= kMargin * share && way <= kGrown * known.way) {
+    --known.steps;
+    return std::hypot(of_solve, expected);
+  }
+  const double left = find_left(product);
+  const double of_frames = std::sqrt(std::max(0.0, left * left - of_solve * of_solve));
+  known = {of_frames, way, kStands};
+  m_frame_slack = frame_tolerance() * (of_frames * kMore > kAim * share ? kAim * share / of_frames : kMore);
+  return left;
+}
+
 /// Solves for what is left of the step, Newton's method on a matrix whose frames lag, until that is little. A
 /// body that turns is strained where it is seen from a frame that lags, and its damping resists: that may be
-/// far more than the lag times the residual. Frames lag the less the more it was, and slowly more again. True
-/// when the solution is another.
+/// far more than the lag times the residual. True when the solution is another.
 bool Solid::correct_solution(const StepLoads& loads) {
-  constexpr double kMore = 2.0;        // times the lag of the last step
   constexpr double kWorthwhile = 0.5;  // of what was left, for another round
   Product product(*this, loads.contacts);
-  const double of_solve = m_tau * m_counters.imbalance;
-  double left = find_left(product);
-  const double of_frames = std::sqrt(std::max(0.0, left * left - of_solve * of_solve));
   const double share = m_tau * loads.slack;
-  if (may_lag_further())
-    m_frame_slack = frame_tolerance() * (of_frames * kMore > share ? share / of_frames : kMore);
+  double left = estimate_left(product, share);
   const double enough =
       std::min(2.0 * std::max(m_params.solver.tolerance * m_first_residual, share), m_tau * loads.limit);
+  if (left > enough) left = find_left(product);
   m_correction.resize(3, num_free());
   m_solver->set_goal(0.5 * enough);
   bool has_changed = false;
@@ -306,6 +329,9 @@ void Solid::exchange_frames(Archive& archive) {
   }
   if (archive.is_restoring()) m_has_old_nodes = m_has_old_forces = true;
   archive.number("solid/frame_slack", m_frame_slack);
+  archive.number("solid/frame_error", m_frame_error.left);
+  archive.number("solid/frame_error_way", m_frame_error.way);
+  archive.number("solid/frame_error_steps", m_frame_error.steps);
   if (m_frame.size() == 0 || frame_tolerance() == 0.0) return;
   archive.array("solid/frame", m_frame);
   archive.array("solid/turned_gradient", m_turned_gradient);
