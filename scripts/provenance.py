@@ -13,7 +13,7 @@ def git(*words):
 
 def describe():
     """Commit, processor and its load now: a busy machine measures itself."""
-    changed = " (changed)" if git("status", "--porcelain", "--untracked-files=no") else ""
+    changed = " (changed)" if git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!results") else ""
     names = re.findall(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.MULTILINE)
     processor = f"{len(os.sched_getaffinity(0))} threads of {names[0]}" if names else "processor unknown"
     return f"commit {git('rev-parse', '--short', 'HEAD')}{changed}, {processor}, load {os.getloadavg()[0]:.2f}"
