@@ -67,7 +67,7 @@ def list_tolerances():
     rows = read("tolerance")
     for tets, kernel in dict.fromkeys((row["tets"], row["clay_kernel"]) for row in rows):
         of_scene = [row for row in rows if (row["tets"], row["clay_kernel"]) == (tets, kernel)]
-        yield [tets, "off" if kernel == "none" else "on",
+        yield [tets, "off" if kernel == "off" else "on",
                *(f"{100 * float(row['largest_error_over_peak']):.2g}, {row['cg_iterations_mean']}" for row in of_scene)]
 
 
