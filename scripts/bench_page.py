@@ -5,6 +5,7 @@
 
 With --check nothing is written; exit code 1 when a table is not that of its file.
 """
+import argparse
 import csv
 import re
 import sys
@@ -17,10 +18,6 @@ PAGE = BENCH / "README.md"
 def read(name):
     with open(BENCH / f"{name}.csv", encoding="utf-8", newline="") as file:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
-
-
-def read_commit(name):
-    return re.search(r"commit (\w+)", (BENCH / f"{name}.csv").read_text(encoding="utf-8"))[1]
 
 
 def three(value):
@@ -144,13 +141,16 @@ def write_tables(page):
         columns = lines[first - 2].count("|")
         assert all(row.count("|") == columns for row in table), f"{header}: not as many columns as the page has"
         lines[first:end] = table
-    return re.sub(r"\((\w+)\.csv at \w+\)", lambda match: f"({match[1]}.csv at {read_commit(match[1])})", "\n".join(lines))
+    return "\n".join(lines)
 
 
 def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true")
+    options = parser.parse_args()
     page = PAGE.read_text(encoding="utf-8")
     written = write_tables(page)
-    if "--check" in sys.argv[1:]:
+    if options.check:
         sys.exit(0 if written == page else f"{PAGE}: its tables are not those of the files beside it: run scripts/bench_page.py")
     PAGE.write_text(written, encoding="utf-8")
 
