@@ -173,6 +173,7 @@ def main():
     rows, pictures = [], []
     with tempfile.TemporaryDirectory() as name:
         folder = options.keep or Path(name)
+        folder.mkdir(parents=True, exist_ok=True)
         for scene in options.scenes:
             row, picture = measure(argil, scene, SCENES[scene], folder)
             rows.append(row)

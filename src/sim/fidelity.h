@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "base/archive.h"
@@ -45,9 +46,10 @@ struct FidelityRecord {
 /// is read off the body: what the hand has done to it so far, over the largest displacement.
 class Fidelity {
  public:
-  /// `damped_steps`: over so many steps damping spreads what the body does under a force, β/τ.
+  /// `damped_steps`: over so many steps damping spreads what the body does under a force, β/τ. What these
+  /// leave adds up as what has no common sign does, by the root of their number.
   explicit Fidelity(const FidelityParams& params, double damped_steps = 0.0)
-      : m_params(params), m_stiffening(std::max(1.0, damped_steps)) {}
+      : m_params(params), m_stiffening(std::sqrt(std::max(1.0, damped_steps))) {}
 
   bool is_full() const { return m_params.mode == FidelityMode::full; }
   /// A step begins while the hand feels a force [N].
@@ -77,7 +79,7 @@ class Fidelity {
   double lasting_share() const;
 
   FidelityParams m_params;
-  double m_stiffening;  // of a body within a step by its damping, over the same left to its time
+  double m_stiffening;  // by damping, of what is left of the steps over which it spreads
   FidelityRecord m_record;
   double m_reach = 1.0;
   Vec3 m_felt_force = Vec3::Zero();
