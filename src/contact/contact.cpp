@@ -39,8 +39,8 @@ ContactDetector::Impl::Impl(const Triangles& surface, int num_body_vertices,
       body(surface, num_body_vertices),
       tool(tool_mesh.triangles, tool_mesh.num_vertices()),
       tool_rest(tool_mesh.vertices),
-      tool_t0(tool_mesh.vertices),
-      tool_t1(tool_mesh.vertices),
+      tool_t0(Points::Zero(3, tool_mesh.num_vertices() + 1)),
+      tool_t1(tool_t0),
       tool_tree(tool_mesh.vertices, tool_mesh.triangles),
       tool_vertices(tool_mesh.num_vertices()),
       body_vertices(num_body_vertices) {
@@ -60,6 +60,7 @@ ContactDetector::Impl::Impl(const Triangles& surface, int num_body_vertices,
   tool_edge_length /= static_cast<double>(tool.edges.cols());
   body_candidates.reserve(static_cast<std::size_t>(surface.cols()));
   tool_candidates.reserve(static_cast<std::size_t>(tool_mesh.num_triangles()));
+  tool_features.reserve(static_cast<std::size_t>(tool.edges.cols()));
 }
 
 void ContactDetector::Impl::place_tool(const Pose& pose, Points& out) const {

@@ -106,7 +106,7 @@ struct ContactDetector::Impl {
   double tool_edge_length = 0.0;            // mean [m]
   double tool_radius = 0.0;                 // of that sphere, a little more
   double tool_reach = 0.0;                  // largest distance of a vertex from the hand's point
-  Points tool_t0, tool_t1;                  // in the world
+  Points tool_t0, tool_t1;                  // in the world; a column more, see set_points
   Vec3 centre_t0, centre_t1;                // of the sphere
   std::optional<Pose> placed;               // where tool_t1 is
   std::unique_ptr<BoundingTree> body_tree;  // made at the first call, where the body's shape is known
@@ -117,6 +117,7 @@ struct ContactDetector::Impl {
 
   // Working arrays; they grow to what a scene needs and stay so.
   std::vector<int> body_candidates, tool_candidates;
+  std::vector<int> tool_features;                           // vertices or edges of the tool candidates
   std::vector<EdgePair> edge_pairs;                         // of the present interval, by key
   std::vector<EdgeSpring> edge_springs, edge_springs_next;  // by key
   double seconds = 0.0;                                     // length of the interval
@@ -137,8 +138,8 @@ struct ContactDetector::Impl {
 
   // entries.cpp
   void find_entries(const Motion& motion, const Bounds& tool_bounds);
-  void test_vertices(int body_face, int tool_face, const Bounds& swept_body, const Motion& motion);
-  void test_edges(int body_edge, double reach, const Motion& motion);
+  void test_vertices(int body_face, const Motion& motion);
+  void test_edges(int body_face, double reach, const Motion& motion);
 
   // press.cpp
   void press_vertices(const VertexFaceMotion& m, Contacts& out) const;

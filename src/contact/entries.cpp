@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "contact/detector.h"
+#include "contact/four_pairs.h"
 
 namespace argil::contact {
 namespace {
@@ -23,24 +24,14 @@ struct EdgePath {
   }
 };
 
-/// Do the edge's box and `other`, grown by `separation`, overlap? Axis by axis: most are told apart by the
-/// first.
-bool may_meet(const EdgePath& edge, const Bounds& other, double separation) {
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const auto [low, high] = std::minmax({edge.t0[0](k), edge.t0[1](k), edge.t1[0](k), edge.t1[1](k)});
-    if (low - separation > other.high(k) || high + separation < other.low(k)) return false;
-  }
-  return true;
-}
-
 /// Is the surface concave at an edge, by more than rounding? Then no direction is in its normal cone.
 bool is_concave(const SurfaceAt& surface, int edge) {
   const Vec3 n = compute_face_normal(surface, surface.features.edge_triangles(0, edge));
   const Vec3 across = surface.vertex(surface.features.edge_opposite(1, edge)) -
                       surface.vertex(surface.features.edges(0, edge));
   constexpr double kRounding = 1e-9;  // sine of the angle between the faces
-  const double height = n.dot(across);
-  return height > 0.0 && height * height > kRounding * kRounding * n.squaredNorm() * across.squaredNorm();
+  const double hfour = n.dot(across);
+  return hfour > 0.0 && hfour * hfour > kRounding * kRounding * n.squaredNorm() * across.squaredNorm();
 }
 
 /// Do the edges cross in penetration at one end of the interval? Both parameters of compute_line_parameters
@@ -64,6 +55,30 @@ bool is_crossed(const std::array<Vec3, 2>& tool_at, const std::array<Vec3, 2>& b
   Vec3 n = a.cross(b);
   if (n.dot(w) < 0.0) n = -n;  // now the tool's edge lies behind the body's along n
   return is_in_normal_cone(body, body_edge, n) && is_in_normal_cone(tool, tool_edge, -n);
+}
+
+/// Of `items`, test(item) for those that look(four) does not rule out: bit i of what it returns stands for
+/// item i of the four, of which the last fills what is left over.
+template <class Look, class Test>
+void each_four(const std::vector<int>& items, Look look, Test test) {
+  for (std::size_t begin = 0; begin < items.size(); begin += FourPairs::kCount) {
+    const std::size_t count = std::min<std::size_t>(FourPairs::kCount, items.size() - begin);
+    std::array<int, FourPairs::kCount> four;
+    for (std::size_t lane = 0; lane < FourPairs::kCount; ++lane)
+      four[lane] = items[begin + std::min(lane, count - 1)];
+    const unsigned stays = look(four);
+    for (std::size_t lane = 0; lane < count; ++lane)
+      if ((stays >> lane & 1U) != 0) test(four[lane]);
+  }
+}
+
+/// Row k of `corners` of each of four.
+template <class Corners>
+std::array<int, FourPairs::kCount> pick(const Corners& corners, Eigen::Index k,
+                                        const std::array<int, FourPairs::kCount>& four) {
+  std::array<int, FourPairs::kCount> vertices;
+  for (std::size_t lane = 0; lane < FourPairs::kCount; ++lane) vertices[lane] = corners(k, four[lane]);
+  return vertices;
 }
 
 void sort_entries(std::vector<Entry>& entries) {
@@ -94,11 +109,9 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
     swept = swept.grown(separation);
     tool_candidates.clear();
     tool_tree.find_overlaps(swept, motion.tool_t0, motion.tool_t1, tool_candidates);
-    for (const int tool_face : tool_candidates) test_vertices(body_face, tool_face, swept, motion);
     if (tool_candidates.empty()) continue;
-    for (const int body_edge : body.triangle_edges.col(body_face))
-      if (body.edge_owner[static_cast<std::size_t>(body_edge)] == body_face)
-        test_edges(body_edge, reach, motion);
+    test_vertices(body_face, motion);
+    test_edges(body_face, reach, motion);
   }
   sort_entries(tool_vertices.entries);
   sort_entries(body_vertices.entries);
@@ -106,56 +119,88 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
             [](const EdgePair& a, const EdgePair& b) { return a.key() < b.key(); });
 }
 
-void ContactDetector::Impl::test_vertices(int body_face, int tool_face, const Bounds& swept_body,
-                                          const Motion& motion) {
+/// A body's face with its vertices against the present tool candidates and theirs. Each vertex is tested with
+/// one of its faces, and none that is inside.
+void ContactDetector::Impl::test_vertices(int body_face, const Motion& motion) {
+  const auto is_tested = [](const std::vector<int>& owner, const VertexSide& side, int v, int face) {
+    const auto i = static_cast<std::size_t>(v);
+    return owner[i] == face && side.face_of_vertex[i] < 0;
+  };
   const auto test = [this](const VertexFaceMotion& m, int v, int face) {
     if (const auto time =
             find_time_of_impact(PairKind::vertex_face, m.path(v, face), params.minimum_separation))
       m.side.entries.push_back({v, *time, face});
   };
-  for (int k = 0; k < 3; ++k) {
-    const int v = tool.triangles(k, tool_face);
-    const auto i = static_cast<std::size_t>(v);
-    if (tool.vertex_owner[i] == tool_face && tool_vertices.face_of_vertex[i] < 0) {
-      Bounds way;
-      way.include(Vec3(motion.tool_t0.col(v)));
-      way.include(Vec3(motion.tool_t1.col(v)));
-      if (way.overlaps(swept_body, 0.0)) test(tool_vertex_motion(motion), v, body_face);
-    }
-    const int w = body.triangles(k, body_face);
-    const auto j = static_cast<std::size_t>(w);
-    if (body.vertex_owner[j] == body_face && body_vertices.face_of_vertex[j] < 0)
-      test(body_vertex_motion(motion), w, tool_face);
+  FourPairs pairs;
+
+  tool_features.clear();
+  for (const int face : tool_candidates)
+    for (const int v : tool.triangles.col(face))
+      if (is_tested(tool.vertex_owner, tool_vertices, v, face)) tool_features.push_back(v);
+  if (!tool_features.empty())
+    for (int k = 0; k < 3; ++k)
+      set_points(pairs, k + 1, motion.body_t0, motion.body_t1, body.triangles(k, body_face));
+  each_four(
+      tool_features,
+      [&](const std::array<int, FourPairs::kCount>& vertices) {
+        set_points(pairs, 0, motion.tool_t0, motion.tool_t1, vertices);
+        return find_coplanar(PairKind::vertex_face, pairs, params.minimum_separation);
+      },
+      [&](int v) { test(tool_vertex_motion(motion), v, body_face); });
+
+  for (const int w : body.triangles.col(body_face)) {
+    if (!is_tested(body.vertex_owner, body_vertices, w, body_face)) continue;
+    set_points(pairs, 0, motion.body_t0, motion.body_t1, w);
+    each_four(
+        tool_candidates,
+        [&](const std::array<int, FourPairs::kCount>& faces) {
+          for (int k = 0; k < 3; ++k)
+            set_points(pairs, k + 1, motion.tool_t0, motion.tool_t1, pick(tool.triangles, k, faces));
+          return find_coplanar(PairKind::vertex_face, pairs, params.minimum_separation);
+        },
+        [&](int face) { test(body_vertex_motion(motion), w, face); });
   }
 }
 
-/// An edge of the body against those of the present tool candidates. One that stays farther from the tool's
-/// centre than `reach`, or is concave throughout, can bear no force.
-void ContactDetector::Impl::test_edges(int body_edge, double reach, const Motion& motion) {
+/// The edges that a body's face owns against those of the present tool candidates. One that stays farther
+/// from the tool's centre than `reach`, or is concave throughout, can bear no force.
+void ContactDetector::Impl::test_edges(int body_face, double reach, const Motion& motion) {
   const SurfaceAt body_t0{body, motion.body_t0, motion.body_t0},
       body_t1{body, motion.body_t1, motion.body_t1};
-  if (is_concave(body_t0, body_edge) && is_concave(body_t1, body_edge)) return;
-  const EdgePath b(motion.body_t0, motion.body_t1, body.edges.col(body_edge));
-  const Bounds swept = b.swept();
-  if (swept.squared_distance(centre_t0) > reach * reach) return;
   const SurfaceAt tool_t0_at{tool, motion.tool_t0, motion.tool_t0};
   const SurfaceAt tool_t1_at{tool, motion.tool_t1, motion.tool_t1};
-  for (const int tool_face : tool_candidates)
-    for (const int tool_edge : tool.triangle_edges.col(tool_face)) {
-      if (tool.edge_owner[static_cast<std::size_t>(tool_edge)] != tool_face) continue;
+  tool_features.clear();
+  for (const int face : tool_candidates)
+    for (const int edge : tool.triangle_edges.col(face))
+      if (tool.edge_owner[static_cast<std::size_t>(edge)] == face) tool_features.push_back(edge);
+  FourPairs pairs;
+  for (const int body_edge : body.triangle_edges.col(body_face)) {
+    if (body.edge_owner[static_cast<std::size_t>(body_edge)] != body_face) continue;
+    if (is_concave(body_t0, body_edge) && is_concave(body_t1, body_edge)) continue;
+    const EdgePath b(motion.body_t0, motion.body_t1, body.edges.col(body_edge));
+    if (b.swept().squared_distance(centre_t0) > reach * reach) continue;
+    for (int k = 0; k < 2; ++k)
+      set_points(pairs, k + 2, motion.body_t0, motion.body_t1, body.edges(k, body_edge));
+    const auto test = [&](int tool_edge) {
       const EdgePath a(motion.tool_t0, motion.tool_t1, tool.edges.col(tool_edge));
       EdgePair pair{tool_edge, body_edge};
       pair.inside_t0 = is_crossed(a.t0, b.t0, tool_t0_at, tool_edge, body_t0, body_edge);
       pair.inside_t1 = is_crossed(a.t1, b.t1, tool_t1_at, tool_edge, body_t1, body_edge);
-      bool is_hit = pair.inside_t0 || pair.inside_t1;
-      if (!is_hit && may_meet(a, swept, params.minimum_separation))
-        is_hit =
-            find_time_of_impact(PairKind::edge_edge,
-                                {{a.t0[0], a.t0[1], b.t0[0], b.t0[1]}, {a.t1[0], a.t1[1], b.t1[0], b.t1[1]}},
-                                params.minimum_separation)
-                .has_value();
-      if (is_hit) edge_pairs.push_back(pair);
-    }
+      if (pair.inside_t0 || pair.inside_t1 ||
+          find_time_of_impact(PairKind::edge_edge,
+                              {{a.t0[0], a.t0[1], b.t0[0], b.t0[1]}, {a.t1[0], a.t1[1], b.t1[0], b.t1[1]}},
+                              params.minimum_separation))
+        edge_pairs.push_back(pair);
+    };
+    each_four(
+        tool_features,
+        [&](const std::array<int, FourPairs::kCount>& edges) {
+          for (int k = 0; k < 2; ++k)
+            set_points(pairs, k, motion.tool_t0, motion.tool_t1, pick(tool.edges, k, edges));
+          return find_alongside(pairs) | find_coplanar(PairKind::edge_edge, pairs, params.minimum_separation);
+        },
+        test);
+  }
 }
 
 }  // namespace argil::contact

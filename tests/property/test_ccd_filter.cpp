@@ -13,6 +13,7 @@
 
 #include "base/rng.h"
 #include "contact/ccd.h"
+#include "contact/four_pairs.h"
 
 namespace argil::contact {
 namespace {
@@ -95,6 +96,28 @@ Meeting make_meeting(PairKind kind, Rng& rng) {
   return meeting;
 }
 
+/// Points of four pairs: point i of pair k in column 4 k + i, and a column more.
+struct FourPaths {
+  Points t0 = Points::Zero(3, 17);
+  Points t1 = Points::Zero(3, 17);
+
+  void set(int pair, const PairPath& path) {
+    for (int i = 0; i < 4; ++i) {
+      t0.col(4 * pair + i) = path.t0[static_cast<std::size_t>(i)];
+      t1.col(4 * pair + i) = path.t1[static_cast<std::size_t>(i)];
+    }
+  }
+  FourPairs pairs() const {
+    FourPairs out;
+    for (int i = 0; i < 4; ++i) set_points(out, i, t0, t1, {i, 4 + i, 8 + i, 12 + i});
+    return out;
+  }
+};
+
+bool has(unsigned bits, int pair) {
+  return (bits >> pair & 1U) != 0;
+}
+
 class CcdFilter : public ::testing::TestWithParam<PairKind> {};
 
 TEST_P(CcdFilter, NeverRejectsATrueMeetingNorReportsItLate) {
@@ -103,8 +126,13 @@ TEST_P(CcdFilter, NeverRejectsATrueMeetingNorReportsItLate) {
   int rejected = 0;
   int missed = 0;
   int late = 0;
+  FourPaths four;
   for (int i = 0; i < kMeetings; ++i) {
     const Meeting meeting = make_meeting(GetParam(), rng);
+    four.set(i % 4, meeting.path);
+    if (i % 4 == 3) {
+      ASSERT_EQ(find_coplanar(GetParam(), four.pairs()), 15U) << i;
+    }
     rejected += can_meet(GetParam(), meeting.path) ? 0 : 1;
     const auto found = find_time_of_impact(GetParam(), meeting.path);
     missed += found ? 0 : 1;
@@ -122,6 +150,8 @@ TEST_P(CcdFilter, RejectsExactlyWhatTheSignsOfTheCubicTell) {
   Rng rng(32, face ? "vf" : "ee");
   int by_signs = 0;
   int overlapping = 0;
+  FourPaths four;
+  unsigned have_one_sign = 0;
   for (int trial = 0; trial < 200'000; ++trial) {
     PairPath path;
     std::array<std::array<Int3, 3>, 2> column;  // e₁, e₂, w at either end
@@ -142,6 +172,12 @@ TEST_P(CcdFilter, RejectsExactlyWhatTheSignsOfTheCubicTell) {
     }
     const bool one_sign =
         *std::min_element(c.begin(), c.end()) > 0 || *std::max_element(c.begin(), c.end()) < 0;
+    four.set(trial % 4, path);
+    have_one_sign |= one_sign ? 1U << trial % 4 : 0U;
+    if (trial % 4 == 3) {
+      EXPECT_EQ(find_coplanar(GetParam(), four.pairs()), 15U & ~have_one_sign) << trial;
+      have_one_sign = 0;
+    }
     const bool rejected = !can_meet(GetParam(), path);
     if (one_sign) {
       EXPECT_TRUE(rejected) << trial;
@@ -165,6 +201,64 @@ TEST_P(CcdFilter, RejectsExactlyWhatTheSignsOfTheCubicTell) {
   }
   std::printf("of %d pairs with boxes that overlap, the signs reject %d\n", overlapping, by_signs);
   EXPECT_GT(by_signs, overlapping / 10);
+}
+
+TEST_P(CcdFilter, OfFourPairsKeepsAllThatOfOneKeeps) {
+  Rng rng(33, GetParam() == PairKind::vertex_face ? "vf" : "ee");
+  int left_out = 0;
+  for (int trial = 0; trial < 50'000; ++trial) {
+    FourPaths four;
+    four.t0 = four.t0.unaryExpr([&](double) { return rng.uniform(); });
+    four.t1 = four.t0 + 0.2 * four.t0.unaryExpr([&](double) { return rng.uniform() - 0.5; });
+    const double separation = trial % 2 == 0 ? 0.0 : 0.1 * rng.uniform();
+    const unsigned kept = find_coplanar(GetParam(), four.pairs(), separation);
+    for (int pair = 0; pair < 4; ++pair) {
+      PairPath path;
+      for (int i = 0; i < 4; ++i) {
+        path.t0[static_cast<std::size_t>(i)] = four.t0.col(4 * pair + i);
+        path.t1[static_cast<std::size_t>(i)] = four.t1.col(4 * pair + i);
+      }
+      EXPECT_TRUE(has(kept, pair) || !can_meet(GetParam(), path, separation)) << trial;
+      left_out += has(kept, pair) ? 0 : 1;
+    }
+  }
+  EXPECT_GT(left_out, 100'000);  // half of them
+}
+
+TEST_P(CcdFilter, WhatIsNotANumberIsKept) {
+  FourPaths four;
+  four.t0.setRandom();
+  four.t1 = four.t0;
+  four.t0(0, 0) = std::nan("");
+  four.t1(1, 5) = HUGE_VAL;
+  EXPECT_EQ(find_coplanar(GetParam(), four.pairs()) & 3U, 3U);
+  EXPECT_EQ(find_alongside(four.pairs()) & 1U, 1U);
+}
+
+TEST(EdgeFilter, FindsTheLinesOfEdgesThatAreNearestWithinBoth) {
+  // On whole numbers the places s/d and r/d along the edges are exact.
+  Rng rng(34, "alongside");
+  int within = 0;
+  for (int trial = 0; trial < 50'000; ++trial) {
+    FourPaths four;
+    for (Points* x : {&four.t0, &four.t1})
+      *x = x->unaryExpr([&](double) { return static_cast<double>(random_int(rng, -8, 8)); });
+    const unsigned bits = find_alongside(four.pairs());
+    for (int pair = 0; pair < 4; ++pair) {
+      bool is_alongside = false;
+      for (const Points* x : {&four.t0, &four.t1}) {
+        const auto point = [&](int i) -> Int3 { return x->col(4 * pair + i).cast<std::int64_t>(); };
+        const Int3 a = point(1) - point(0), b = point(3) - point(2), w = point(2) - point(0);
+        const std::int64_t d = a.dot(a) * b.dot(b) - a.dot(b) * a.dot(b);
+        const std::int64_t s = w.dot(a) * b.dot(b) - w.dot(b) * a.dot(b);
+        const std::int64_t r = w.dot(a) * a.dot(b) - w.dot(b) * a.dot(a);
+        is_alongside = is_alongside || d == 0 || (s >= 0 && s <= d && r >= 0 && r <= d);
+      }
+      EXPECT_EQ(has(bits, pair), is_alongside) << trial;
+      within += is_alongside ? 1 : 0;
+    }
+  }
+  EXPECT_GT(within, 5000);
 }
 
 INSTANTIATE_TEST_SUITE_P(Contact, CcdFilter, ::testing::Values(PairKind::vertex_face, PairKind::edge_edge),
