@@ -10,6 +10,8 @@
 namespace argil::contact {
 namespace {
 
+constexpr std::size_t kRoom = 256;  // what most contacts need of a list; it grows beyond
+
 /// Does the edge p–q pierce a face?
 bool pierces(const Vec3& p, const Vec3& q, const SurfaceAt& surface, int face) {
   const Vec3 a = surface.corner(face, 0);
@@ -41,7 +43,6 @@ ContactDetector::Impl::Impl(const Triangles& surface, int num_body_vertices,
       tool_rest(tool_mesh.vertices),
       tool_t0(Points::Zero(3, tool_mesh.num_vertices() + 1)),
       tool_t1(tool_t0),
-      tool_tree(tool_mesh.vertices, tool_mesh.triangles),
       tool_vertices(tool_mesh.num_vertices()),
       body_vertices(num_body_vertices) {
   ARGIL_ASSERT(tool_mesh.num_triangles() > 0 && surface.cols() > 0);
@@ -59,8 +60,25 @@ ContactDetector::Impl::Impl(const Triangles& surface, int num_body_vertices,
         tool_is_convex = false;
   tool_edge_length /= static_cast<double>(tool.edges.cols());
   body_candidates.reserve(static_cast<std::size_t>(surface.cols()));
-  tool_candidates.reserve(static_cast<std::size_t>(tool_mesh.num_triangles()));
-  tool_features.reserve(static_cast<std::size_t>(tool.edges.cols()));
+  areas.reserve(body_candidates.capacity());
+  tasks.reserve(kRoom);
+}
+
+void ContactDetector::Impl::make_workers(const Points& x) {
+  constexpr int kMost = 4;  // as many as a contact of some dozens of pairs can use
+  workers.clear();
+  for (int i = 0; i < std::min(threads, kMost); ++i) {
+    Worker& worker = workers.emplace_back(
+        Worker{BoundingTree(x, body.triangles), BoundingTree(tool_rest, tool.triangles)});
+    worker.tool_tree.fit_all(tool_t0);
+    worker.tool_candidates.reserve(static_cast<std::size_t>(tool.triangles.cols()));
+    worker.tool_features.reserve(static_cast<std::size_t>(tool.edges.cols()));
+    worker.candidates.reserve(kRoom);
+    worker.near.reserve(kRoom);
+    worker.tool_entries.reserve(kRoom);
+    worker.body_entries.reserve(kRoom);
+    worker.edge_pairs.reserve(kRoom);
+  }
 }
 
 void ContactDetector::Impl::place_tool(const Pose& pose, Points& out) const {
@@ -102,20 +120,24 @@ void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, cons
   ARGIL_ASSERT(impl.params.damping == 0.0 || seconds > 0.0, seconds);
   impl.seconds = seconds;
   contacts.clear();
-  if (!impl.body_tree) {  // a start
-    impl.body_tree = std::make_unique<BoundingTree>(x_t0, impl.body.triangles);
+  if (impl.workers.empty()) {  // a start
     impl.place_tool(pose_t0, impl.tool_t0);
-    impl.tool_tree.fit_all(impl.tool_t0);
+    impl.make_workers(x_t0);
   }
-  impl.body_tree->advance(body_motion ? *body_motion : (x_t1 - x_t0).cwiseAbs().maxCoeff());
+  const double moved = body_motion ? *body_motion : (x_t1 - x_t0).cwiseAbs().maxCoeff();
   const Mat3 turn = pose_t1.orientation.toRotationMatrix() - pose_t0.orientation.toRotationMatrix();
-  impl.tool_tree.advance((pose_t1.position - pose_t0.position).norm() + turn.norm() * impl.tool_reach);
+  const double tool_moved = (pose_t1.position - pose_t0.position).norm() + turn.norm() * impl.tool_reach;
+  for (Worker& worker : impl.workers) {
+    worker.body_tree.advance(moved);
+    worker.tool_tree.advance(tool_moved);
+  }
 
   impl.centre_t0 = pose_t0.position + pose_t0.orientation * impl.tool_centre;
   impl.centre_t1 = pose_t1.position + pose_t1.orientation * impl.tool_centre;
   const Bounds tool_bounds = impl.tool_bounds();
   const bool is_carrying = !impl.tool_vertices.inside.empty() || !impl.body_vertices.inside.empty();
-  if (!is_carrying && !tool_bounds.overlaps(impl.body_tree->bounds(), impl.params.minimum_separation)) {
+  if (!is_carrying &&
+      !tool_bounds.overlaps(impl.workers.front().body_tree.bounds(), impl.params.minimum_separation)) {
     impl.edge_springs.clear();
     return;
   }
@@ -123,8 +145,7 @@ void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, cons
   impl.place_tool(pose_t0, pose_t1);
   const Motion motion{x_t0, x_t1, impl.tool_t0, impl.tool_t1};
   impl.find_entries(motion, tool_bounds);
-  impl.press_vertices(impl.tool_vertex_motion(motion), contacts);
-  impl.press_vertices(impl.body_vertex_motion(motion), contacts);
+  impl.press_vertices(motion, contacts);
   impl.press_edges(motion, contacts);
   impl.measure_touched(motion, contacts);
   for (const Contact& c : contacts.contacts) {
@@ -201,7 +222,13 @@ void ContactDetector::restore(const ContactState& state) {
   m_impl->edge_springs.clear();
   for (std::size_t i = 0; i < state.edges.size(); ++i)
     m_impl->edge_springs.push_back({state.edges[i], state.edge_stretch.at(i)});
-  m_impl->body_tree.reset();
+  m_impl->workers.clear();
+}
+
+void ContactDetector::share(int threads) {
+  ARGIL_ASSERT(threads >= 1, threads);
+  m_impl->threads = threads;
+  m_impl->workers.clear();
 }
 
 }  // namespace argil::contact

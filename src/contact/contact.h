@@ -90,6 +90,10 @@ class ContactDetector {
 
   /// What the next interval needs to know of the past ones; for a checkpoint.
   ContactState state() const;
+  /// From now on on so many threads, 1 before; the answers are the same bits. The next call may start
+  /// anywhere.
+  void share(int threads);
+
   /// Continues from a state taken from a detector of the same surface and tool. The next call may start
   /// anywhere.
   void restore(const ContactState& state);

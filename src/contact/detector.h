@@ -3,12 +3,13 @@
 // Inside of ContactDetector: shared by contact.cpp (the public face), entries.cpp (detection), press.cpp
 // (forces) and touched.cpp (areas). Not for other folders.
 
+#include <algorithm>
 #include <array>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "contact/bounding_tree.h"
 #include "contact/contact.h"
 #include "contact/nearest.h"
@@ -56,12 +57,9 @@ struct VertexSide {
   std::vector<Vec3> stretch;        ///< of each vertex's spring of sticking [m]; of friction alone
 
   // Of the present interval.
-  std::vector<Entry> entries;    ///< by vertex, time, face
-  std::vector<int> inside_next;  ///< working array
-  std::vector<int> candidates;   ///< working array: faces that may be near a vertex
-  std::vector<NearFace> near;    ///< working array: faces near a vertex, by number
-  std::vector<int> pressed;      ///< vertices with depth
-  std::vector<double> depth;     ///< |∫ nᵀ(p−q) n dt| of each vertex [m]
+  std::vector<Entry> entries;  ///< by vertex, time, face
+  std::vector<int> pressed;    ///< vertices with depth
+  std::vector<double> depth;   ///< |∫ nᵀ(p−q) n dt| of each vertex [m]
 
   explicit VertexSide(int num_vertices)
       : face_of_vertex(static_cast<std::size_t>(num_vertices), -1),
@@ -77,14 +75,31 @@ struct Motion {
   const Points& tool_t1;
 };
 
+/// What one thread of a detection works with: trees of its own, for queries fit their boxes, and what it
+/// found. Answers of a tree are the same whatever was asked before.
+struct Worker {
+  BoundingTree body_tree;
+  BoundingTree tool_tree;
+
+  // Working arrays; they grow to what a scene needs and stay so.
+  std::vector<int> tool_candidates = {};  // faces of the tool near one of the body
+  std::vector<int> tool_features = {};    // vertices or edges of these
+  std::vector<int> candidates = {};       // faces that may be near a vertex
+  std::vector<NearFace> near = {};        // faces near a vertex, by number
+  std::vector<Entry> tool_entries = {}, body_entries = {};
+  std::vector<EdgePair> edge_pairs = {};
+  std::vector<Vec3> polygon = {}, clip_work = {};
+};
+
 /// One side of eq. 7 over an interval: whose vertices, whose faces.
 struct VertexFaceMotion {
   VertexSide& side;
   const Points& v_t0;
   const Points& v_t1;
   SurfaceAt faces;  ///< at t₁
-  BoundingTree& tree;
   bool body_has_face;
+
+  BoundingTree& tree(Worker& worker) const { return body_has_face ? worker.body_tree : worker.tool_tree; }
 
   Vec3 vertex_at(int v, double t) const {
     return t == 1.0 ? Vec3(v_t1.col(v)) : Vec3(v_t0.col(v) + t * (v_t1.col(v) - v_t0.col(v)));
@@ -96,6 +111,17 @@ struct VertexFaceMotion {
   }
 };
 
+/// A vertex that was inside or met a face, and what came of it.
+struct VertexTask {
+  const VertexFaceMotion* motion = nullptr;
+  int vertex = -1;
+  int face = -1;  ///< where it was, or through which it came
+  bool was_inside = false;
+  bool inside = false;  ///< at the end of the interval
+  double depth = 0.0;   ///< see VertexSide; 0: no contact
+  Contact contact = {};
+};
+
 struct ContactDetector::Impl {
   ContactParams params;
   SurfaceFeatures body;
@@ -103,46 +129,64 @@ struct ContactDetector::Impl {
   Points tool_rest;  // in the tool frame
   Vec3 tool_centre;  // of a sphere around the tool, in the tool frame
   bool tool_is_convex = true;
-  double tool_edge_length = 0.0;            // mean [m]
-  double tool_radius = 0.0;                 // of that sphere, a little more
-  double tool_reach = 0.0;                  // largest distance of a vertex from the hand's point
-  Points tool_t0, tool_t1;                  // in the world; a column more, see set_points
-  Vec3 centre_t0, centre_t1;                // of the sphere
-  std::optional<Pose> placed;               // where tool_t1 is
-  std::unique_ptr<BoundingTree> body_tree;  // made at the first call, where the body's shape is known
-  BoundingTree tool_tree;
+  double tool_edge_length = 0.0;  // mean [m]
+  double tool_radius = 0.0;       // of that sphere, a little more
+  double tool_reach = 0.0;        // largest distance of a vertex from the hand's point
+  Points tool_t0, tool_t1;        // in the world; a column more, see set_points
+  Vec3 centre_t0, centre_t1;      // of the sphere
+  std::optional<Pose> placed;     // where tool_t1 is
+  int threads = 1;
+  std::vector<Worker> workers;  // made at the first call, where the body's shape is known
 
   VertexSide tool_vertices;  // tool vertices behind body faces
   VertexSide body_vertices;  // body vertices behind tool faces
 
   // Working arrays; they grow to what a scene needs and stay so.
-  std::vector<int> body_candidates, tool_candidates;
-  std::vector<int> tool_features;                           // vertices or edges of the tool candidates
+  std::vector<int> body_candidates;
+  std::vector<VertexTask> tasks;
   std::vector<EdgePair> edge_pairs;                         // of the present interval, by key
   std::vector<EdgeSpring> edge_springs, edge_springs_next;  // by key
+  std::vector<double> areas;                                // of the body candidates inside the tool [m²]
   double seconds = 0.0;                                     // length of the interval
-  std::vector<Vec3> polygon, clip_work;
 
   Impl(const Triangles& surface, int num_body_vertices, const mesh::TriangleMesh& tool_mesh,
        const ContactParams& p);
+
+  /// For a start of the body at x and of the tool in tool_t0.
+  void make_workers(const Points& x);
+  /// visit(worker, i) for i = 0 … count−1, in any order and at the same time; a worker is on one thread.
+  /// Neighbours go to different workers: work is where the tool is.
+  template <class Visit>
+  void each_item(std::size_t count, Visit visit) {
+    constexpr std::size_t kLeast = 8;  // items that are worth a thread
+    const std::size_t used = std::clamp<std::size_t>(count / kLeast, 1, workers.size());
+    const auto run = [&](std::ptrdiff_t worker) {
+      const auto first = static_cast<std::size_t>(worker);
+      for (std::size_t i = first; i < count; i += used) visit(workers[first], i);
+    };
+    parallel_for(static_cast<std::ptrdiff_t>(used), used > 1 ? threads : 1, run);
+  }
 
   void place_tool(const Pose& pose, Points& out) const;
   void place_tool(const Pose& pose_t0, const Pose& pose_t1);
   Bounds tool_bounds() const;
   VertexFaceMotion tool_vertex_motion(const Motion& m) {
-    return {tool_vertices, m.tool_t0, m.tool_t1, {body, m.body_t0, m.body_t1, 1.0}, *body_tree, true};
+    return {tool_vertices, m.tool_t0, m.tool_t1, {body, m.body_t0, m.body_t1, 1.0}, true};
   }
   VertexFaceMotion body_vertex_motion(const Motion& m) {
-    return {body_vertices, m.body_t0, m.body_t1, {tool, m.tool_t0, m.tool_t1, 1.0}, tool_tree, false};
+    return {body_vertices, m.body_t0, m.body_t1, {tool, m.tool_t0, m.tool_t1, 1.0}, false};
   }
 
   // entries.cpp
   void find_entries(const Motion& motion, const Bounds& tool_bounds);
-  void test_vertices(int body_face, const Motion& motion);
-  void test_edges(int body_face, double reach, const Motion& motion);
+  void test_face(int body_face, double reach, const Motion& motion, Worker& worker);
+  void test_vertices(int body_face, const Motion& motion, Worker& worker);
+  void test_edges(int body_face, double reach, const Motion& motion, Worker& worker);
 
   // press.cpp
-  void press_vertices(const VertexFaceMotion& m, Contacts& out) const;
+  void press_vertices(const Motion& motion, Contacts& out);
+  void add_tasks(const VertexFaceMotion& m);
+  void settle(VertexTask& task, Worker& worker) const;
   void press_edges(const Motion& m, Contacts& out);
   double compute_uncovered_share(const EdgePair& pair, double depth) const;
   bool is_edge_pair_inside(const EdgePair& pair, const Motion& m, double t);
@@ -157,7 +201,7 @@ struct ContactDetector::Impl {
 
   // touched.cpp
   void measure_touched(const Motion& m, Contacts& out);
-  double compute_convex_overlap(const std::array<Vec3, 3>& x, const SurfaceAt& at, const Bounds& box);
+  double compute_overlap(int body_face, const Motion& m, Worker& worker) const;
 };
 
 /// Path of edge `a` (tool) and edge `b` (body).

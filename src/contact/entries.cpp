@@ -81,6 +81,12 @@ std::array<int, FourPairs::kCount> pick(const Corners& corners, Eigen::Index k,
   return vertices;
 }
 
+/// By items, so that the room doubles when it is used up: a range takes just what it needs, again and again.
+template <class Item>
+void append(std::vector<Item>& to, const std::vector<Item>& from) {
+  for (const Item& item : from) to.push_back(item);
+}
+
 void sort_entries(std::vector<Entry>& entries) {
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     if (a.vertex != b.vertex) return a.vertex < b.vertex;
@@ -96,22 +102,21 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
   edge_pairs.clear();
   body_candidates.clear();
   const double separation = params.minimum_separation;
-  body_tree->find_overlaps(tool_bounds.grown(separation), motion.body_t0, motion.body_t1, body_candidates);
+  workers.front().body_tree.find_overlaps(tool_bounds.grown(separation), motion.body_t0, motion.body_t1,
+                                          body_candidates);
   // The tool stays within its sphere, whose centre never is farther from where it began than at the end.
   const double reach = tool_radius + separation + (centre_t1 - centre_t0).norm() * (1.0 + 1e-9);
-  for (const int body_face : body_candidates) {
-    Bounds swept;
-    for (int k = 0; k < 3; ++k) {
-      swept.include(Vec3(motion.body_t0.col(body.triangles(k, body_face))));
-      swept.include(Vec3(motion.body_t1.col(body.triangles(k, body_face))));
-    }
-    if (swept.squared_distance(centre_t0) > reach * reach) continue;
-    swept = swept.grown(separation);
-    tool_candidates.clear();
-    tool_tree.find_overlaps(swept, motion.tool_t0, motion.tool_t1, tool_candidates);
-    if (tool_candidates.empty()) continue;
-    test_vertices(body_face, motion);
-    test_edges(body_face, reach, motion);
+  for (Worker& worker : workers) {
+    worker.tool_entries.clear();
+    worker.body_entries.clear();
+    worker.edge_pairs.clear();
+  }
+  each_item(body_candidates.size(),
+            [&](Worker& worker, std::size_t i) { test_face(body_candidates[i], reach, motion, worker); });
+  for (const Worker& worker : workers) {
+    append(tool_vertices.entries, worker.tool_entries);
+    append(body_vertices.entries, worker.body_entries);
+    append(edge_pairs, worker.edge_pairs);
   }
   sort_entries(tool_vertices.entries);
   sort_entries(body_vertices.entries);
@@ -119,22 +124,38 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
             [](const EdgePair& a, const EdgePair& b) { return a.key() < b.key(); });
 }
 
-/// A body's face with its vertices against the present tool candidates and theirs. Each vertex is tested with
-/// one of its faces, and none that is inside.
-void ContactDetector::Impl::test_vertices(int body_face, const Motion& motion) {
+/// A body's face with its vertices and edges against those of the tool's faces near it.
+void ContactDetector::Impl::test_face(int body_face, double reach, const Motion& motion, Worker& worker) {
+  Bounds swept;
+  for (int k = 0; k < 3; ++k) {
+    swept.include(Vec3(motion.body_t0.col(body.triangles(k, body_face))));
+    swept.include(Vec3(motion.body_t1.col(body.triangles(k, body_face))));
+  }
+  if (swept.squared_distance(centre_t0) > reach * reach) return;
+  worker.tool_candidates.clear();
+  worker.tool_tree.find_overlaps(swept.grown(params.minimum_separation), motion.tool_t0, motion.tool_t1,
+                                 worker.tool_candidates);
+  if (worker.tool_candidates.empty()) return;
+  test_vertices(body_face, motion, worker);
+  test_edges(body_face, reach, motion, worker);
+}
+
+/// Each vertex is tested with one of its faces, and none that is inside.
+void ContactDetector::Impl::test_vertices(int body_face, const Motion& motion, Worker& worker) {
   const auto is_tested = [](const std::vector<int>& owner, const VertexSide& side, int v, int face) {
     const auto i = static_cast<std::size_t>(v);
     return owner[i] == face && side.face_of_vertex[i] < 0;
   };
-  const auto test = [this](const VertexFaceMotion& m, int v, int face) {
+  const auto test = [this](const VertexFaceMotion& m, int v, int face, std::vector<Entry>& entries) {
     if (const auto time =
             find_time_of_impact(PairKind::vertex_face, m.path(v, face), params.minimum_separation))
-      m.side.entries.push_back({v, *time, face});
+      entries.push_back({v, *time, face});
   };
   FourPairs pairs;
 
+  std::vector<int>& tool_features = worker.tool_features;
   tool_features.clear();
-  for (const int face : tool_candidates)
+  for (const int face : worker.tool_candidates)
     for (const int v : tool.triangles.col(face))
       if (is_tested(tool.vertex_owner, tool_vertices, v, face)) tool_features.push_back(v);
   if (!tool_features.empty())
@@ -146,31 +167,32 @@ void ContactDetector::Impl::test_vertices(int body_face, const Motion& motion) {
         set_points(pairs, 0, motion.tool_t0, motion.tool_t1, vertices);
         return find_coplanar(PairKind::vertex_face, pairs, params.minimum_separation);
       },
-      [&](int v) { test(tool_vertex_motion(motion), v, body_face); });
+      [&](int v) { test(tool_vertex_motion(motion), v, body_face, worker.tool_entries); });
 
   for (const int w : body.triangles.col(body_face)) {
     if (!is_tested(body.vertex_owner, body_vertices, w, body_face)) continue;
     set_points(pairs, 0, motion.body_t0, motion.body_t1, w);
     each_four(
-        tool_candidates,
+        worker.tool_candidates,
         [&](const std::array<int, FourPairs::kCount>& faces) {
           for (int k = 0; k < 3; ++k)
             set_points(pairs, k + 1, motion.tool_t0, motion.tool_t1, pick(tool.triangles, k, faces));
           return find_coplanar(PairKind::vertex_face, pairs, params.minimum_separation);
         },
-        [&](int face) { test(body_vertex_motion(motion), w, face); });
+        [&](int face) { test(body_vertex_motion(motion), w, face, worker.body_entries); });
   }
 }
 
-/// The edges that a body's face owns against those of the present tool candidates. One that stays farther
-/// from the tool's centre than `reach`, or is concave throughout, can bear no force.
-void ContactDetector::Impl::test_edges(int body_face, double reach, const Motion& motion) {
+/// The edges that a body's face owns. One that stays farther from the tool's centre than `reach`, or is
+/// concave throughout, can bear no force.
+void ContactDetector::Impl::test_edges(int body_face, double reach, const Motion& motion, Worker& worker) {
   const SurfaceAt body_t0{body, motion.body_t0, motion.body_t0},
       body_t1{body, motion.body_t1, motion.body_t1};
   const SurfaceAt tool_t0_at{tool, motion.tool_t0, motion.tool_t0};
   const SurfaceAt tool_t1_at{tool, motion.tool_t1, motion.tool_t1};
+  std::vector<int>& tool_features = worker.tool_features;
   tool_features.clear();
-  for (const int face : tool_candidates)
+  for (const int face : worker.tool_candidates)
     for (const int edge : tool.triangle_edges.col(face))
       if (tool.edge_owner[static_cast<std::size_t>(edge)] == face) tool_features.push_back(edge);
   FourPairs pairs;
@@ -190,7 +212,7 @@ void ContactDetector::Impl::test_edges(int body_face, double reach, const Motion
           find_time_of_impact(PairKind::edge_edge,
                               {{a.t0[0], a.t0[1], b.t0[0], b.t0[1]}, {a.t1[0], a.t1[1], b.t1[0], b.t1[1]}},
                               params.minimum_separation))
-        edge_pairs.push_back(pair);
+        worker.edge_pairs.push_back(pair);
     };
     each_four(
         tool_features,

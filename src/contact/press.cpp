@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "contact/detector.h"
 
@@ -21,14 +22,14 @@ double compute_parallel_fade(const std::array<Vec3, 4>& p) {
 }
 
 /// When does a vertex that is inside at `from` and outside at t₁ come out? By halving; a time just after.
-double find_exit(const VertexFaceMotion& m, int v, int face, double from) {
+double find_exit(const VertexFaceMotion& m, int v, int face, double from, Worker& worker) {
   constexpr int kHalvings = 12;  // to 1/4096 of the interval
   double inside = from;
   double outside = 1.0;
   for (int i = 0; i < kHalvings; ++i) {
     const double t = 0.5 * (inside + outside);
     const SurfaceAt faces{m.faces.features, m.faces.x_t0, m.faces.x_t1, t};
-    (is_inside(faces, m.tree, m.vertex_at(v, t), face) ? inside : outside) = t;
+    (is_inside(faces, m.tree(worker), m.vertex_at(v, t), face) ? inside : outside) = t;
   }
   return outside;
 }
@@ -39,16 +40,17 @@ struct Surroundings {
   SurfacePoint nearest;  ///< of the whole surface
 };
 
-/// From the face where the vertex was. Leaves in m.side.near, by number, the faces less than (1 + blend)
+/// From the face where the vertex was. Leaves in worker.near, by number, the faces less than (1 + blend)
 /// times as far from p as that face.
-Surroundings find_surroundings(const VertexFaceMotion& m, const Vec3& p, int face, double blend) {
-  std::vector<NearFace>& near = m.side.near;
+Surroundings find_surroundings(const VertexFaceMotion& m, const Vec3& p, int face, double blend,
+                               Worker& worker) {
+  std::vector<NearFace>& near = worker.near;
   near.clear();
   Surroundings out;
   out.nearest = compute_nearest_on_face(m.faces, face, p);
   const double reach = (1.0 + blend) * (1.0 + blend) * out.nearest.squared_distance;
-  m.tree.find_near(p, reach, m.faces.x_t0, m.faces.x_t1, m.side.candidates);
-  for (const int other : m.side.candidates) {
+  m.tree(worker).find_near(p, reach, m.faces.x_t0, m.faces.x_t1, worker.candidates);
+  for (const int other : worker.candidates) {
     const SurfacePoint found = compute_nearest_on_face(m.faces, other, p);
     if (is_nearer(found, out.nearest)) out.nearest = found;
     if (found.squared_distance < reach) near.push_back({other, found.squared_distance});
@@ -66,7 +68,8 @@ Surroundings find_surroundings(const VertexFaceMotion& m, const Vec3& p, int fac
 /// booked on does not matter, so that handing over makes no jump. None where all those faces lie in one
 /// plane: then eq. 7 stands.
 std::optional<Vec3> find_blended_direction(const VertexFaceMotion& m, const Vec3& p,
-                                           const SurfacePoint& nearest, double blend) {
+                                           const SurfacePoint& nearest, double blend,
+                                           std::span<const NearFace> near) {
   const Vec3 normal = compute_face_normal(m.faces, nearest.face).normalized();
   const double depth = -compute_height(m.faces, nearest.face, p);
   if (!(blend > 0.0) || !(depth > 0.0)) return {};
@@ -75,7 +78,7 @@ std::optional<Vec3> find_blended_direction(const VertexFaceMotion& m, const Vec3
   Vec3 direction = Vec3::Zero();
   bool is_flat = true;
   constexpr double kSamePlane = 1e-12;  // 1 − cos of the angle between two faces: rounding
-  for (const auto& [face, squared_distance] : m.side.near) {
+  for (const auto& [face, squared_distance] : near) {
     if (!(squared_distance < reach)) continue;
     const Vec3 n = compute_face_normal(m.faces, face).normalized();
     const double alike = n.dot(normal);
@@ -140,58 +143,37 @@ Contact make_vertex_contact(const VertexFaceMotion& m, int v, int face, const Pe
 /// Eq. 7. Every vertex presses on one face: the one it entered through, and after each interval the one that
 /// it can have slid to. It is carried as long as it is inside the surface as a whole, so that a vertex which
 /// left sideways, or through the far side, exerts no force any more.
-void ContactDetector::Impl::press_vertices(const VertexFaceMotion& m, Contacts& out) const {
-  VertexSide& side = m.side;
-  for (const int v : side.pressed) side.depth[static_cast<std::size_t>(v)] = 0.0;
-  side.pressed.clear();
-  side.inside_next.clear();
+void ContactDetector::Impl::press_vertices(const Motion& motion, Contacts& out) {
+  const VertexFaceMotion of_tool = tool_vertex_motion(motion);
+  const VertexFaceMotion of_body = body_vertex_motion(motion);
+  tasks.clear();
+  for (const VertexFaceMotion* m : {&of_tool, &of_body}) {
+    add_tasks(*m);
+    VertexSide& side = m->side;
+    for (const int v : side.pressed) side.depth[static_cast<std::size_t>(v)] = 0.0;
+    side.pressed.clear();
+    side.inside.clear();
+  }
+  each_item(tasks.size(), [&](Worker& worker, std::size_t i) { settle(tasks[i], worker); });
+  for (const VertexTask& task : tasks) {
+    VertexSide& side = task.motion->side;
+    if (task.inside) side.inside.push_back(task.vertex);
+    if (!(task.depth > 0.0)) continue;
+    side.depth[static_cast<std::size_t>(task.vertex)] = task.depth;
+    side.pressed.push_back(task.vertex);
+    out.contacts.push_back(task.contact);
+  }
+}
 
-  const auto settle = [&](int v, int face, bool was_inside) {
-    PairPath path = m.path(v, face);
-    Vec3& stretch = side.stretch[static_cast<std::size_t>(v)];
-    if (!was_inside) stretch.setZero();
-    const bool is_discrete = params.penalty == PenaltyKind::discrete;
-    Penalty penalty;
-    if (!is_discrete) penalty = compute_vertex_face_penalty(path, was_inside);
-    const Vec3 p = m.v_t1.col(v);
-    const auto [walked, nearest] = find_surroundings(m, p, face, params.face_blend);
-    const bool inside = is_behind(m.faces, nearest, p);
-    side.face_of_vertex[static_cast<std::size_t>(v)] = inside ? walked.face : -1;
-    if (inside) side.inside_next.push_back(v);
-    if (!inside && penalty.inside_at_end) {
-      const double from = penalty.intervals[static_cast<std::size_t>(penalty.num_intervals) - 1].begin;
-      penalty = compute_vertex_face_penalty(path, was_inside, find_exit(m, v, face, from));
-    }
-    if (is_discrete && inside) {
-      face = nearest.face;
-      path = m.path(v, face);
-      penalty = compute_vertex_face_depth(m, p, nearest);
-    }
-    double end_depth = inside ? std::max(0.0, -compute_height(m.faces, face, p)) : 0.0;
-    if (inside && !is_discrete)
-      if (const auto direction = find_blended_direction(m, p, walked, params.face_blend)) {
-        penalty.integral = penalty.integral.norm() * *direction;
-        end_depth = -compute_height(m.faces, walked.face, p) * direction->norm();
-      }
-    const double depth = penalty.integral.norm();
-    if (!inside && !(depth > 0.0)) stretch.setZero();
-    if (!(depth > 0.0)) return;
-    side.depth[static_cast<std::size_t>(v)] = depth;
-    side.pressed.push_back(v);
-    Contact c = make_vertex_contact(m, v, face, penalty, params.vertex_face_stiffness);
-    c.end_force = params.vertex_face_stiffness * end_depth;
-    c.end_stiffness = inside ? params.vertex_face_stiffness : 0.0;
-    c.passes = !was_inside && !inside;
-    if (resists()) resist_vertex(m, v, path, penalty, was_inside, inside, c);
-    out.contacts.push_back(c);
-  };
-
+/// By vertex: those that were inside and those that met a face.
+void ContactDetector::Impl::add_tasks(const VertexFaceMotion& m) {
+  const VertexSide& side = m.side;
   auto entry = side.entries.cbegin();
   auto old = side.inside.cbegin();
   while (old != side.inside.cend() || entry != side.entries.cend()) {
     if (entry == side.entries.cend() || (old != side.inside.cend() && *old < entry->vertex)) {
       const int v = *old++;
-      settle(v, side.face_of_vertex[static_cast<std::size_t>(v)], true);
+      tasks.push_back({&m, v, side.face_of_vertex[static_cast<std::size_t>(v)], true});
       continue;
     }
     // Of the faces the vertex met, the earliest through whose plane it really went in takes it. If rounding
@@ -204,9 +186,51 @@ void ContactDetector::Impl::press_vertices(const VertexFaceMotion& m, Contacts& 
       is_found = true;
       face = entry->face;
     }
-    settle(v, face, false);
+    tasks.push_back({&m, v, face, false});
   }
-  std::swap(side.inside, side.inside_next);
+}
+
+/// What becomes of a vertex; changes nothing that belongs to another.
+void ContactDetector::Impl::settle(VertexTask& task, Worker& worker) const {
+  const VertexFaceMotion& m = *task.motion;
+  const int v = task.vertex;
+  int face = task.face;
+  const bool was_inside = task.was_inside;
+  PairPath path = m.path(v, face);
+  Vec3& stretch = m.side.stretch[static_cast<std::size_t>(v)];
+  if (!was_inside) stretch.setZero();
+  const bool is_discrete = params.penalty == PenaltyKind::discrete;
+  Penalty penalty;
+  if (!is_discrete) penalty = compute_vertex_face_penalty(path, was_inside);
+  const Vec3 p = m.v_t1.col(v);
+  const auto [walked, nearest] = find_surroundings(m, p, face, params.face_blend, worker);
+  const bool inside = is_behind(m.faces, nearest, p);
+  task.inside = inside;
+  m.side.face_of_vertex[static_cast<std::size_t>(v)] = inside ? walked.face : -1;
+  if (!inside && penalty.inside_at_end) {
+    const double from = penalty.intervals[static_cast<std::size_t>(penalty.num_intervals) - 1].begin;
+    penalty = compute_vertex_face_penalty(path, was_inside, find_exit(m, v, face, from, worker));
+  }
+  if (is_discrete && inside) {
+    face = nearest.face;
+    path = m.path(v, face);
+    penalty = compute_vertex_face_depth(m, p, nearest);
+  }
+  double end_depth = inside ? std::max(0.0, -compute_height(m.faces, face, p)) : 0.0;
+  if (inside && !is_discrete)
+    if (const auto direction = find_blended_direction(m, p, walked, params.face_blend, worker.near)) {
+      penalty.integral = penalty.integral.norm() * *direction;
+      end_depth = -compute_height(m.faces, walked.face, p) * direction->norm();
+    }
+  task.depth = penalty.integral.norm();
+  if (!inside && !(task.depth > 0.0)) stretch.setZero();
+  if (!(task.depth > 0.0)) return;
+  Contact& c = task.contact;
+  c = make_vertex_contact(m, v, face, penalty, params.vertex_face_stiffness);
+  c.end_force = params.vertex_face_stiffness * end_depth;
+  c.end_stiffness = inside ? params.vertex_face_stiffness : 0.0;
+  c.passes = !was_inside && !inside;
+  if (resists()) resist_vertex(m, v, path, penalty, was_inside, inside, c);
 }
 
 /// Share of an edge pair's depth that its end vertices do not press already: 1 while none of them is inside,
@@ -232,8 +256,8 @@ bool ContactDetector::Impl::is_edge_pair_inside(const EdgePair& pair, const Moti
   const Eigen::Vector2d s = compute_line_parameters(x);
   const Vec3 p = x[0] + s(0) * (x[1] - x[0]);
   const Vec3 q = x[2] + s(1) * (x[3] - x[2]);
-  return is_inside(tool_at, tool_tree, q, tool.edge_triangles(0, pair.tool_edge)) &&
-         is_inside(body_at, *body_tree, p, body.edge_triangles(0, pair.body_edge));
+  return is_inside(tool_at, workers.front().tool_tree, q, tool.edge_triangles(0, pair.tool_edge)) &&
+         is_inside(body_at, workers.front().body_tree, p, body.edge_triangles(0, pair.body_edge));
 }
 
 /// Eq. 8 with p on the tool's edge and q on the body's. Edges carry nothing from interval to interval:

@@ -80,54 +80,54 @@ double compute_area(const std::vector<Vec3>& polygon) {
 
 }  // namespace
 
-/// A convex tool cuts a convex polygon out of the triangle, and only faces that meet the triangle bound it:
-/// from a common point, every way out of the tool within the triangle leads through one of them. Cutting by
-/// their planes is therefore exact when there is a common point, which the polygon's centre then is, and else
-/// the centre tells.
-double ContactDetector::Impl::compute_convex_overlap(const std::array<Vec3, 3>& x, const SurfaceAt& at,
-                                                     const Bounds& box) {
-  tool_candidates.clear();
-  tool_tree.find_overlaps(box, at.x_t0, at.x_t1, tool_candidates);
+/// Area of a body's triangle inside the tool at the end of the interval [m²]. A convex tool cuts a convex
+/// polygon out of the triangle, and only faces that meet the triangle bound it: from a common point, every
+/// way out of the tool within the triangle leads through one of them. Cutting by their planes is therefore
+/// exact when there is a common point, which the polygon's centre then is, and else the centre tells.
+double ContactDetector::Impl::compute_overlap(int body_face, const Motion& m, Worker& worker) const {
+  const Eigen::Vector3i corner = body.triangles.col(body_face);
+  const std::array<Vec3, 3> x = {m.body_t1.col(corner(0)), m.body_t1.col(corner(1)),
+                                 m.body_t1.col(corner(2))};
+  Bounds box;
+  for (const Vec3& p : x) box.include(p);
+  if (!box.overlaps(worker.tool_tree.bounds())) return 0.0;
+  if (compute_nearest_on_triangle(centre_t1, x[0], x[1], x[2]).squared_distance > tool_radius * tool_radius)
+    return 0.0;
+  const SurfaceAt at{tool, m.tool_t0, m.tool_t1};
+  if (!tool_is_convex) {
+    const double longest = std::sqrt(
+        std::max({(x[1] - x[0]).squaredNorm(), (x[2] - x[1]).squaredNorm(), (x[0] - x[2]).squaredNorm()}));
+    constexpr int kMaxLevel = 5;
+    int level = 0;  // fine enough to see the tool's own facets
+    for (double size = longest; level < kMaxLevel && size > tool_edge_length; size *= 0.5) ++level;
+    Measure measure{at, worker.tool_tree};
+    return measure.compute_share(x, level) * 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
+  }
+  std::vector<Vec3>& polygon = worker.polygon;
+  worker.tool_candidates.clear();
+  worker.tool_tree.find_overlaps(box, at.x_t0, at.x_t1, worker.tool_candidates);
   polygon.assign(x.begin(), x.end());
-  for (const int face : tool_candidates)
-    clip(polygon, clip_work, compute_face_normal(at, face), at.corner(face, 0));
+  for (const int face : worker.tool_candidates)
+    clip(polygon, worker.clip_work, compute_face_normal(at, face), at.corner(face, 0));
   if (polygon.size() < 3) return 0.0;
   Vec3 centre = Vec3::Zero();
   for (const Vec3& p : polygon) centre += p / static_cast<double>(polygon.size());
-  const int guess = tool_candidates.empty() ? 0 : tool_candidates.front();
-  return is_inside(at, tool_tree, centre, guess) ? compute_area(polygon) : 0.0;
+  const int guess = worker.tool_candidates.empty() ? 0 : worker.tool_candidates.front();
+  return is_inside(at, worker.tool_tree, centre, guess) ? compute_area(polygon) : 0.0;
 }
 
 void ContactDetector::Impl::measure_touched(const Motion& m, Contacts& out) {
   if (!out.with_touched) return;
   if (out.contacts.empty() && tool_vertices.inside.empty() && body_vertices.inside.empty()) return;
-  const Bounds tool_box = tool_tree.bounds();
-  const double reach2 = tool_radius * tool_radius;
-  const SurfaceAt tool_at{tool, m.tool_t0, m.tool_t1};
-  Measure measure{tool_at, tool_tree};
   std::sort(body_candidates.begin(), body_candidates.end());
-  for (const int f : body_candidates) {
-    const Eigen::Vector3i corner = body.triangles.col(f);
-    const std::array<Vec3, 3> x = {m.body_t1.col(corner(0)), m.body_t1.col(corner(1)),
-                                   m.body_t1.col(corner(2))};
-    Bounds box;
-    for (const Vec3& p : x) box.include(p);
-    if (!box.overlaps(tool_box)) continue;
-    if (compute_nearest_on_triangle(centre_t1, x[0], x[1], x[2]).squared_distance > reach2) continue;
-    double area = 0.0;
-    if (tool_is_convex) {
-      area = compute_convex_overlap(x, tool_at, box);
-    } else {
-      const double longest = std::sqrt(
-          std::max({(x[1] - x[0]).squaredNorm(), (x[2] - x[1]).squaredNorm(), (x[0] - x[2]).squaredNorm()}));
-      constexpr int kMaxLevel = 5;
-      int level = 0;  // fine enough to see the tool's own facets
-      for (double size = longest; level < kMaxLevel && size > tool_edge_length; size *= 0.5) ++level;
-      area = measure.compute_share(x, level) * 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
-    }
-    if (!(area > 0.0)) continue;
-    out.touched_triangle.push_back(f);
-    out.touched_area.push_back(area);
+  areas.resize(body_candidates.size());
+  each_item(areas.size(), [&](Worker& worker, std::size_t i) {
+    areas[i] = compute_overlap(body_candidates[i], m, worker);
+  });
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    if (!(areas[i] > 0.0)) continue;
+    out.touched_triangle.push_back(body_candidates[i]);
+    out.touched_area.push_back(areas[i]);
   }
 }
 

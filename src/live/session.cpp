@@ -36,7 +36,7 @@ Session::~Session() {
 
 void Session::start() {
   ARGIL_ASSERT(!m_hand_thread.joinable(), "started twice");
-  m_simulation.hand().prepare();
+  m_simulation.hand().prepare_alone();
   if (m_options.is_realtime && !lock_memory())
     m_warning += "memory could not be locked: raise the limit \"memlock\"; ";
   m_running = 2;

@@ -44,6 +44,7 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
       m_chatter(params.chatter_limit, params.rates.haptic_period),
       m_gate(params.device, params.rates.haptic_period) {
   m_clock.period = params.rates.haptic_period;
+  m_detector.share(params.threads);
   begin_at(start);
 }
 
@@ -54,7 +55,8 @@ void HandSide::begin_at(const device::DeviceSample& start) {
 }
 
 /// The detector makes its trees at its first look, which here sees nothing move.
-void HandSide::prepare() {
+void HandSide::prepare_alone() {
+  m_detector.share(1);
   m_load.reserve();
   m_moved.reserve(static_cast<std::size_t>(m_surface.num_vertices()));
   m_detector.find_contacts(m_state.contact_x, m_state.contact_x, m_state.tool, m_state.tool, m_contacts, 0.0);

@@ -32,8 +32,9 @@ class HandSide {
 
   /// Before the first tick: the hand is here.
   void begin_at(const device::DeviceSample& start);
-  /// Does beforehand what the first ticks would take long for.
-  void prepare();
+  /// Does beforehand what the first ticks would take long for. From now on the hand's ticks are on one
+  /// thread, as the body's have theirs at the same time.
+  void prepare_alone();
 
   // Of a tick, in this order.
   /// The body's surface has moved; takes the answer's arrays and leaves others of their size. What the hand

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "scenes.h"
 #include "support/heap_count.h"
@@ -150,13 +151,43 @@ TEST(Determinism, SameBitsAgainAndFromACheckpoint) {
   EXPECT_GT(one.force().norm(), 0.0);
 }
 
+TEST(Determinism, SameBitsOnAnyNumberOfThreads) {
+  const auto bumpy = [](double x, double y) { return 3e-4 * std::sin(2000.0 * x) * std::cos(1700.0 * y); };
+  const auto place = [](int i) { return Vec3(-4e-3 + 1e-4 * i, 1e-3, kR - 2e-5 * std::min(i, 60)); };
+  std::vector<Scene> scenes;
+  for (const int threads : {1, 2, 3, 7}) {
+    scenes.emplace_back(make_slab(60, 0.06, 0.02, bumpy), make_sphere_tool(kR, 3), place(0));
+    scenes.back().detector.share(threads);
+  }
+  std::size_t most = 0;
+  for (int i = 1; i < 80; ++i) {
+    for (Scene& scene : scenes) scene.move(place(i));
+    const Contacts& one = scenes.front().contacts;
+    for (const Scene& scene : scenes) {
+      const Contacts& other = scene.contacts;
+      ASSERT_EQ(one.contacts.size(), other.contacts.size()) << i;
+      for (std::size_t k = 0; k < one.contacts.size(); ++k) {
+        ASSERT_EQ(one.contacts[k].vertex, other.contacts[k].vertex) << i;
+        ASSERT_EQ(one.contacts[k].force, other.contacts[k].force) << i;
+      }
+      ASSERT_EQ(one.torque_on_tool, other.torque_on_tool) << i;
+      ASSERT_EQ(one.touched_triangle, other.touched_triangle) << i;
+      ASSERT_EQ(one.touched_area, other.touched_area) << i;
+      ASSERT_EQ(scenes.front().detector.state().body_face, scene.detector.state().body_face) << i;
+    }
+    most = std::max(most, one.contacts.size());
+  }
+  EXPECT_GT(most, 32U);  // enough for all to have some
+}
+
 #ifdef ARGIL_COUNTS_HEAP
-TEST(Cost, NoHeapAfterWarmUp) {
+void expect_no_heap_after_warm_up(int threads) {
   Scene scene(make_flat_slab(), make_sphere_tool(kR, 2), {0.0, 0.001, kR + 1e-4});
   ContactParams params{kK, kK};
   params.friction = 0.5;  // keeps springs besides
   scene.detector =
       ContactDetector(scene.body.triangles, scene.body.num_vertices(), make_sphere_tool(kR, 2), params);
+  scene.detector.share(threads);
   const auto lap = [&] {
     for (int i = 0; i < 40; ++i)
       scene.move(Vec3(0.001 * std::sin(0.3 * i), 0.001, kR + 1e-4 - 1e-4 * std::min(i, 40 - i)));
@@ -165,7 +196,12 @@ TEST(Cost, NoHeapAfterWarmUp) {
   lap();
   const std::size_t before = argil::test::count_allocations();
   lap();
-  EXPECT_EQ(argil::test::count_allocations() - before, 0U);
+  EXPECT_EQ(argil::test::count_allocations() - before, 0U) << threads << " threads";
+}
+
+TEST(Cost, NoHeapAfterWarmUp) {
+  expect_no_heap_after_warm_up(1);
+  expect_no_heap_after_warm_up(2);
 }
 #endif
 
