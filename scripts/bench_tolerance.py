@@ -1,14 +1,16 @@
 #!/usr/bin/python3
-"""How exactly a step must be solved: the force at the hand of the whole dry demonstration at a physics step a tick, for
-tolerances of the solver, against that of 1e-10: results/bench/tolerance.csv.
+"""How exactly a step must be solved, and what that costs: the force at the hand of the whole dry demonstration at a physics
+step a tick, for tolerances of the solver, against that of 1e-10, and the steps per second:
+results/bench/tolerance.csv, .png and .pdf.
 
-    scripts/bench_tolerance.py [--build BUILD] [--tets 2390 10000] [-o TABLE.csv]
+    scripts/bench_tolerance.py [--build BUILD] [--tets 2390 10000 42000] [-o TABLE.csv]
 
-With and without the clay kernel, and with `fidelity: auto`, which stops its solves by itself, against the full model's
-converged force. The meshes are those of bench_step, which are made for about so many tets. Largest error over the force's
-peak, root mean square error over that of the force while the tool touches, what peak and impulse (∫|F| dt) are off by, the
-largest error over the bound that auto keeps, 1 % of the force or 0.02 N, and the mean iterations of all steps but those
-that solve nothing. One thread.
+With and without the clay kernel (42000 tets: with it alone), and with `fidelity: auto`, which stops its solves by itself,
+against the full model's converged force. The meshes are those of bench_step, which are made for about so many tets.
+Largest error over the force's peak, root mean square error over that of the force while the tool touches, what peak and
+impulse (∫|F| dt) are off by, the largest error over the bound that auto keeps, 1 % of the force or 0.02 N, the mean
+iterations of all steps but those that solve nothing, and how many of these a second: the least of three runs on two
+threads, all stages of a step.
 """
 import argparse
 import csv
@@ -16,28 +18,37 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+import argil_plot as ap
 import h5py
 import numpy as np
 import provenance
+from argil_plot import COLOURS, DASHES, GREY, MILLIMETRES, plt
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIO = ROOT / "scenarios" / "demo_dino_dry.json"
-CONVERGED = "1e-10"
+CONVERGED = ["/dynamics/solver/tolerance=1e-10", "/dynamics/solver/kind=pcg_jacobi"]
 TOLERANCES = ("1e-1", "1e-2", "1e-3", "1e-4")
 DEFAULT = "1e-3"
 KERNELS = {"rate": [], "off": ["/material/clay_kernel/form=off"]}
+LARGE = 20000  # tets from which on there is but one run, with the kernel
+WANTED = {2502: 3000, 10500: 1000, 42153: 200}  # steps/s on two threads
+RATES = (100, 200, 500, 1000, 2000, 5000)  # on the figure's axis
+REPEATS = 3
+STAGES = ("contact", "water", "assemble", "solve", "kinematics", "plasticity")
 COLUMNS = ("tets", "clay_kernel", "fidelity", "tolerance", "largest_error_over_peak", "rms_error_over_rms", "peak_off_by",
-           "impulse_off_by", "error_over_bound", "cg_iterations_mean", "peak_N", "rms_N")
+           "impulse_off_by", "error_over_bound", "cg_iterations_mean", "steps_per_s", "peak_N", "rms_N")
 
 
 def run(argil, folder, settings):
-    """Forces, mean number of iterations, number of tets."""
+    """Forces, mean number of iterations, steps that solve per second, number of tets."""
     sets = [word for setting in ["/haptics/physics_period_ticks=1", *settings] for word in ("--set", setting)]
-    subprocess.run([argil, "run", SCENARIO, "-q", "-o", folder / "out.h5", "--threads", "1", *sets], check=True,
+    subprocess.run([argil, "run", SCENARIO, "-q", "-o", folder / "out.h5", "--threads", "2", *sets], check=True,
                    stdout=subprocess.DEVNULL)
     with h5py.File(folder / "out.h5") as file:
         iterations = file["physics/iterations"][:]
-        return file["haptic/force"][:], iterations[iterations > 0].mean(), len(file["mesh/tets"])
+        solving = iterations[iterations > 0]
+        seconds = sum(file["timing"][stage][0] for stage in STAGES)
+        return file["haptic/force"][:], solving.mean(), len(solving) / seconds, len(file["mesh/tets"])
 
 
 def compare(force, reference):
@@ -53,35 +64,71 @@ def compare(force, reference):
     return {name: f"{value:.2e}" for name, value in figures.items()} | {"peak_N": f"{size.max():.3f}", "rms_N": f"{rms:.3f}"}
 
 
+def measure(argil, folder, target, kernel):
+    """Rows of one mesh, with or without the kernel."""
+    settings = [f"/body/shape/target_tets={target}", *KERNELS[kernel]]
+    reference = run(argil, folder, [*settings, *CONVERGED])[0]
+    for fidelity, tolerance in [*(("full", t) for t in TOLERANCES), ("auto", DEFAULT)]:
+        changed = [*settings, f"/dynamics/solver/tolerance={tolerance}", f"/fidelity/mode={fidelity}"]
+        runs = [run(argil, folder, changed) for _ in range(1 if target >= LARGE else REPEATS)]
+        force, iterations, _, tets = runs[0]
+        yield {"tets": tets, "clay_kernel": kernel, "fidelity": fidelity, "tolerance": tolerance,
+               **compare(force, reference), "cg_iterations_mean": f"{iterations:.1f}",
+               "steps_per_s": f"{max(rate for _, _, rate, _ in runs):.0f}"}
+
+
+def draw(rows, stem):
+    """Force error against steps per second, a line a mesh."""
+    figure, axes = plt.subplots(figsize=(150 * MILLIMETRES, 90 * MILLIMETRES))
+    axes.axhline(1.0, color=GREY, linewidth=0.8)
+    axes.annotate("1 %", (0.0, 1.0), xycoords=("axes fraction", "data"), xytext=(3, 3), textcoords="offset points",
+                  color=GREY, fontsize=8)
+    for tets, colour, dashes in zip(dict.fromkeys(row["tets"] for row in rows), COLOURS, DASHES):
+        of_mesh = [row for row in rows if (row["tets"], row["clay_kernel"]) == (tets, "rate")]
+        points = [(float(row["steps_per_s"]), 100 * float(row["largest_error_over_peak"]), row) for row in of_mesh]
+        full = [point for point in points if point[2]["fidelity"] == "full"]
+        axes.plot(*zip(*[point[:2] for point in full]), color=colour, linestyle=dashes, marker="o", markersize=4)
+        axes.annotate(f"{tets} tets", min(full, key=lambda point: point[1])[:2], xytext=(0, -6), textcoords="offset points",
+                      ha="center", va="top", color=colour, fontsize=8)
+        for rate, error, row in points:
+            is_auto = row["fidelity"] == "auto"
+            if is_auto:
+                axes.plot(rate, error, color=colour, marker="*", markersize=10, linestyle="none")
+            axes.annotate("auto" if is_auto else row["tolerance"], (rate, error), xytext=(5, 4), textcoords="offset points",
+                          color=colour, fontsize=7)
+        if int(tets) in WANTED:
+            axes.plot(WANTED[int(tets)], 1.0, color=colour, marker="|", markersize=14, markeredgewidth=2.5)
+    axes.set(xscale="log", yscale="log", xlabel="physics steps per second on two threads (thick bars: wanted)",
+             ylabel="largest error of the force, % of its peak")
+    axes.set_xticks(RATES, [str(rate) for rate in RATES])
+    axes.set_xticks([], minor=True)
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.margins(y=0.12)
+    ap.save(figure, stem)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=ROOT / "build", type=Path)
-    parser.add_argument("--tets", nargs="+", default=[2390, 10000], type=int)
+    parser.add_argument("--tets", nargs="+", default=[2390, 10000, 42000], type=int)
     parser.add_argument("-o", "--output", default=ROOT / "results" / "bench" / "tolerance.csv", type=Path, metavar="TABLE.csv")
     options = parser.parse_args()
     argil = options.build / "bin" / "argil"
     about = provenance.describe()
+    rows = []
     with open(options.output, "w", encoding="utf-8", newline="") as out, tempfile.TemporaryDirectory() as folder:
-        out.write(f"# {about}, one thread; scenarios/{SCENARIO.name} at a physics step a tick; force at the hand against "
-                  f"that of the full model at {CONVERGED}\n")
+        out.write(f"# {about}; scenarios/{SCENARIO.name} at a physics step a tick, two threads; force at the hand against "
+                  "that of the full model at 1e-10\n")
         table = csv.DictWriter(out, COLUMNS, lineterminator="\n")
         table.writeheader()
         for target in options.tets:
-            for kernel, settings in KERNELS.items():
-                settings = [f"/body/shape/target_tets={target}", *settings]
-
-                def force_at(tolerance, fidelity="full"):
-                    return run(argil, Path(folder), [*settings, f"/dynamics/solver/tolerance={tolerance}",
-                                                     f"/fidelity/mode={fidelity}"])
-
-                reference, _, _ = force_at(CONVERGED)
-                for fidelity, tolerance in [*(("full", t) for t in TOLERANCES), ("auto", DEFAULT)]:
-                    force, iterations, tets = force_at(tolerance, fidelity)
-                    row = {"tets": tets, "clay_kernel": kernel, "fidelity": fidelity, "tolerance": tolerance,
-                           **compare(force, reference), "cg_iterations_mean": f"{iterations:.1f}"}
+            for kernel in KERNELS if target < LARGE else ["rate"]:
+                for row in measure(argil, Path(folder), target, kernel):
+                    rows.append(row)
                     table.writerow(row)
                     out.flush()
                     print(", ".join(f"{key} {row[key]}" for key in COLUMNS), flush=True)
+    draw(rows, options.output.with_suffix(""))
 
 
 if __name__ == "__main__":
