@@ -8,9 +8,9 @@ forces are off.
 light: a sphere of 8 mm presses 0.5 mm; push: the same, 1.5 mm, and moves 6 mm aside; thin: that push on slabs half as thick
 and so much wider that they have as many tets; slide: a sphere of 24 mm presses 1.5 mm and slides (traces/block_slide.csv), on
 cells half as large again. Writes results/bench/extent.csv. One thread, time
-of the steps' stages: what is written is not counted; the median of three runs. A slab of 144 cells a side has 995 328 tets, whose whole takes half
+of the steps' stages: what is written is not counted; the median of five runs, all sizes and modes by turns. A slab of 144 cells a side has 995 328 tets, whose whole takes half
 a second a step: `--most-whole TETS` leaves it out, and what it is compared with. `start_s` is the wall time of a run of one tick, from
-the process's start to its end, least of three: mesh read, body made, first frame written; `peak_MiB` the largest resident
+the process's start to its end, least of five: mesh read, body made, first frame written; `peak_MiB` the largest resident
 memory of all runs.
 """
 import argparse
@@ -28,7 +28,7 @@ import provenance
 
 ROOT = Path(__file__).resolve().parent.parent
 LAYERS = 8
-REPEATS = 3
+REPEATS = 5
 STAGES = ("contact", "water", "assemble", "solve", "kinematics", "plasticity")
 SMALL_TOOL = {"kind": "sphere", "radius_m": 0.008, "subdivisions": 3}
 
@@ -122,8 +122,8 @@ def call(argil, folder, settings):
     return seconds, usage.ru_maxrss / 1024
 
 
-class Figures(NamedTuple):
-    """Of the runs of a mode."""
+class Sample(NamedTuple):
+    """Of one run."""
 
     force: np.ndarray
     active: np.ndarray  # nodes that steps solved for
@@ -133,16 +133,45 @@ class Figures(NamedTuple):
 
 
 def run(argil, folder, settings):
-    calls = [call(argil, folder, [*settings, "/trace/duration_s=0.001"]) for _ in range(REPEATS)]
-    start = min(seconds for seconds, _ in calls)
-    times = []
-    for _ in range(REPEATS):
-        calls.append(call(argil, folder, settings))
-        with h5py.File(folder / "slab.h5") as file:
-            force, active = file["haptic/force"][:], file["physics/active_nodes"][:]
-            times.append(sum(file["timing"][stage][0] for stage in STAGES))
+    start, low = call(argil, folder, [*settings, "/trace/duration_s=0.001"])
+    _, peak = call(argil, folder, settings)
+    with h5py.File(folder / "slab.h5") as file:
+        force, active = file["haptic/force"][:], file["physics/active_nodes"][:]
+        seconds = sum(file["timing"][stage][0] for stage in STAGES)
     touches = np.linalg.norm(force, axis=1) > 0  # before, the body rests
-    return Figures(force, active[active > 0], 1e3 * np.median(times) / touches.sum(), start, max(peak for _, peak in calls))
+    return Sample(force, active[active > 0], 1e3 * seconds / touches.sum(), start, max(low, peak))
+
+
+def describe(samples, whole):
+    """The columns of a mode; `whole`: the force of that mode, if there is one."""
+    force, active, *_ = samples[0]
+    size = np.linalg.norm(force, axis=1)
+    ms = np.median([sample.ms for sample in samples])
+    start = min(sample.start for sample in samples)
+    peak = max(sample.peak for sample in samples)
+    row = f"{active.mean():.0f},{active.max()},{ms:.3f},{start:.3f},{peak:.0f},{size.max():.4f}"
+    if whole is None:
+        return row + ",,"
+    error = np.linalg.norm(force - whole, axis=1)
+    bound = np.maximum(0.02, 0.01 * np.linalg.norm(whole, axis=1))
+    return row + f",{error.max():.5f},{(error / bound).max():.3f}"
+
+
+def measure(argil, scene, cells_a_side, most_whole):
+    """Yields number of tets, mode and columns. All sizes and modes by turns, for the machine's speed changes by the minute."""
+    with tempfile.TemporaryDirectory() as top:
+        folders = [Path(top) / str(cells) for cells in cells_a_side]
+        sizes = []
+        for folder, cells in zip(folders, cells_a_side):
+            folder.mkdir()
+            sizes.append(write_scene(folder, scene, cells))
+        samples = {(tets, mode): [] for tets in sizes for mode in MODES if mode == "auto" or tets <= most_whole}
+        for _ in range(REPEATS):
+            for tets, mode in samples:
+                samples[tets, mode].append(run(argil, folders[sizes.index(tets)], MODES[mode]))
+        for tets, mode in samples:
+            whole = samples.get((tets, "whole"))
+            yield tets, mode, describe(samples[tets, mode], whole[0].force if whole else None)
 
 
 def main():
@@ -152,28 +181,12 @@ def main():
     parser.add_argument("--most-whole", type=int, default=10**9, metavar="TETS")
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
     options = parser.parse_args()
-    argil = options.build / "bin" / "argil"
     lines = [f"# {provenance.describe()}, one thread; ms a step in which the tool touches",
              "scene,tets,mode,nodes_mean,nodes_most,ms_a_step,start_s,peak_MiB,peak_N,error_N,error_over_bound"]
     for name in options.scenes:
-        for cells in options.cells:
-            with tempfile.TemporaryDirectory() as folder:
-                tets = write_scene(Path(folder), SCENES[name], cells)
-                whole = None
-                for mode, settings in MODES.items():
-                    if mode != "auto" and tets > options.most_whole:
-                        continue
-                    force, active, *figures = run(argil, Path(folder), settings)
-                    whole = force if mode == "whole" else whole
-                    size = np.linalg.norm(force, axis=1)
-                    row = (f"{name},{tets},{mode},{active.mean():.0f},{active.max()},"
-                           + "{:.3f},{:.3f},{:.0f}".format(*figures) + f",{size.max():.4f}")
-                    if whole is not None:
-                        error = np.linalg.norm(force - whole, axis=1)
-                        bound = np.maximum(0.02, 0.01 * np.linalg.norm(whole, axis=1))
-                        row += f",{error.max():.5f},{(error / bound).max():.3f}"
-                    lines.append(row if whole is not None else row + ",,")
-                    print(lines[-1], flush=True)
+        for tets, mode, columns in measure(options.build / "bin" / "argil", SCENES[name], options.cells, options.most_whole):
+            lines.append(f"{name},{tets},{mode},{columns}")
+            print(lines[-1], flush=True)
     (ROOT / "results" / "bench" / "extent.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
