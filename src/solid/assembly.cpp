@@ -18,8 +18,9 @@ void Solid::set_corner_forces() {
     Eigen::Matrix<double, 3, N> force = Eigen::Matrix<double, 3, N>::Zero();
     for (int q = 0; q < Q; ++q) {
       const std::ptrdiff_t p = Q * t + q;
-      const Mat3 P = m_elements.weight(p) *
-                     compute_piola(m_params.model, motion(static_cast<int>(p)), m_plastic_strain->col(p), e);
+      const Mat3 P =
+          m_elements.weight(p) *
+          compute_piola(m_params.model, m_kinematics.at(static_cast<int>(p)), m_plastic_strain->col(p), e);
       force.noalias() += P * m_elements.gradient.middleCols<N>(N * p);
     }
     m_corner_force.middleCols<N>(N * t) = force;
@@ -38,8 +39,8 @@ bool Solid::has_plain_tets() const {
 
 ForceArrays Solid::make_force_arrays(const TensorField& plastic_strain, double* corner_force) const {
   return {m_elements.gradient.data(),
-          m_rotation.data(),
-          m_strain.data(),
+          m_kinematics.rotation().data(),
+          m_kinematics.strain().data(),
           plastic_strain.data(),
           m_elements.weight.data(),
           m_lambda.data(),
@@ -147,8 +148,8 @@ void Solid::compute_stiffness_product(const Points& u, double kept, double exact
 void Solid::compute_present_product(const Points& u, Points& force) {
   m_change.strain.resize(6, m_elements.num_tets());
   m_change.corner_force.resize(3, m_corner_force.cols());
-  const StrainArrays strains{u.data(), m_elements.nodes.data(), m_elements.gradient.data(), m_rotation.data(),
-                             m_change.strain.data()};
+  const StrainArrays strains{u.data(), m_elements.nodes.data(), m_elements.gradient.data(),
+                             m_kinematics.rotation().data(), m_change.strain.data()};
   each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_strains(strains, begin, end); });
   ForceArrays forces = make_force_arrays(m_change.strain, m_change.corner_force.data());
   forces.strain = m_change.strain.data();
@@ -164,12 +165,12 @@ void Solid::compute_present_product(const Points& u, Points& force) {
 }
 
 Mat3 Solid::volume_gradient(int tet) const {
-  return compute_volume_gradient(m_params.model, motion(tet), m_plastic_strain->col(tet));
+  return compute_volume_gradient(m_params.model, m_kinematics.at(tet), m_plastic_strain->col(tet));
 }
 
 /// Frame of the stiffness whose rotation is kept: the present one, or that of the step's start.
 Mat3 Solid::kept_rotation(int point) const {
-  const Eigen::Matrix3Xd& R = m_kept_rotation.size() > 0 ? m_kept_rotation : m_rotation;
+  const Eigen::Matrix3Xd& R = m_kept_rotation.size() > 0 ? m_kept_rotation : m_kinematics.rotation();
   return R.middleCols<3>(3 * static_cast<Eigen::Index>(point));
 }
 

@@ -51,8 +51,8 @@ void Solid::assemble_tangents() {
   m_tangent.resize(81, m_elements.num_points());
   parallel_for(m_elements.num_points(), m_threads, [&](std::ptrdiff_t p) {
     const int tet = m_elements.tet_of_point(static_cast<int>(p));
-    const Mat9 A = compute_tangent(m_params.model, motion(static_cast<int>(p)), m_plastic_strain->col(p),
-                                   elasticity(tet));
+    const Mat9 A = compute_tangent(m_params.model, m_kinematics.at(static_cast<int>(p)),
+                                   m_plastic_strain->col(p), elasticity(tet));
     m_tangent.col(p) = (m_is_projected ? make_positive(A) : A).reshaped();
   });
 }
@@ -85,7 +85,7 @@ void Solid::store_nodal_stiffness() {
 }
 
 void Solid::update_nodal_stiffness() {
-  add_nodal_stiffness(m_turned_gradient, shares().kept);
+  add_nodal_stiffness(m_kinematics.turned_gradient(), shares().kept);
   if (shares().exact == 0.0) return;
   Eigen::Matrix3Xd gradient(3, m_elements.gradient.cols());
   for (int t = 0; t < m_elements.num_tets(); ++t)
@@ -114,7 +114,7 @@ void Solid::assemble_rows() {
   mark_rows(!keeps_rest);
   m_stored_shares = share;
   const bool is_simple = has_isotropic_tets() && share.exact == 0.0;
-  const RowArrays rows{m_turned_gradient.data(),
+  const RowArrays rows{m_kinematics.turned_gradient().data(),
                        m_elements.weight.data(),
                        m_lambda.data(),
                        m_mu.data(),
@@ -191,13 +191,13 @@ void Solid::gather_row(int row, const MatrixShares& share) {
     for (Eigen::Index p = Q * t; p < Q * (t + 1); ++p) {
       const double weight = m_elements.weight(p);
       if (share.kept != 0.0 && is_isotropic) {
-        const Vec3 ci = m_turned_gradient.col(N * p + i);
+        const Vec3 ci = m_kinematics.turned_gradient().col(N * p + i);
         const double lambda = share.kept * weight * e.lambda;
         const double mu = share.kept * weight * e.mu;
         for (int j = 0; j < N; ++j)
           if (blocks[j] >= 0)
             m_matrix.block(blocks[j]) +=
-                compute_isotropic_block(ci, m_turned_gradient.col(N * p + j), lambda, mu);
+                compute_isotropic_block(ci, m_kinematics.turned_gradient().col(N * p + j), lambda, mu);
       } else if (share.kept != 0.0) {
         const Mat3 R = kept_rotation(static_cast<int>(p));
         for (int j = 0; j < N; ++j)

@@ -15,9 +15,6 @@
 
 namespace argil::solid {
 
-/// Batches whose least det F is kept together.
-constexpr Eigen::Index kBatchGroup = 64;
-
 Solid::~Solid() = default;
 Solid::Solid(Solid&&) noexcept = default;
 
@@ -30,27 +27,19 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
       m_constraints(find_constraints(m_elements.rest, m_supports)),
       m_mass(params.density * m_elements.node_volume),
       m_static_mass(params.density * m_elements.shape_volume),
+      m_kinematics(m_elements, params.model, threads),
       m_rows(threads),
       m_near_rows(threads),
       m_nodes(threads),
       m_solver(linear::make_solver(
           params.iteration == Iteration::newton ? make_exact(params.solver) : params.solver, threads)) {
-  const Eigen::Index num_points = m_elements.num_points();
   const Eigen::Index num_nodes = m_elements.num_nodes();
   m_material.resize(static_cast<std::size_t>(m_elements.num_tets()));
-  if (keeps_deformation()) m_deformation.resize(3, 3 * num_points);
-  m_rotation.resize(3, 3 * num_points);
-  m_strain.setZero(6, num_points);
-  m_volume_ratio.setOnes(num_points);
-  m_turned_gradient.setZero(3, m_elements.gradient.cols());
-  m_frame.setZero(3, m_elements.nodes_per_tet == 4 ? 3 * num_points : 0);
   m_lambda.setZero(m_elements.num_tets());
   m_mu.setZero(m_elements.num_tets());
   m_excess_bulk.setZero(m_elements.num_tets());
   m_is_tet_changed.resize(m_material.size(), 1);
   const Eigen::Index num_batches = (m_elements.num_tets() + kLanes - 1) / kLanes;
-  m_batch_volume_ratio.setOnes(num_batches);
-  m_group_volume_ratio.setOnes((num_batches + kBatchGroup - 1) / kBatchGroup);
   m_is_batch_new.resize(static_cast<std::size_t>(num_batches), 1);
   m_batch_energy.setZero(num_batches);
   m_batch_plastic_strain.setZero(num_batches);
@@ -72,22 +61,6 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
     visit_region();
   }
 }
-
-namespace {
-
-/// Of all numbers, NaN where any of them is not finite.
-template <class Numbers>
-double find_least(const Numbers& numbers) {
-  double least = std::numeric_limits<double>::infinity();
-  double nothing = 0.0;  // 0·x: NaN where x is not finite
-  for (Eigen::Index i = 0; i < numbers.size(); ++i) {
-    least = std::min(least, numbers(i));
-    nothing += 0.0 * numbers(i);
-  }
-  return least + nothing;
-}
-
-}  // namespace
 
 /// Must a step be told where this support is? Backward Euler's leaves what does not move where it is.
 bool Solid::is_placed(int support) const {
@@ -196,8 +169,7 @@ void Solid::set_swelling(int tet, double volume_ratio) {
   const Eigen::Index columns = Q * m_elements.nodes_per_tet;
   m_elements.gradient.middleCols(columns * tet, columns) =
       m_dry.gradient.middleCols(columns * tet, columns) / std::cbrt(volume_ratio);
-  if (m_frame.size() > 0)
-    m_frame.middleCols<3>(3 * static_cast<Eigen::Index>(tet)).setZero();  // to be made anew
+  m_kinematics.drop_frame(tet);
   m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
   m_elements.weight.segment(Q * tet, Q) = volume_ratio * m_dry.weight.segment(Q * tet, Q);
   if (m_nodal) m_nodal->set_excess(tet, elasticity(tet).excess_bulk, m_elements.weight(tet));
@@ -227,7 +199,7 @@ bool Solid::is_strained(int tet, const TensorField& plastic_strain) const {
   constexpr double kRounding = 1e-12;  // of a strain; a body at rest has some 1e-16
   const Eigen::Index Q = m_elements.points_per_tet;
   for (Eigen::Index p = Q * tet; p < Q * (tet + 1); ++p)
-    if (!((m_strain.col(p) - plastic_strain.col(p)).norm() <= kRounding)) return true;
+    if (!((m_kinematics.strain().col(p) - plastic_strain.col(p)).norm() <= kRounding)) return true;
   return false;
 }
 
@@ -244,17 +216,6 @@ Elasticity Solid::elasticity(int tet) const {
   return e;
 }
 
-PointMotion Solid::motion(int point) const {
-  const Mat3 R = m_rotation.middleCols<3>(3 * static_cast<Eigen::Index>(point));
-  if (keeps_deformation()) return {m_deformation.middleCols<3>(3 * static_cast<Eigen::Index>(point)), R};
-  return {R * (Mat3::Identity() + from_mandel(m_strain.col(point))), R};
-}
-
-/// Does strain not say all that the law wants to know of F?
-bool Solid::keeps_deformation() const {
-  return m_elements.nodes_per_tet != 4 || m_params.model == StrainModel::neo_hookean;
-}
-
 /// How far the frames of the matrix may lag behind R: a step that is solved to a tolerance may as well have a
 /// matrix that is off by as much. Its residual is always that of R.
 double Solid::frame_tolerance() const {
@@ -268,98 +229,32 @@ bool Solid::may_lag_further() const {
   return has_plain_tets() && frame_tolerance() > 0.0;
 }
 
-void Solid::set_tet_motion(const Points& x, bool keeps_frame) {
-  const TetArrays tets{x.data(),
-                       m_elements.nodes.data(),
-                       m_elements.gradient.data(),
-                       m_params.model == StrainModel::linear,
-                       keeps_deformation() ? m_deformation.data() : nullptr,
-                       m_rotation.data(),
-                       keeps_frame ? nullptr : m_turned_gradient.data(),
-                       m_frame.data(),
-                       frame_tolerance(),
-                       m_strain.data(),
-                       m_volume_ratio.data(),
-                       m_is_tet_changed.data()};
-  const auto set = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    compute_motions(tets, begin, end);
-    m_batch_volume_ratio(begin / kLanes) = find_least(m_volume_ratio.segment(begin, end - begin));
-    m_is_batch_new[static_cast<std::size_t>(begin / kLanes)] = 1;
-  };
-  if (m_has_old_nodes)
-    for_batches(m_elements.num_tets(), m_threads, set);
-  else
-    each_batch(set);
-}
-
-void Solid::set_quadratic_motion(const Points& x, bool keeps_frame) {
-  constexpr int N = 10;
-  parallel_for(m_elements.num_points(), m_threads, [&](std::ptrdiff_t p) {
-    const int tet = m_elements.tet_of_point(static_cast<int>(p));
-    const Eigen::Matrix<double, 3, N> gradient = m_elements.gradient.middleCols<N>(N * p);
-    Eigen::Matrix<double, 3, N> corners;
-    for (int i = 0; i < N; ++i) corners.col(i) = x.col(m_elements.nodes(i, tet));
-    const Mat3 F = corners * gradient.transpose();
-    const PointMotion at = make_motion(m_params.model, F);
-    m_deformation.middleCols<3>(3 * p) = F;
-    m_rotation.middleCols<3>(3 * p) = at.R;
-    if (!keeps_frame) m_turned_gradient.middleCols<N>(N * p) = at.R * gradient;
-    m_strain.col(p) = compute_strain(F, at.R);
-    m_volume_ratio(p) = F.determinant();
-  });
-}
-
-/// det F where it is least; of groups of batches in which none has moved it is known.
-double Solid::find_least_of_batches() {
-  const Eigen::Index num_batches = m_batch_volume_ratio.size();
-  const auto renew = [&](Eigen::Index group) {
-    const Eigen::Index begin = kBatchGroup * group;
-    m_group_volume_ratio(group) =
-        find_least(m_batch_volume_ratio.segment(begin, std::min(kBatchGroup, num_batches - begin)));
-  };
-  if (!m_region || m_has_old_nodes) {
-    for (Eigen::Index group = 0; group < m_group_volume_ratio.size(); ++group) renew(group);
-  } else {
-    Eigen::Index last = -1;
-    for (const int batch : m_region->batches())
-      if (batch / kBatchGroup != last) renew(last = batch / kBatchGroup);
-  }
-  return find_least(m_group_volume_ratio);
-}
-
 StepStatus Solid::update_kinematics(const Points& x, Tick tick) {
   return update_motion(x, tick, false);
 }
 
 StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frame) {
-  keeps_frame = keeps_frame && m_kept_rotation.size() > 0;
-  if (m_elements.nodes_per_tet == 4)
-    set_tet_motion(x, keeps_frame);
-  else
-    set_quadratic_motion(x, keeps_frame);
-  m_min_volume_ratio = m_elements.nodes_per_tet == 4 ? find_least_of_batches() : find_least(m_volume_ratio);
-  const bool finite = std::isfinite(m_min_volume_ratio);
+  const std::vector<int>* batches = m_region && !m_has_old_nodes ? &m_region->batches() : nullptr;
+  m_kinematics.update(m_elements, x,
+                      {batches, keeps_frame && m_kept_rotation.size() > 0, frame_tolerance(),
+                       m_is_tet_changed, m_is_batch_new});
+  const double least = m_kinematics.min_volume_ratio();
   // Strain of the linear model has no inside to turn out; in statics its solution is what was asked for.
   const bool may_invert = m_is_static && m_params.model == StrainModel::linear;
-  if (finite && (may_invert || m_min_volume_ratio > m_params.min_volume_ratio)) return StepStatus::ok();
-  Eigen::Index worst = 0;
-  if (finite)
-    m_volume_ratio.minCoeff(&worst);
-  else
-    while (std::isfinite(m_volume_ratio(worst))) ++worst;
-  return StepStatus::failed({tick, "solid", m_elements.number_of_point(static_cast<int>(worst)),
-                             "volume ratio det F of a tet", m_volume_ratio(worst),
-                             m_params.min_volume_ratio});
+  if (std::isfinite(least) && (may_invert || least > m_params.min_volume_ratio)) return StepStatus::ok();
+  const int worst = m_kinematics.find_worst_point();
+  return StepStatus::failed({tick, "solid", m_elements.number_of_point(worst), "volume ratio det F of a tet",
+                             m_kinematics.volume_ratio(worst), m_params.min_volume_ratio});
 }
 
 void Solid::compute_volume_changes(const TensorField& plastic_strain, Field& change) const {
   change.resize(m_elements.num_tets());
   m_rows.each(change.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t t = begin; t < end; ++t)
-      change(t) =
-          m_params.model == StrainModel::neo_hookean
-              ? compute_volume_change(m_params.model, motion(static_cast<int>(t)), plastic_strain.col(t))
-              : (m_strain.col(t) - plastic_strain.col(t)).head<3>().sum();
+      change(t) = m_params.model == StrainModel::neo_hookean
+                      ? compute_volume_change(m_params.model, m_kinematics.at(static_cast<int>(t)),
+                                              plastic_strain.col(t))
+                      : (m_kinematics.strain().col(t) - plastic_strain.col(t)).head<3>().sum();
   });
 }
 
@@ -373,57 +268,8 @@ void Solid::update_volume_change(const TensorField& plastic_strain) {
 }
 
 Vec6 Solid::compute_flow_drive(int point, const Vec6& plastic_strain, double shape_stiffness) const {
-  return solid::compute_flow_drive(m_params.model, motion(point), plastic_strain,
+  return solid::compute_flow_drive(m_params.model, m_kinematics.at(point), plastic_strain,
                                    elasticity(m_elements.tet_of_point(point)), shape_stiffness);
-}
-
-double Solid::compute_elastic_energy(int point, const Vec6& plastic_strain) const {
-  return m_elements.weight(point) * compute_energy_density(m_params.model, motion(point), plastic_strain,
-                                                           elasticity(m_elements.tet_of_point(point)));
-}
-
-double Solid::compute_elastic_energy(const TensorField& plastic_strain) const {
-  if (has_plain_tets() && !m_nodal) {
-    const ForceArrays tets = make_force_arrays(plastic_strain, nullptr);
-    const std::ptrdiff_t count = m_elements.num_tets();
-    return ordered_sum((count + kLanes - 1) / kLanes, [&](std::ptrdiff_t batch) {
-      return compute_energy(tets, batch * kLanes, std::min((batch + 1) * kLanes, count));
-    });
-  }
-  const double own = ordered_sum(m_elements.num_points(), [&](std::ptrdiff_t p) {
-    return compute_elastic_energy(static_cast<int>(p), plastic_strain.col(p));
-  });
-  if (!m_nodal) return own;
-  m_nodal->update_stiffness();
-  Field change;
-  compute_volume_changes(plastic_strain, change);
-  return own + m_nodal->compute_energy(change);
-}
-
-StrainSummary Solid::summarise(const TensorField& plastic_strain) const {
-  const auto find_largest = [&](Eigen::Index begin, Eigen::Index end) {
-    double squares = 0.0;
-    for (Eigen::Index p = begin; p < end; ++p)
-      squares = std::max(squares, plastic_strain.col(p).squaredNorm());
-    return std::sqrt(squares);
-  };
-  if (!has_plain_tets() || m_nodal)
-    return {compute_elastic_energy(plastic_strain), find_largest(0, plastic_strain.cols())};
-  const ForceArrays tets = make_force_arrays(plastic_strain, nullptr);
-  for_batches(m_elements.num_tets(), m_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    const std::ptrdiff_t batch = begin / kLanes;
-    if (!m_is_batch_new[static_cast<std::size_t>(batch)]) return;
-    m_is_batch_new[static_cast<std::size_t>(batch)] = 0;
-    m_batch_energy(batch) = compute_energy(tets, begin, end);
-    m_batch_plastic_strain(batch) = find_largest(begin, end);
-  });
-  return {ordered_sum(m_batch_energy.size(), [&](std::ptrdiff_t batch) { return m_batch_energy(batch); }),
-          m_batch_plastic_strain.maxCoeff()};
-}
-
-double Solid::compute_kinetic_energy(const SolidState& state) const {
-  return m_nodes.sum(m_mass.size(),
-                     [&](std::ptrdiff_t v) { return 0.5 * m_mass(v) * state.v.col(v).squaredNorm(); });
 }
 
 }  // namespace argil::solid

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,9 +10,9 @@
 #include "base/ordered_items.h"
 #include "base/status.h"
 #include "solid/active_set.h"
-#include "solid/elements.h"
-#include "solid/law.h"
+#include "solid/kinematics.h"
 #include "solid/nodal_product.h"
+#include "solid/step_loads.h"
 #include "solid/supports.h"
 #include "solid/tet_lanes.h"
 
@@ -26,22 +24,6 @@ struct SolidState {
   Points v;                    ///< 3×n velocities [m/s]
   TensorField plastic_strain;  ///< 6×p ε_p at each point in its turned frame, Mandel
   Points x_before, v_before;   ///< a step earlier, bdf2 only; empty before the first step
-};
-
-/// Stiffness that a penalty contact adds between its nodes: k·wᵢwⱼ n⊗n. Entries of one group press on
-/// the body with Σ n·f − k n·(x' − x) of those that count, or are let go all together where that would draw.
-struct PointStiffness {
-  /// −1 beyond the last; all of one tet.
-  std::array<int, 10> vertex = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
-  std::array<double, 10> weight = {};
-  Vec3 normal = Vec3::Zero();
-  double stiffness = 0.0;     ///< k [N/m]
-  Vec3 force = Vec3::Zero();  ///< f [N]: how much of the loads is this contact's at x
-  int group = -1;             ///< number of the group's first entry; −1: acts whatever its force
-  bool counts = false;        ///< it is along this normal that its group must not draw
-  std::size_t count() const {
-    return static_cast<std::size_t>(std::find(vertex.begin(), vertex.end(), -1) - vertex.begin());
-  }
 };
 
 /// Stiffness and strength of one tet as the water left them.
@@ -59,23 +41,6 @@ struct StepCounters {
   double residual = 0.0;    ///< relative, of the last linear solve
   double imbalance = 0.0;   ///< [N] that a solve left, with a slack also frames that lag: norm over all nodes
   int assembled_rows = 0;   ///< rows of the matrix that were gathered anew; the others stayed as they were
-};
-
-/// What acts on the body during a step.
-struct StepLoads {
-  const Points& force;                            ///< 3×n external forces [N] without gravity
-  std::span<const PointStiffness> contacts = {};  ///< and how those of contacts grow as the body moves on
-  /// Extent::local: share of a node's speed that the step will leave it; empty: all of it.
-  std::function<double(Eigen::Index)> mobility = {};
-  /// Forces [N] without balance, Euclidean norm over all nodes, that a step's solve may leave; 0: the
-  /// tolerance of the parameters decides.
-  double slack = 0.0;
-  /// And what it leaves at most where there is slack, whatever the tolerance.
-  double limit = std::numeric_limits<double>::infinity();
-  /// Extent::local: by how much the hand's force may be off [N] for what is left as it is; 0: as for slack.
-  double region_slack = 0.0;
-  /// Extent::local: nodes whose force may be another than in the last step; null: any.
-  const std::vector<int>* changed = nullptr;
 };
 
 /// Of the body as a whole.
@@ -189,14 +154,16 @@ class Solid {
 
   const Elements& elements() const { return m_elements; }
   const Constraints& constraints() const { return m_constraints; }
-  const TensorField& strain() const { return m_strain; }  ///< ε (Mandel) of each point, last kinematics
-  const Field& mass() const { return m_mass; }            ///< lumped, per node [kg]
+  const TensorField& strain() const {
+    return m_kinematics.strain();
+  }                                             ///< ε (Mandel) of each point, last kinematics
+  const Field& mass() const { return m_mass; }  ///< lumped, per node [kg]
   const TetMaterial& material(int tet) const { return m_material[static_cast<std::size_t>(tet)]; }
   const StepCounters& counters() const { return m_counters; }
   const linear::SolverCost& solver_cost() const { return m_solver->cost(); }
   /// Does a tet hold elastic strain beyond what rounding leaves in a body at rest?
   bool is_strained(int tet, const TensorField& plastic_strain) const;
-  double min_volume_ratio() const { return m_min_volume_ratio; }
+  double min_volume_ratio() const { return m_kinematics.min_volume_ratio(); }
   int num_free() const { return static_cast<int>(m_node_of_row.size()); }
   /// Of tets that moved in the last step: all others are where they were.
   const OrderedItems& moving_nodes() const { return m_nodes; }
@@ -255,11 +222,7 @@ class Solid {
   void visit_region();
   double frame_tolerance() const;
   bool may_lag_further() const;
-  void set_tet_motion(const Points& x, bool keeps_frame);
-  void set_quadratic_motion(const Points& x, bool keeps_frame);
   Elasticity elasticity(int tet) const;
-  PointMotion motion(int point) const;
-  bool keeps_deformation() const;
   void compute_volume_changes(const TensorField& plastic_strain, Field& change) const;
   void update_volume_change(const TensorField& plastic_strain);
   StepStatus update_motion(const Points& x, Tick tick, bool keeps_frame);
@@ -329,7 +292,6 @@ class Solid {
   linear::SolveReport solve_system(const StepLoads& loads, bool is_first);
   StepStatus search_line(const StepLoads& loads, Tick tick);
   void set_iterate(double share);
-  double find_least_of_batches();
   double gravity_mass(Eigen::Index node) const;
   bool is_newton() const { return m_is_static || m_params.iteration == Iteration::newton; }
   bool is_explicit() const { return !m_is_static && m_params.integrator == Integrator::symplectic_euler; }
@@ -348,22 +310,14 @@ class Solid {
   std::vector<Mat6> m_stiffness;        // empty while every tet is isotropic
   Field m_lambda, m_mu, m_excess_bulk;  // of each tet as elasticity() has them
 
-  Eigen::Matrix3Xd m_deformation;  // F, 3 columns a point, where keeps_deformation()
-  Eigen::Matrix3Xd m_rotation;     // R, 3 columns a point
-  TensorField m_strain;
-  Field m_volume_ratio;                      // det F
-  Field m_batch_volume_ratio;                // p1: least of each run of kLanes tets
-  Field m_group_volume_ratio;                // p1: least of each group of these runs
+  Kinematics m_kinematics;
   mutable std::vector<char> m_is_batch_new;  // p1: have its tets moved since they were summarised?
   mutable Field m_batch_energy, m_batch_plastic_strain;
-  double m_min_volume_ratio = 1.0;
   Field m_tet_volume_change;  // p1_nodal: θ of each tet
   Field m_volume_change;      // p1_nodal: θ of each tet's nodes, their mean
   Field m_nodal_pressure;     // and the stress that it is [Pa]
 
   Eigen::Matrix3Xd m_kept_rotation;                     // damping's R where it is not the present one
-  Eigen::Matrix3Xd m_turned_gradient;                   // Q ∇N, N columns a point, for the matrix
-  Eigen::Matrix3Xd m_frame;                             // Q of p1: R within frame_tolerance()
   Eigen::Matrix<double, 81, Eigen::Dynamic> m_tangent;  // ∂P/∂F of each point, where it is wanted
   bool m_is_projected = true;                           // with its negative modes set to zero
   Eigen::Matrix3Xd m_corner_force;                      // N columns a tet, and one more
@@ -388,11 +342,11 @@ class Solid {
   double m_fastest = 0.0;               // speed of the last step [m/s]
   double m_frame_slack = 0.0;           // by how much frames may lag where the force at the hand allows it
   struct {
-    double left = 0.0;   // by frames that lag, in terms of the right-hand side
-    double way = 0.0;    // their lag times the body's speed
-    int steps = 0;       // for so many more it is not found anew
-  } m_frame_error;       // as it was last found
-  double m_region_slack = 0.0;          // of the present step [N]
+    double left = 0.0;          // by frames that lag, in terms of the right-hand side
+    double way = 0.0;           // their lag times the body's speed
+    int steps = 0;              // for so many more it is not found anew
+  } m_frame_error;              // as it was last found
+  double m_region_slack = 0.0;  // of the present step [N]
   double m_held_back = 0.0;
   std::vector<std::pair<double, int>> m_pulls;  // on runs that sleep [N], and their numbers
   Points m_last_load;                           // forces of the last step

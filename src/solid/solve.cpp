@@ -332,9 +332,7 @@ void Solid::exchange_frames(Archive& archive) {
   archive.number("solid/frame_error", m_frame_error.left);
   archive.number("solid/frame_error_way", m_frame_error.way);
   archive.number("solid/frame_error_steps", m_frame_error.steps);
-  if (m_frame.size() == 0 || frame_tolerance() == 0.0) return;
-  archive.array("solid/frame", m_frame);
-  archive.array("solid/turned_gradient", m_turned_gradient);
+  if (frame_tolerance() > 0.0) m_kinematics.exchange_frames(archive);
 }
 
 }  // namespace argil::solid

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <vector>
+
+#include "base/archive.h"
+#include "solid/elements.h"
+#include "solid/law.h"
+
+namespace argil::solid {
+
+/// How the points of a body have been strained and turned: F, R, ε and det F of each at the positions of the
+/// last update. The matrix of kept rotations sees its tets in frames Q that may lag behind R.
+class Kinematics {
+ public:
+  Kinematics(const Elements& elements, StrainModel model, int threads);
+
+  /// Which tets an update looks at, and what it does with their frames.
+  struct Update {
+    const std::vector<int>* batches = nullptr;  ///< runs of kLanes tets that may have moved; null: all
+    bool keeps_frames = false;                  ///< Q ∇N stays as it is
+    double frame_tolerance = 0.0;               ///< on ‖R − Q‖, beyond which Q becomes R (4-node tets)
+    std::vector<char>& is_turned;               ///< set to 1 for tets whose Q changed
+    std::vector<char>& is_moved;                ///< set to 1 for runs of kLanes tets that were looked at
+  };
+  /// Of the same elements at each call; x: 3×n nodes [m].
+  void update(const Elements& elements, const Points& x, const Update& how);
+  /// A tet's frame is made anew at the next update.
+  void drop_frame(int tet);
+
+  PointMotion at(int point) const;
+  const Eigen::Matrix3Xd& rotation() const { return m_rotation; }  ///< R, 3 columns a point
+  const TensorField& strain() const { return m_strain; }           ///< ε (Mandel) of each point
+  /// Q ∇N: as many columns a point as it has nodes.
+  const Eigen::Matrix3Xd& turned_gradient() const { return m_turned_gradient; }
+  /// Least det F; NaN where one is not finite.
+  double min_volume_ratio() const { return m_min_volume_ratio; }
+  double volume_ratio(int point) const { return m_volume_ratio(point); }
+  int find_worst_point() const;  ///< whose det F is not finite, or the least
+
+  /// What frames remember of earlier rotations.
+  void exchange_frames(Archive& archive);
+
+ private:
+  bool keeps_deformation() const { return m_deformation.size() > 0; }
+  void set_tets(const Elements& elements, const Points& x, const Update& how);
+  void set_quadratic(const Elements& elements, const Points& x, bool keeps_frames);
+  double find_least_of_groups(const std::vector<int>* batches);
+
+  StrainModel m_model;
+  int m_threads;
+  Eigen::Matrix3Xd m_deformation;  // F, 3 columns a point, where strain does not say all of it
+  Eigen::Matrix3Xd m_rotation;
+  TensorField m_strain;
+  Field m_volume_ratio;        // det F
+  Field m_batch_volume_ratio;  // 4-node tets: least of each run of kLanes tets
+  Field m_group_volume_ratio;  // and of each group of these runs
+  double m_min_volume_ratio = 1.0;
+  Eigen::Matrix3Xd m_turned_gradient;
+  Eigen::Matrix3Xd m_frame;  // Q of 4-node tets
+};
+
+}  // namespace argil::solid

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "solid/elements.h"
+
+namespace argil::solid {
+
+/// Stiffness that a penalty contact adds between its nodes: k·wᵢwⱼ n⊗n. Entries of one group press on
+/// the body with Σ n·f − k n·(x' − x) of those that count, or are let go all together where that would draw.
+struct PointStiffness {
+  /// −1 beyond the last; all of one tet.
+  std::array<int, 10> vertex = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+  std::array<double, 10> weight = {};
+  Vec3 normal = Vec3::Zero();
+  double stiffness = 0.0;     ///< k [N/m]
+  Vec3 force = Vec3::Zero();  ///< f [N]: how much of the loads is this contact's at x
+  int group = -1;             ///< number of the group's first entry; −1: acts whatever its force
+  bool counts = false;        ///< it is along this normal that its group must not draw
+  std::size_t count() const {
+    return static_cast<std::size_t>(std::find(vertex.begin(), vertex.end(), -1) - vertex.begin());
+  }
+};
+
+/// What acts on the body during a step.
+struct StepLoads {
+  const Points& force;                            ///< 3×n external forces [N] without gravity
+  std::span<const PointStiffness> contacts = {};  ///< and how those of contacts grow as the body moves on
+  /// Extent::local: share of a node's speed that the step will leave it; empty: all of it.
+  std::function<double(Eigen::Index)> mobility = {};
+  /// Forces [N] without balance, Euclidean norm over all nodes, that a step's solve may leave; 0: the
+  /// tolerance of the parameters decides.
+  double slack = 0.0;
+  /// And what it leaves at most where there is slack, whatever the tolerance.
+  double limit = std::numeric_limits<double>::infinity();
+  /// Extent::local: by how much the hand's force may be off [N] for what is left as it is; 0: as for slack.
+  double region_slack = 0.0;
+  /// Extent::local: nodes whose force may be another than in the last step; null: any.
+  const std::vector<int>* changed = nullptr;
+};
+
+}  // namespace argil::solid
