@@ -113,6 +113,11 @@ ContactDetector::~ContactDetector() = default;
 ContactDetector::ContactDetector(ContactDetector&&) noexcept = default;
 ContactDetector& ContactDetector::operator=(ContactDetector&&) noexcept = default;
 
+void ContactDetector::prepare(const Points& x, const Pose& tool) {
+  m_impl->place_tool(tool, m_impl->tool_t0);
+  m_impl->make_workers(x);
+}
+
 void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, const Pose& pose_t0,
                                     const Pose& pose_t1, Contacts& contacts,
                                     std::optional<double> body_motion, double seconds) {
@@ -120,10 +125,7 @@ void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, cons
   ARGIL_ASSERT(impl.params.damping == 0.0 || seconds > 0.0, seconds);
   impl.seconds = seconds;
   contacts.clear();
-  if (impl.workers.empty()) {  // a start
-    impl.place_tool(pose_t0, impl.tool_t0);
-    impl.make_workers(x_t0);
-  }
+  if (impl.workers.empty()) prepare(x_t0, pose_t0);
   const double moved = body_motion ? *body_motion : (x_t1 - x_t0).cwiseAbs().maxCoeff();
   const Mat3 turn = pose_t1.orientation.toRotationMatrix() - pose_t0.orientation.toRotationMatrix();
   const double tool_moved = (pose_t1.position - pose_t0.position).norm() + turn.norm() * impl.tool_reach;

@@ -77,6 +77,9 @@ class ContactDetector {
   ContactDetector(ContactDetector&&) noexcept;
   ContactDetector& operator=(ContactDetector&&) noexcept;
 
+  /// Makes for a body and a tool that are here what the next call would else make first, whose cost grows
+  /// with the body.
+  void prepare(const Points& x, const Pose& tool);
   /// Contacts while the body's vertices go linearly from x_t0 to x_t1 and the tool's vertices linearly
   /// between their places at the two poses. Successive calls must join: x_t0, pose_t0 equal the last x_t1,
   /// pose_t1. `body_motion` bounds how far any body vertex moves along any axis [m]; without it that is found

@@ -55,7 +55,7 @@ BodySide::BodySide(Body body, const Params& params)
   rest = refresh_materials(-1.0);
   ARGIL_ASSERT(rest.is_ok());
   if (m_state.is_at_rest) m_solid.sleep_all();
-  m_solid.make_ready(m_state.solid);
+  m_solid.make_ready(m_state.solid, m_external_force);
   find_reach(OrderedItems(params.threads));
 }
 

@@ -52,9 +52,10 @@ void HandSide::begin_at(const device::DeviceSample& start) {
   m_state.tool = {start.position, start.orientation};
   m_state.mode = start.mode;
   m_state.contact_tool = m_state.tool;
+  if (m_state.contact_x.size() > 0) m_detector.prepare(m_state.contact_x, m_state.tool);
 }
 
-/// The detector makes its trees at its first look, which here sees nothing move.
+/// A first look at contacts, which sees nothing move.
 void HandSide::prepare_alone() {
   m_detector.share(1);
   m_load.reserve();
@@ -115,6 +116,7 @@ void HandSide::place_surface(const Points& x) {
   m_state.surface_x = x;
   m_is_surface_known = true;
   forget_motion();
+  m_detector.prepare(x, m_state.tool);
 }
 
 void HandSide::move_surface(const Points& x) {

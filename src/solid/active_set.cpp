@@ -74,7 +74,7 @@ void ActiveSet::sleep_all() {
 
 void ActiveSet::wake(int run) {
   m_calm_steps[static_cast<std::size_t>(run)] = 0;
-  int& state = m_state[static_cast<std::size_t>(run)];
+  char& state = m_state[static_cast<std::size_t>(run)];
   if (state == kAwake) return;
   state = kAwake;
   m_is_changed = true;
@@ -122,7 +122,7 @@ void ActiveSet::make_lists() {
   m_num_awake_rows = 0;
   m_has_drowsy = false;
   for (int run = 0; run < num_runs(); ++run) {
-    const int state = m_listed[static_cast<std::size_t>(run)];
+    const char state = m_listed[static_cast<std::size_t>(run)];
     if (state == kAsleep) continue;
     const auto [first, last] = m_batches_of_run.of(run);
     for (auto batch = first; batch != last; ++batch) m_batch_marks.set(*batch);

@@ -59,7 +59,7 @@ class ActiveSet {
     std::vector<std::uint64_t> m_words;
   };
 
-  static constexpr int kAsleep = 0, kDrowsy = 1, kAwake = 2;
+  static constexpr char kAsleep = 0, kDrowsy = 1, kAwake = 2;
 
   /// Lists of lists.
   struct Table {
@@ -75,8 +75,9 @@ class ActiveSet {
   int m_num_rows;
   std::vector<int> m_run_of_node;  // −1: held
   Table m_batches_of_run, m_runs_of_batch, m_nodes_of_batch;
-  std::vector<int> m_state, m_calm_steps;
-  std::vector<int> m_listed;  // states at the last update, which the lists are of
+  std::vector<char> m_state;
+  std::vector<char> m_listed;  // states at the last update, which the lists are of
+  std::vector<int> m_calm_steps;
   Marks m_batch_marks, m_run_marks, m_node_marks;
   bool m_is_changed = true;
   bool m_has_drowsy = false;

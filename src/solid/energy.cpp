@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/ordered_sum.h"
+#include "base/parallel.h"
 #include "solid/solid.h"
 #include "solid/tet_lanes.h"
 
@@ -43,15 +45,29 @@ StrainSummary Solid::summarise(const TensorField& plastic_strain) const {
   if (!has_plain_tets() || m_nodal)
     return {compute_elastic_energy(plastic_strain), find_largest(0, plastic_strain.cols())};
   const ForceArrays tets = make_force_arrays(plastic_strain, nullptr);
-  for_batches(m_elements.num_tets(), m_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    const std::ptrdiff_t batch = begin / kLanes;
-    if (!m_is_batch_new[static_cast<std::size_t>(batch)]) return;
-    m_is_batch_new[static_cast<std::size_t>(batch)] = 0;
-    m_batch_energy(batch) = compute_energy(tets, begin, end);
-    m_batch_plastic_strain(batch) = find_largest(begin, end);
+  const std::ptrdiff_t num_tets = m_elements.num_tets();
+  const auto is_new = [this](std::ptrdiff_t batch) {
+    return m_is_batch_new.begin() + std::min<std::ptrdiff_t>(batch, std::ssize(m_is_batch_new));
+  };
+  parallel_for(m_group_energy.size(), m_threads, [&](std::ptrdiff_t group) {
+    const auto begin = is_new(kBatchGroup * group), end = is_new(kBatchGroup * (group + 1));
+    if (std::find(begin, end, char{1}) == end) return;
+    m_group_energy(group) = m_group_plastic_strain(group) = 0.0;
+    for (auto at = begin; at != end; ++at) {
+      const std::ptrdiff_t batch = at - m_is_batch_new.begin();
+      if (*at != 0) {
+        const std::ptrdiff_t first = batch * kLanes;
+        const std::ptrdiff_t last = std::min(first + kLanes, num_tets);
+        m_batch_energy(batch) = compute_energy(tets, first, last);
+        m_batch_plastic_strain(batch) = find_largest(first, last);
+        *at = 0;
+      }
+      m_group_energy(group) += m_batch_energy(batch);
+      m_group_plastic_strain(group) = std::max(m_group_plastic_strain(group), m_batch_plastic_strain(batch));
+    }
   });
-  return {ordered_sum(m_batch_energy.size(), [&](std::ptrdiff_t batch) { return m_batch_energy(batch); }),
-          m_batch_plastic_strain.maxCoeff()};
+  return {ordered_sum(m_group_energy.size(), [&](std::ptrdiff_t group) { return m_group_energy(group); }),
+          m_group_plastic_strain.maxCoeff()};
 }
 
 double Solid::compute_kinetic_energy(const SolidState& state) const {

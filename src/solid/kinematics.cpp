@@ -10,9 +10,6 @@
 namespace argil::solid {
 namespace {
 
-/// Batches whose least det F is kept together.
-constexpr Eigen::Index kBatchGroup = 64;
-
 /// Of all numbers, NaN where any of them is not finite.
 template <class Numbers>
 double find_least(const Numbers& numbers) {

@@ -47,7 +47,8 @@ void Solid::sleep_all() {
   if (m_region) m_region->sleep_all();
 }
 
-void Solid::make_ready(const SolidState& state) {
+void Solid::make_ready(const SolidState& state, const Points& force) {
+  if (m_region) m_last_load = force;
   m_plastic_strain = &state.plastic_strain;
   if (m_region && m_region->update()) visit_region();
   take_up(state);

@@ -43,6 +43,8 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   m_is_batch_new.resize(static_cast<std::size_t>(num_batches), 1);
   m_batch_energy.setZero(num_batches);
   m_batch_plastic_strain.setZero(num_batches);
+  m_group_energy.setZero((num_batches + kBatchGroup - 1) / kBatchGroup);
+  m_group_plastic_strain.setZero(m_group_energy.size());
   m_corner_force.setZero(3, m_elements.nodes.size() + 1);
   m_internal_force.setZero(3, num_nodes);
   m_product.setZero(3, num_nodes);

@@ -95,8 +95,9 @@ class Solid {
   void settle_region(SolidState& state, const std::vector<char>& is_flowing);
   void wake_all();   ///< the whole body moves again
   void sleep_all();  ///< none of it until something acts; it has no speed
-  /// Does ahead of the first step what is done once: memory, and the forces of tets that do not move.
-  void make_ready(const SolidState& state);
+  /// Does ahead of the first step what is done once: memory, and the forces of tets that do not move. `force`:
+  /// 3×n [N] that act already, of which no node needs to be told.
+  void make_ready(const SolidState& state, const Points& force);
   bool is_awake(Eigen::Index node) const;
   /// Is it set for any run of kLanes tets that may move?
   bool has_any_moving(const std::vector<char>& of_batch) const;
@@ -313,9 +314,10 @@ class Solid {
   Kinematics m_kinematics;
   mutable std::vector<char> m_is_batch_new;  // p1: have its tets moved since they were summarised?
   mutable Field m_batch_energy, m_batch_plastic_strain;
-  Field m_tet_volume_change;  // p1_nodal: θ of each tet
-  Field m_volume_change;      // p1_nodal: θ of each tet's nodes, their mean
-  Field m_nodal_pressure;     // and the stress that it is [Pa]
+  mutable Field m_group_energy, m_group_plastic_strain;  // of each group of these runs
+  Field m_tet_volume_change;                             // p1_nodal: θ of each tet
+  Field m_volume_change;                                 // p1_nodal: θ of each tet's nodes, their mean
+  Field m_nodal_pressure;                                // and the stress that it is [Pa]
 
   Eigen::Matrix3Xd m_kept_rotation;                     // damping's R where it is not the present one
   Eigen::Matrix<double, 81, Eigen::Dynamic> m_tangent;  // ∂P/∂F of each point, where it is wanted

@@ -25,6 +25,10 @@ struct TetArrays {
   char* is_turned = nullptr;          ///< set to 1 where Q changed
 };
 
+/// Runs of kLanes tets whose sums and least values are kept together, so that those of a large body are found
+/// anew only where it moved.
+inline constexpr std::ptrdiff_t kBatchGroup = 64;
+
 /// body(begin, end) for the tets in runs of kLanes; the same runs at any number of threads.
 template <class Body>
 void for_batches(std::ptrdiff_t num_tets, int threads, Body body) {

@@ -131,6 +131,29 @@ TEST(LocalExtent, LeavesTheRestWhereItIsAndSleepsWhenNothingActs) {
   EXPECT_EQ(simulation.physics_record().active_nodes, 0);
 }
 
+/// Records know the sums over what did not move from earlier steps; here all of it is looked at anew.
+TEST(LocalExtent, RecordsTheEnergyAndPlasticStrainOfTheWholeBody) {
+  Params params = make_params(solid::Extent::local, 0.05);
+  params.plasticity.yield = 0.001;
+  params.plasticity.creep_per_s = 20.0;
+  params.plasticity.max = 0.5;
+  Simulation simulation(make_bar(), contact::make_sphere_tool(kToolRadius, 2), params, hand_at(0));
+  constexpr double kRoundingAtRest = 1e-24;  // [J]
+  double largest_energy = 0.0;
+  for (Tick k = 1; k <= kTicks; ++k) {
+    ASSERT_TRUE(simulation.tick(hand_at(k)).is_ok());
+    if (k % 7 == 0) continue;  // a step that no one asks about
+    const PhysicsRecord record = simulation.physics_record();
+    const TensorField& plastic_strain = simulation.body_state().solid.plastic_strain;
+    const double energy = simulation.solid().compute_elastic_energy(plastic_strain);
+    EXPECT_NEAR(record.elastic_energy, energy, 1e-12 * energy + kRoundingAtRest) << k;
+    EXPECT_DOUBLE_EQ(record.max_plastic_strain, plastic_strain.colwise().norm().maxCoeff()) << k;
+    largest_energy = std::max(largest_energy, energy);
+  }
+  EXPECT_GT(largest_energy, 0.0);
+  EXPECT_GT(simulation.physics_record().max_plastic_strain, 0.0);
+}
+
 /// The region follows what the hand feels: by the reciprocity of forces and displacements. In an elastic
 /// block what is far from the tool yields, too, and is felt.
 TEST(LocalExtent, UnderFidelityKeepsTheForceWithinItsBound) {
@@ -157,7 +180,7 @@ TEST(LocalExtent, UnderFidelityKeepsTheForceWithinItsBound) {
 TEST(LocalExtent, UnderFidelitySleepsWhileTheHandHoldsStill) {
   Params params = make_params(solid::Extent::local, 1e-3);
   params.fidelity.mode = FidelityMode::automatic;
-  params.plasticity.enabled = false;  // whose flow would go on, and
+  params.plasticity.enabled = false;               // whose flow would go on, and
   params.kernel.form = material::KernelForm::off;  // with which it creeps
   Simulation simulation(make_bar(), contact::make_sphere_tool(kToolRadius, 2), params, hand_at(0));
   int asleep = 0;
