@@ -58,7 +58,8 @@ class BoundingTree {
   /// The vertices move on; none by more than `bound` along any axis [m].
   void advance(double bound) {
     m_motion += bound;
-    ++m_interval;
+    if (bound > 0.0 || !m_is_still) ++m_interval;
+    m_is_still = bound == 0.0;
   }
 
   /// Box that holds the surface during the whole present motion.
@@ -138,6 +139,7 @@ class BoundingTree {
   std::vector<int> m_waiting, m_passed;  // working arrays of a query: nodes to look at; inner ones that were
   double m_motion = 0.0;
   std::int64_t m_interval = 0;
+  bool m_is_still = false;  // throughout the present motion
 };
 
 }  // namespace argil::contact

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/check.h"
 #include "contact/detector.h"
@@ -21,6 +22,15 @@ bool pierces(const Vec3& p, const Vec3& q, const SurfaceAt& surface, int face) {
   if ((dp > 0.0) == (dq > 0.0)) return false;
   const Vec3 where = p + dp / (dp - dq) * (q - p);
   return compute_barycentric(where, a, surface.corner(face, 1), surface.corner(face, 2)).minCoeff() >= 0.0;
+}
+
+/// Radius of a sphere about `centre` that touches the nearest of the faces' planes from within, a little
+/// less; 0 where the centre is outside.
+double find_inner_radius(const SurfaceAt& convex, const Vec3& centre) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (int face = 0; face < static_cast<int>(convex.features.triangles.cols()); ++face)
+    highest = std::max(highest, compute_height(convex, face, centre));
+  return std::max(0.0, -highest) * (1.0 - 1e-9);
 }
 
 }  // namespace
@@ -59,6 +69,7 @@ ContactDetector::Impl::Impl(const Triangles& surface, int num_body_vertices,
           1e-12 * tool_reach)
         tool_is_convex = false;
   tool_edge_length /= static_cast<double>(tool.edges.cols());
+  if (tool_is_convex) tool_inner_radius = find_inner_radius(at_rest, tool_centre);
   body_candidates.reserve(static_cast<std::size_t>(surface.cols()));
   areas.reserve(body_candidates.capacity());
   tasks.reserve(kRoom);

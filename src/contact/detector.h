@@ -129,12 +129,13 @@ struct ContactDetector::Impl {
   Points tool_rest;  // in the tool frame
   Vec3 tool_centre;  // of a sphere around the tool, in the tool frame
   bool tool_is_convex = true;
-  double tool_edge_length = 0.0;  // mean [m]
-  double tool_radius = 0.0;       // of that sphere, a little more
-  double tool_reach = 0.0;        // largest distance of a vertex from the hand's point
-  Points tool_t0, tool_t1;        // in the world; a column more, see set_points
-  Vec3 centre_t0, centre_t1;      // of the sphere
-  std::optional<Pose> placed;     // where tool_t1 is
+  double tool_edge_length = 0.0;   // mean [m]
+  double tool_radius = 0.0;        // of that sphere, a little more
+  double tool_inner_radius = 0.0;  // of one about the same centre that lies in a convex tool, a little less
+  double tool_reach = 0.0;         // largest distance of a vertex from the hand's point
+  Points tool_t0, tool_t1;         // in the world; a column more, see set_points
+  Vec3 centre_t0, centre_t1;       // of the sphere
+  std::optional<Pose> placed;      // where tool_t1 is
   int threads = 1;
   std::vector<Worker> workers;  // made at the first call, where the body's shape is known
 

@@ -206,4 +206,11 @@ bool is_inside(const SurfaceAt& surface, BoundingTree& tree, const Vec3& p, int 
   return is_behind(surface, find_nearest(surface, tree, p, face), p);
 }
 
+double find_signed_distance(const SurfaceAt& surface, BoundingTree& tree, const Vec3& p, int& face) {
+  const SurfacePoint nearest = find_nearest(surface, tree, p, face);
+  face = nearest.face;
+  const double distance = std::sqrt(nearest.squared_distance);
+  return is_behind(surface, nearest, p) ? -distance : distance;
+}
+
 }  // namespace argil::contact

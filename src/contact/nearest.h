@@ -66,6 +66,9 @@ bool is_behind(const SurfaceAt& surface, const SurfacePoint& nearest, const Vec3
 /// Is p inside the surface? `face` as for find_nearest.
 bool is_inside(const SurfaceAt& surface, BoundingTree& tree, const Vec3& p, int face);
 
+/// Distance of p from the surface, negative inside [m]. `face`: as for find_nearest; then the nearest one.
+double find_signed_distance(const SurfaceAt& surface, BoundingTree& tree, const Vec3& p, int& face);
+
 /// Outward normal of a face times twice its area [m²].
 Vec3 compute_face_normal(const SurfaceAt& surface, int face);
 

@@ -21,17 +21,38 @@ double compute_parallel_fade(const std::array<Vec3, 4>& p) {
   return std::clamp(sine2 / kParallelSine2 - 1.0, 0.0, 1.0);
 }
 
-/// When does a vertex that is inside at `from` and outside at t₁ come out? By halving; a time just after.
-double find_exit(const VertexFaceMotion& m, int v, int face, double from, Worker& worker) {
-  constexpr int kHalvings = 12;  // to 1/4096 of the interval
-  double inside = from;
-  double outside = 1.0;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double t = 0.5 * (inside + outside);
+/// When does a vertex that is inside at `from` and outside at t₁, by `end_distance`, come out? A time just
+/// after. Its distance from the surface, negative inside, changes its sign there: regula falsi, by turns a
+/// little before and after where a chord puts that, so that both ends close in; halves where there is no
+/// chord.
+double find_exit(const VertexFaceMotion& m, int v, int face, double from, double end_distance,
+                 Worker& worker) {
+  constexpr double kExact = 1.0 / 4096.0;  // of the interval
+  constexpr int kChords = 6;               // after which halves are the safer way
+  struct {
+    double time, distance;
+  } inside{from, 0.0}, outside{1.0, end_distance};
+  const auto find_distance = [&](double t) {
     const SurfaceAt faces{m.faces.features, m.faces.x_t0, m.faces.x_t1, t};
-    (is_inside(faces, m.tree(worker), m.vertex_at(v, t), face) ? inside : outside) = t;
+    return find_signed_distance(faces, m.tree(worker), m.vertex_at(v, t), face);
+  };
+  inside.distance = std::min(0.0, find_distance(from));
+  double aside = 0.25 * kExact;
+  for (int i = 0; outside.time - inside.time > kExact; ++i) {
+    const double width = outside.time - inside.time;
+    const bool has_chord = inside.distance < 0.0 && i < kChords;
+    const double chord = inside.distance / (inside.distance - outside.distance);
+    const double t = has_chord ? std::clamp(inside.time + chord * width + aside, inside.time + 0.25 * kExact,
+                                            outside.time - 0.25 * kExact)
+                               : inside.time + 0.5 * width;
+    const double distance = find_distance(t);
+    if (distance < 0.0)
+      inside = {t, distance};
+    else
+      outside = {t, distance};
+    aside = distance < 0.0 ? 0.25 * kExact : -0.25 * kExact;
   }
-  return outside;
+  return outside.time;
 }
 
 /// Places on a surface about a vertex that may lie behind it.
@@ -209,7 +230,8 @@ void ContactDetector::Impl::settle(VertexTask& task, Worker& worker) const {
   m.side.face_of_vertex[static_cast<std::size_t>(v)] = inside ? walked.face : -1;
   if (!inside && penalty.inside_at_end) {
     const double from = penalty.intervals[static_cast<std::size_t>(penalty.num_intervals) - 1].begin;
-    penalty = compute_vertex_face_penalty(path, was_inside, find_exit(m, v, face, from, worker));
+    const double distance = std::sqrt(nearest.squared_distance);
+    penalty = compute_vertex_face_penalty(path, was_inside, find_exit(m, v, face, from, distance, worker));
   }
   if (is_discrete && inside) {
     face = nearest.face;

@@ -27,13 +27,7 @@ struct Measure {
   BoundingTree& tree;
   int guess = 0;  ///< tool face near the last point that was asked for
 
-  /// Distance to the tool's surface, negative inside [m].
-  double compute_distance(const Vec3& p) {
-    const SurfacePoint nearest = find_nearest(tool, tree, p, guess);
-    guess = nearest.face;
-    const double d = std::sqrt(nearest.squared_distance);
-    return is_behind(tool, nearest, p) ? -d : d;
-  }
+  double find_distance(const Vec3& p) { return find_signed_distance(tool, tree, p, guess); }
 
   /// Share of a triangle inside the tool. The distance to a surface changes by no more than the point moves,
   /// so a triangle whose centre is farther than its corners is wholly on one side; others are quartered, and
@@ -42,11 +36,11 @@ struct Measure {
     const Vec3 centre = (x[0] + x[1] + x[2]) / 3.0;
     const double reach = std::sqrt(std::max(
         {(x[0] - centre).squaredNorm(), (x[1] - centre).squaredNorm(), (x[2] - centre).squaredNorm()}));
-    const double d = compute_distance(centre);
+    const double d = find_distance(centre);
     if (d >= reach) return 0.0;
     if (d <= -reach) return 1.0;
     if (level == 0)
-      return compute_negative_share({compute_distance(x[0]), compute_distance(x[1]), compute_distance(x[2])});
+      return compute_negative_share({find_distance(x[0]), find_distance(x[1]), find_distance(x[2])});
     const std::array<Vec3, 3> m = {0.5 * (x[0] + x[1]), 0.5 * (x[1] + x[2]), 0.5 * (x[2] + x[0])};
     return 0.25 *
            (compute_share({x[0], m[0], m[2]}, level - 1) + compute_share({m[0], x[1], m[1]}, level - 1) +
@@ -103,15 +97,20 @@ double ContactDetector::Impl::compute_overlap(int body_face, const Motion& m, Wo
     Measure measure{at, worker.tool_tree};
     return measure.compute_share(x, level) * 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
   }
+  const auto is_surely_inside = [&](const Vec3& p) {
+    return (p - centre_t1).squaredNorm() < tool_inner_radius * tool_inner_radius;
+  };
   std::vector<Vec3>& polygon = worker.polygon;
+  polygon.assign(x.begin(), x.end());
+  if (std::all_of(x.begin(), x.end(), is_surely_inside)) return compute_area(polygon);
   worker.tool_candidates.clear();
   worker.tool_tree.find_overlaps(box, at.x_t0, at.x_t1, worker.tool_candidates);
-  polygon.assign(x.begin(), x.end());
   for (const int face : worker.tool_candidates)
     clip(polygon, worker.clip_work, compute_face_normal(at, face), at.corner(face, 0));
   if (polygon.size() < 3) return 0.0;
   Vec3 centre = Vec3::Zero();
   for (const Vec3& p : polygon) centre += p / static_cast<double>(polygon.size());
+  if (is_surely_inside(centre)) return compute_area(polygon);
   const int guess = worker.tool_candidates.empty() ? 0 : worker.tool_candidates.front();
   return is_inside(at, worker.tool_tree, centre, guess) ? compute_area(polygon) : 0.0;
 }

@@ -53,6 +53,34 @@ TEST(LiftOff, OutOverTheRimAndThroughAThinPlateLeaveNothingBehind) {
   EXPECT_EQ(plate.force(), Vec3(0, 0, 0));
 }
 
+TEST(LiftOff, SidewaysAVertexPressesUntilItIsOut) {
+  // A pin 0.5 mm deep goes out over the rim, 1 mm away, in one interval: k d for that share of it.
+  constexpr double kDepth = 5e-4;
+  constexpr double kToRim = 1e-3;
+  mesh::TriangleMesh pin;
+  pin.vertices.resize(3, 4);
+  pin.vertices << 0, 2e-4, -2e-4, -2e-4,  //
+      0, 0, 2e-4, -2e-4,                  //
+      0, 0.01, 0.01, 0.01;
+  pin.triangles.resize(3, 4);
+  pin.triangles << 0, 0, 0, 1,  //
+      2, 3, 1, 2,               //
+      1, 2, 3, 3;
+  ASSERT_NO_THROW(require_closed_surface(pin, "pin"));
+  for (const double way : {1.0001e-3, 1.05e-3, 2e-3, 7e-3, 0.1}) {
+    Scene scene(make_flat_slab(), pin, {0.05 - kToRim, 0.003, 1e-4});
+    scene.move(scene.pose.position + Vec3(0, 0, -1e-4 - kDepth));
+    scene.move(scene.pose.position + Vec3(way, 0, 0));
+    double share = 0.0;  // of the interval, times k d
+    for (const Contact& c : scene.contacts.contacts)
+      if (c.vertex[2] >= 0) share -= c.force.z() / (kK * kDepth);
+    EXPECT_GE(share, kToRim / way - 1e-9) << way;
+    EXPECT_LE(share, kToRim / way + 1.0 / 4096.0) << way;
+    scene.move(scene.pose.position);
+    EXPECT_TRUE(scene.contacts.contacts.empty());
+  }
+}
+
 TEST(LiftOff, FromASharpRidgeNoVertexStaysBehindAFace) {
   // A ridge with an edge of 30°: beside it, a point in front of one flank lies behind the other's plane.
   const auto roof = [](double x, double) { return 0.02 - 3.7 * std::abs(x); };
