@@ -29,7 +29,7 @@ BodySide::BodySide(Body body, const Params& params)
       m_body(std::move(body)),
       m_moisture(params.elastic, params.plasticity.yield, params.moisture, params.water.porosity),
       m_solid(m_body.mesh, m_body.topology, m_body.supports, make_solid_params(params), params.threads),
-      m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation),
+      m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation, params.threads),
       m_surface(params.contact_surface, m_body, m_solid.elements()),
       m_fidelity(params.fidelity, params.solid.rayleigh_stiffness / step_seconds()) {
   const Eigen::Index n = m_solid.elements().num_nodes();

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "water/implicit_system.h"
 #include "water/water.h"
 
@@ -36,16 +38,32 @@ double PoreWater::num_substeps(double step_s) const {
   return std::max(1.0, std::ceil(step_s * find_steepest() / (kLimitShare * m_stencil.monotone_step)));
 }
 
+/// body(t) for every active tet, which may write only what belongs to t.
+template <class Body>
+void PoreWater::each_active(Body body) const {
+  constexpr std::size_t kWorthwhile = 1024;  // tets, for a second thread
+  parallel_for(std::ssize(m_active), m_active.size() < kWorthwhile ? 1 : m_threads,
+               [&](std::ptrdiff_t i) { body(m_active[static_cast<std::size_t>(i)]); });
+}
+
 void PoreWater::diffuse_explicitly(double step_s) {
-  compute_flow(step_s);
-  if (m_params.flux == FluxForm::corrected) {
-    compute_gradients();
-    compute_correction(step_s);
-    limit_correction();
-    add_correction();
-  }
+  const bool is_corrected = m_params.flux == FluxForm::corrected;
+  each_active([&](int t) {
+    set_flow(t, step_s);
+    if (is_corrected) set_gradient(t);
+  });
+  if (is_corrected)
+    each_active([&](int t) {
+      set_correction(t, step_s);
+      limit_correction(t);
+    });
+  each_active([&](int t) {
+    if (is_corrected) m_change(t) += compute_let_through(t);
+    m_is_newly_wet[static_cast<std::size_t>(t)] = add(t, m_change(t));
+  });
   const std::size_t num_active = m_active.size();
-  for (std::size_t i = 0; i < num_active; ++i) add(m_active[i], m_change(m_active[i]));
+  for (std::size_t i = 0; i < num_active; ++i)
+    if (m_is_newly_wet[static_cast<std::size_t>(m_active[i])]) activate_around(m_active[i]);
 }
 
 bool PoreWater::passes(int a, int b) const {
@@ -53,31 +71,27 @@ bool PoreWater::passes(int a, int b) const {
   return b >= 0 && (m_state.saturation(a) > kTrace || m_state.saturation(b) > kTrace);
 }
 
-/// Change of S in every active tet over one substep by the two-point flux. A flow seen from its two sides
-/// differs in sign only, bit for bit; so the order of the tets does not matter and nothing is lost between
-/// them.
-void PoreWater::compute_flow(double step_s) {
-  for (const int t : m_active) {
-    double flow = 0.0;
-    for (int corner = 0; corner < 4; ++corner) {
-      const int other = m_stencil.neighbours(corner, t);
-      if (passes(t, other)) flow += m_stencil.conductance(corner, t) * (m_potential(other) - m_potential(t));
-    }
-    m_change(t) = step_s * flow / m_stencil.volume(t);
+/// Change of S over one substep by the two-point flux. A flow seen from its two sides differs in sign only,
+/// bit for bit; so the order of the tets does not matter and nothing is lost between them.
+void PoreWater::set_flow(int tet, double step_s) {
+  double flow = 0.0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const int other = m_stencil.neighbours(corner, tet);
+    if (passes(tet, other))
+      flow += m_stencil.conductance(corner, tet) * (m_potential(other) - m_potential(tet));
   }
+  m_change(tet) = step_s * flow / m_stencil.volume(tet);
 }
 
-void PoreWater::compute_gradients() {
-  for (const int t : m_active) {
-    Vec3 gradient = Vec3::Zero();
-    for (int corner = 0; corner < 4; ++corner) {
-      const int other = m_stencil.neighbours(corner, t);
-      if (other < 0) continue;
-      gradient +=
-          (m_potential(other) - m_potential(t)) * m_stencil.gradient.col(t).segment<3>(row_of(corner));
-    }
-    m_gradient.col(t) = gradient;
+void PoreWater::set_gradient(int tet) {
+  Vec3 gradient = Vec3::Zero();
+  for (int corner = 0; corner < 4; ++corner) {
+    const int other = m_stencil.neighbours(corner, tet);
+    if (other < 0) continue;
+    gradient +=
+        (m_potential(other) - m_potential(tet)) * m_stencil.gradient.col(tet).segment<3>(row_of(corner));
   }
+  m_gradient.col(tet) = gradient;
 }
 
 Vec3 PoreWater::mean_gradient(int tet, int other) const {
@@ -85,15 +99,14 @@ Vec3 PoreWater::mean_gradient(int tet, int other) const {
 }
 
 /// The flow that the two-point flux leaves out, from the mean of the two tets' gradients.
-void PoreWater::compute_correction(double step_s) {
-  for (const int t : m_active)
-    for (int corner = 0; corner < 4; ++corner) {
-      const int other = m_stencil.neighbours(corner, t);
-      m_correction(corner, t) =
-          passes(t, other)
-              ? step_s * m_stencil.tangent.col(t).segment<3>(row_of(corner)).dot(mean_gradient(t, other))
-              : 0.0;
-    }
+void PoreWater::set_correction(int tet, double step_s) {
+  for (int corner = 0; corner < 4; ++corner) {
+    const int other = m_stencil.neighbours(corner, tet);
+    m_correction(corner, tet) =
+        passes(tet, other)
+            ? step_s * m_stencil.tangent.col(tet).segment<3>(row_of(corner)).dot(mean_gradient(tet, other))
+            : 0.0;
+  }
 }
 
 /// Smallest and largest S among a tet and its neighbours, before and after the two-point step.
@@ -113,22 +126,18 @@ std::pair<double, double> PoreWater::find_range(int tet) const {
 
 /// The share of every correction that keeps each S within that range, whichever of its flows are let through
 /// [Zalesak1979].
-void PoreWater::limit_correction() {
+void PoreWater::limit_correction(int tet) {
   // Rounding of the sums below must not reach over a bound.
   constexpr double kRoundingRoom = 1.0 - 1e-14;
-  for (const int t : m_active) {
-    double raise = 0.0, lower = 0.0;
-    for (int corner = 0; corner < 4; ++corner) {
-      const double flow = m_correction(corner, t);
-      (flow > 0.0 ? raise : lower) += std::abs(flow) / m_stencil.volume(t);
-    }
-    const auto share = [](double room, double wish) {
-      return wish > room ? kRoundingRoom * room / wish : 1.0;
-    };
-    const double low_order = m_state.saturation(t) + m_change(t);
-    const auto [lowest, highest] = find_range(t);
-    m_share.col(t) << share(highest - low_order, raise), share(low_order - lowest, lower);
+  double raise = 0.0, lower = 0.0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const double flow = m_correction(corner, tet);
+    (flow > 0.0 ? raise : lower) += std::abs(flow) / m_stencil.volume(tet);
   }
+  const auto share = [](double room, double wish) { return wish > room ? kRoundingRoom * room / wish : 1.0; };
+  const double low_order = m_state.saturation(tet) + m_change(tet);
+  const auto [lowest, highest] = find_range(tet);
+  m_share.col(tet) << share(highest - low_order, raise), share(low_order - lowest, lower);
 }
 
 /// Change of S by the corrections that are let through.
@@ -143,10 +152,6 @@ double PoreWater::compute_let_through(int tet) const {
     change += let * flow;
   }
   return change / m_stencil.volume(tet);
-}
-
-void PoreWater::add_correction() {
-  for (const int t : m_active) m_change(t) += compute_let_through(t);
 }
 
 }  // namespace argil::water

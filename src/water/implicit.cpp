@@ -89,8 +89,8 @@ void PoreWater::set_implicit_flow(double step_s) {
 /// start's.
 void PoreWater::set_implicit_correction(double step_s, const Field& S) {
   m_potential = S;
-  compute_gradients();
-  compute_correction(step_s);
+  for (const int t : m_active) set_gradient(t);
+  for (const int t : m_active) set_correction(t, step_s);
   if (m_params.diffusivity_exponent == 0.0) return;
   for (const int t : m_active)
     for (int corner = 0; corner < 4; ++corner)
@@ -178,9 +178,9 @@ int PoreWater::diffuse_implicitly(double step_s) {
   const int solves = corrected ? 1 + solve_corrected(step_s) : 1;
   set_implicit_flow(step_s);
   if (corrected) {
-    limit_correction();
+    for (const int t : m_active) limit_correction(t);
     relax_limits();
-    add_correction();
+    for (const int t : m_active) m_change(t) += compute_let_through(t);
   }
   for (const int t : m_active) add(t, m_change(t));
   return solves;

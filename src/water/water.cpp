@@ -19,13 +19,15 @@ PoreWater::PoreWater(PoreWater&&) noexcept = default;
 PoreWater& PoreWater::operator=(PoreWater&&) noexcept = default;
 
 PoreWater::PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, const WaterParams& params,
-                     const Field& initial_saturation)
+                     const Field& initial_saturation, int threads)
     : m_params(params),
+      m_threads(threads),
       m_boundary_tet(topology.boundary_tet),
       m_stencil(make_stencil(mesh, topology, params.diffusivity, params.flux)),
       m_capacity(params.density * params.porosity * m_stencil.volume),
       m_is_active(static_cast<std::size_t>(mesh.num_tets()), 0),
-      m_change(Field::Zero(mesh.num_tets())) {
+      m_change(Field::Zero(mesh.num_tets())),
+      m_is_newly_wet(m_is_active.size(), 0) {
   const Eigen::Index num_tets = mesh.num_tets();
   ARGIL_ASSERT(initial_saturation.size() == num_tets);
   ARGIL_ASSERT((initial_saturation.array() >= 0.0).all() && (initial_saturation.array() <= 1.0).all());
@@ -118,8 +120,9 @@ void PoreWater::set_potential(int tet, double saturation) {
   m_potential(tet) = beta == 0.0 ? saturation : std::expm1(beta * saturation) / beta;
 }
 
-/// S += change, with the rounding error kept for the next time [Knuth's two-sum].
-void PoreWater::add(int tet, double change) {
+/// S += change, with the rounding error kept for the next time [Knuth's two-sum]. True when the tet has now
+/// more than a trace and had not.
+bool PoreWater::add(int tet, double change) {
   const double before = m_state.saturation(tet);
   const double wanted = change + m_state.carry(tet);
   const double after = before + wanted;
@@ -130,7 +133,7 @@ void PoreWater::add(int tet, double change) {
   m_state.carry(tet) += after - bounded;
   m_state.saturation(tet) = bounded;
   set_potential(tet, bounded);
-  if (before <= kTrace && bounded > kTrace) activate_around(tet);
+  return before <= kTrace && bounded > kTrace;
 }
 
 /// Adds `mass` (negative: takes it) as far as the tet can hold or has it, and books what really moved.
@@ -140,7 +143,7 @@ void PoreWater::give(int tet, double mass) {
   const double wanted = held + mass / m_capacity(tet);
   activate(tet);
   if (wanted > 0.0 && wanted < 1.0) {
-    add(tet, mass / m_capacity(tet));
+    if (add(tet, mass / m_capacity(tet))) activate_around(tet);
     (mass > 0.0 ? m_state.added : m_state.removed).add(std::abs(mass));
     return;
   }

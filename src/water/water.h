@@ -37,14 +37,14 @@ struct WaterState {
 
 struct ImplicitSystem;
 
-/// Water in the pores of every tet. Saturation S in [0, 1]; mass of a tet = ρ_w n V_rest S. Serial: the bits
-/// depend on the calls alone.
+/// Water in the pores of every tet. Saturation S in [0, 1]; mass of a tet = ρ_w n V_rest S. Bits depend on
+/// the calls alone, not on `threads`.
 class PoreWater {
  public:
   /// `initial_saturation`: one value per tet, in [0, 1]. Ranges are checked with the scenario and asserted
   /// here.
   PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, const WaterParams& params,
-            const Field& initial_saturation);
+            const Field& initial_saturation, int threads = 1);
   ~PoreWater();
   PoreWater(PoreWater&&) noexcept;
   PoreWater& operator=(PoreWater&&) noexcept;
@@ -92,21 +92,22 @@ class PoreWater {
   void sort_active();
   void leave_dry();
   void give(int tet, double mass);
-  void add(int tet, double change);
+  bool add(int tet, double change);
   void set_potential(int tet, double saturation);
 
   // diffusion.cpp
   void diffuse_explicitly(double step_s);
   bool passes(int a, int b) const;
   double find_steepest() const;
-  void compute_flow(double step_s);
-  void compute_gradients();
+  void set_flow(int tet, double step_s);
+  void set_gradient(int tet);
   Vec3 mean_gradient(int tet, int other) const;
-  void compute_correction(double step_s);
+  void set_correction(int tet, double step_s);
   std::pair<double, double> find_range(int tet) const;
-  void limit_correction();
+  void limit_correction(int tet);
   double compute_let_through(int tet) const;
-  void add_correction();
+  template <class Body>
+  void each_active(Body body) const;
 
   // implicit.cpp
   int diffuse_implicitly(double step_s);
@@ -119,6 +120,7 @@ class PoreWater {
   void set_implicit_flow(double step_s);
 
   WaterParams m_params;
+  int m_threads;
   std::vector<int> m_boundary_tet;
   Stencil m_stencil;
   Field m_capacity;  // [kg]
@@ -130,6 +132,7 @@ class PoreWater {
   std::vector<int> m_touched, m_once;  // scratch of exchange
   Field m_potential;                   // u(S) of D(S): expm1(βS)/β, S itself where β = 0
   Field m_change;                      // change of S in a substep
+  std::vector<char> m_is_newly_wet;    // in a substep
   Points m_gradient;              // ∇u of each active tet [1/m]; this and the next two: corrected flux only
   Eigen::Matrix4Xd m_correction;  // unlimited change of S times volume by the correction across each face
   Eigen::Matrix2Xd m_share;  // of the correction that raises (0) or lowers (1) S, how much is let through

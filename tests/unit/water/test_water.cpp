@@ -75,6 +75,24 @@ TEST(PoreWater, BooksEveryGramOverAHundredThousandSteps) {
   }
 }
 
+TEST(PoreWater, SameBitsOnAnyNumberOfThreads) {
+  const Body body(test::make_shaken_block(7));
+  for (const FluxForm flux : kBoth) {
+    WaterParams params = make_params(flux);
+    params.diffusivity_exponent = 2.0;
+    const Field start = (body.make_random(0.0, 1.0).array() < 0.3).select(body.make_random(0.1, 0.9), 0.0);
+    PoreWater alone(body.mesh, body.topology, params, start);
+    play_tools(body, alone, 200, 17);
+    ASSERT_GT(alone.num_active(), 1500);  // enough for a second one
+    for (const int threads : {2, 3, 7}) {
+      PoreWater shared(body.mesh, body.topology, params, start, threads);
+      play_tools(body, shared, 200, 17);
+      EXPECT_TRUE((shared.saturation().array() == alone.saturation().array()).all()) << threads;
+      EXPECT_EQ(shared.ledger().added, alone.ledger().added) << threads;
+    }
+  }
+}
+
 TEST(PoreWater, KeepsSaturationBetweenZeroAndOneExactly) {
   const Body body(test::make_shaken_block(3));
   for (const FluxForm flux : kBoth) {
