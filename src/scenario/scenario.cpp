@@ -157,13 +157,14 @@ bool is_anisotropic(const material::Moisture& m) {
 /// A step of a region needs elements that go in lanes, a solve of part of the rows, and loads that stay.
 void check_extent(Scenario& s) {
   solid::SolidParams& p = s.params.solid;
-  if (s.mode != Mode::dynamic || p.extent == solid::Extent::whole) return;
+  if (p.extent == solid::Extent::whole) return;
   const bool is_asked_for = p.extent == solid::Extent::local;
   const auto require = [&](bool is_met, const std::string& what, const std::string& remedy) {
     if (!is_met) p.extent = solid::Extent::whole;
     if (!is_met && is_asked_for)
       throw InputError(s.file, "/dynamics/extent", "local " + what, remedy + ", or use whole");
   };
+  require(s.mode == Mode::dynamic, "is for steps in time", "set /dynamics/mode to dynamic");
   // Whether a contact sticks or slides may hang on less than what a region leaves out.
   if (!is_asked_for && s.params.contact.friction > 0.0) p.extent = solid::Extent::whole;
   using linear::SolverKind;

@@ -71,6 +71,15 @@ TEST_F(ScenarioFile, LocalExtentIsRefusedWhereAStepNeedsTheWholeBody) {
   }
 }
 
+TEST_F(ScenarioFile, AnEquilibriumIsOfTheWholeBodyWhateverTheFidelity) {
+  for (const std::string fidelity : {"full", "auto", "check"})
+    EXPECT_EQ(load({"/dynamics/mode=static", "/fidelity/mode=" + fidelity}).params.solid.extent,
+              solid::Extent::whole)
+        << fidelity;
+  ARGIL_EXPECT_THROW_WITH(load({"/dynamics/mode=static", "/dynamics/extent=local"}), InputError,
+                          "/dynamics/extent: local");
+}
+
 TEST_F(ScenarioFile, ShownPaperPresetIsAFixedPointToo) {
   const std::string shown = print_resolved(load(kPaper));
   EXPECT_EQ(print_resolved(load_scenario(folder.write("shown.json", shown), {})), shown);
