@@ -267,9 +267,12 @@ void BodySide::find_reach(const OrderedItems& nodes) {
   m_fidelity.find_reach(m_state.solid.x, m_solid.elements().rest, nodes);
 }
 
-/// fidelity: does the body still sleep under this load?
+/// fidelity: does the body still sleep under this load? A surface that yields between frames asks for a step
+/// after each frame in which it was touched.
 bool BodySide::sleeps_on(const ContactLoad& load) {
   m_fidelity.begin_step(load.hand.felt.force);
+  if (load.is_touched && m_params.rates.between_frames == BetweenFrames::compliant)
+    m_state.is_at_rest = false;
   if (!m_state.is_at_rest) {
     find_reach(m_solid.moving_nodes());
     return false;

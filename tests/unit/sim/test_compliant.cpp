@@ -46,6 +46,22 @@ TEST(CompliantFriction, OfASlidingPlateIsCoulombsForHandAndBody) {
   EXPECT_NEAR(aside * (simulation.body_state().solid.x(0, 3) - x), kFriction * normal, 1e-3 * normal);
 }
 
+/// The surface keeps what pressed it until the body's step, so that this may not be slept through.
+TEST(CompliantFidelity, ATouchTooLightToBeFeltWakesTheBodyAllTheSame) {
+  Params params = make_compliant_params();
+  params.fidelity.mode = FidelityMode::automatic;
+  Simulation simulation = test::make_one_node_simulation(params);
+  const device::DeviceSample sample = test::press_apex(1e-8);
+  for (int step = 1; step <= 4; ++step) {
+    for (int k = 0; k < kPeriod; ++k) ASSERT_TRUE(simulation.tick(sample).is_ok());
+    EXPECT_GT(simulation.physics_record().active_nodes, 0) << step;
+    EXPECT_FALSE(simulation.take_snapshot().empty()) << step;
+  }
+  const double force = simulation.hand_state().hand_force.norm();
+  EXPECT_GT(force, 0.0);
+  EXPECT_LT(force, 0.1 * params.fidelity.force_floor);
+}
+
 Simulation make_block_simulation(Params params, SurfaceKind kind, double scale) {
   params.contact_surface = kind;
   params.contact.penalty = contact::PenaltyKind::continuous;
