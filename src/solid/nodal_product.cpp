@@ -132,6 +132,8 @@ NodalProduct::NodalProduct(const NodalVolume& nodal, const std::vector<int>& nod
     for (int k = 0; k < 3; ++k) m_is_free.push_back(constraints.support(k, i) < 0 ? 1.0 : 0.0);
     m_is_free.push_back(0.0);
   }
+  m_busy_nodes.reserve(static_cast<std::size_t>(OrderedRuns::count_all_runs(num_nodes())));
+  m_busy_rows.reserve(static_cast<std::size_t>(OrderedRuns::count_all_runs(num_rows())));
   const auto make_room = [&](auto& factors) {
     factors.by_node.resize(4 * m_row.size());
     factors.by_row.resize(4 * m_node.size());
@@ -177,8 +179,10 @@ bool NodalProduct::find_busy_runs() {
     const auto last = m_node.begin() + m_row_begin[static_cast<std::size_t>(row) + 1];
     return std::any_of(first, last, is_node_busy);
   };
-  if (!collect(m_busy_nodes, num_nodes(), is_node_busy)) return false;
-  collect(m_busy_rows, num_rows(), is_row_busy);
+  // Rows by themselves: where nodes are held they are not in the runs of their nodes.
+  const bool has_new_nodes = collect(m_busy_nodes, num_nodes(), is_node_busy);
+  const bool has_new_rows = collect(m_busy_rows, num_rows(), is_row_busy);
+  if (!has_new_nodes && !has_new_rows) return false;
   m_node_runs.visit(&m_busy_nodes);
   m_row_runs.visit(&m_busy_rows);
   return true;
@@ -186,7 +190,10 @@ bool NodalProduct::find_busy_runs() {
 
 template <class Real>
 void NodalProduct::update_factors(double scale, Factors<Real>& factors) {
-  if (find_busy_runs()) std::fill(factors.theta.begin(), factors.theta.end(), Real{});
+  if (find_busy_runs()) {  // those that are left out keep nothing that rows or their blocks would take
+    std::fill(factors.theta.begin(), factors.theta.end(), Real{});
+    std::fill(factors.by_node.begin(), factors.by_node.end(), Real{});
+  }
   m_node_runs.each(num_nodes(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (auto a = static_cast<std::size_t>(begin); a < static_cast<std::size_t>(end); ++a) {
       const double stiffness = m_nodal.stiffness()(static_cast<Eigen::Index>(a));
