@@ -279,7 +279,7 @@ bool BodySide::sleeps_on(const ContactLoad& load) {
   }
   double squares = m_held_back_squares;
   for (const int n : load.force.nodes) {
-    const Vec3 force = load.force.at.col(n);
+    const Vec3 force = m_solid.find_free_part(load.force.at.col(n), n);
     squares += force.dot(2.0 * m_held_back.col(n) + force);
   }
   m_state.is_at_rest = m_fidelity.sleeps_on(std::sqrt(std::max(0.0, squares)), m_solid.held_back());
@@ -317,9 +317,15 @@ bool BodySide::falls_asleep(const ContactLoad& load, const solid::StepLoads& loa
   const OrderedItems& nodes = m_solid.moving_nodes();
   m_held_back.setZero();
   m_held_back_squares = nodes.sum(m_held_back.cols(), [&](std::ptrdiff_t n) {
-    if (m_solid.is_awake(n)) m_held_back.col(n) = m_solid.find_imbalance(loads, n) - load.force.at.col(n);
+    if (!m_solid.is_awake(n)) return 0.0;
+    m_held_back.col(n) = m_solid.find_imbalance(loads, n) - m_solid.find_free_part(load.force.at.col(n), n);
     return m_held_back.col(n).squaredNorm();
   });
+  for (const int n : load.force.nodes) {  // in balance where the body slept before
+    if (m_solid.is_awake(n)) continue;
+    m_held_back.col(n) = -m_solid.find_free_part(load.force.at.col(n), n);
+    m_held_back_squares += m_held_back.col(n).squaredNorm();
+  }
   find_reach(nodes);
   fall_asleep();
   return true;

@@ -81,6 +81,7 @@ class Solid {
                         Tick tick);
   /// Residual and matrix at the present iterate. True when Newton's residual is small enough.
   bool assemble(const StepLoads& loads);
+  Vec3 find_free_part(const Vec3& force, Eigen::Index node) const;  ///< without what a support takes
   /// After the first assembly of a step: the force [N] that would act on a node if the body were stopped
   /// where it is; and the norm over all awake nodes of these and the forces that stop it within the step.
   Vec3 find_imbalance(const StepLoads& loads, Eigen::Index node) const;

@@ -242,10 +242,12 @@ bool Solid::assemble(const StepLoads& loads) {
   return false;
 }
 
-/// Without a force where the node is held.
-Vec3 Solid::find_imbalance(const StepLoads& loads, Eigen::Index node) const {
-  const Vec3 force = applied_force(loads, node) - m_internal_force.col(node);
+Vec3 Solid::find_free_part(const Vec3& force, Eigen::Index node) const {
   return (m_constraints.support.col(node).array() >= 0).select(Vec3::Zero(), force);
+}
+
+Vec3 Solid::find_imbalance(const StepLoads& loads, Eigen::Index node) const {
+  return find_free_part(applied_force(loads, node) - m_internal_force.col(node), node);
 }
 
 double Solid::compute_imbalance(const StepLoads& loads) const {

@@ -232,6 +232,36 @@ TEST(FidelityAuto, DoesNotChatterAtTheEdgeOfSleep) {
   }
 }
 
+/// A tool that rests low at the block's side presses nodes that are held, too: what these carry does not wake
+/// the body, whichever part of it a step solves for.
+TEST(FidelityAuto, SleepsOnForcesOfNodesThatAreHeld) {
+  const auto hand = [](Tick tick) {
+    device::DeviceSample sample;
+    const double way = 1.3e-3 * std::min(static_cast<double>(tick) / 80.0, 1.0) - 3e-4;
+    sample.position = {way - kToolRadius, 0.0148, 0.002};
+    sample.mode = device::ToolMode::push;
+    return sample;
+  };
+  for (const solid::Extent extent : {solid::Extent::whole, solid::Extent::local}) {
+    Params params = make_params(FidelityMode::automatic);
+    params.plasticity.enabled = false;
+    params.solid.extent = extent;
+    Simulation simulation(make_body(), contact::make_sphere_tool(kToolRadius, 2), params, hand(0));
+    int asleep = 0, switches = 0;
+    Rung last = Rung::asleep;
+    for (Tick k = 1; k <= 600; ++k) {
+      ASSERT_TRUE(simulation.tick(hand(k)).is_ok()) << k;
+      const Rung rung = simulation.physics_record().fidelity.rung;
+      switches += (rung == Rung::asleep) != (last == Rung::asleep);
+      asleep += rung == Rung::asleep;
+      last = rung;
+    }
+    EXPECT_GT(simulation.hand_state().hand_force.norm(), 0.1);
+    EXPECT_GT(asleep, 200) << static_cast<int>(extent);
+    EXPECT_LE(switches, 4) << static_cast<int>(extent);
+  }
+}
+
 /// A post of 100 mm that resists fast strain, bent by a soft tool at its side to and fro.
 struct Sway {
   static constexpr Tick kTicks = 320;
