@@ -21,22 +21,23 @@ double compute_parallel_fade(const std::array<Vec3, 4>& p) {
   return std::clamp(sine2 / kParallelSine2 - 1.0, 0.0, 1.0);
 }
 
-/// When does a vertex that is inside at `from` and outside at t₁, by `end_distance`, come out? A time just
-/// after. Its distance from the surface, negative inside, changes its sign there: regula falsi, by turns a
-/// little before and after where a chord puts that, so that both ends close in; halves where there is no
-/// chord.
-double find_exit(const VertexFaceMotion& m, int v, int face, double from, double end_distance,
+double find_distance(const VertexFaceMotion& m, int v, int face, double t, Worker& worker) {
+  const SurfaceAt faces{m.faces.features, m.faces.x_t0, m.faces.x_t1, t};
+  return find_signed_distance(faces, m.tree(worker), m.vertex_at(v, t), face);
+}
+
+/// When does a vertex that is inside where `span` begins and outside where it ends, by `end_distance`, come
+/// out? A time just after. Its distance from the surface, negative inside, changes its sign there: regula
+/// falsi, by turns a little before and after where a chord puts that, so that both ends close in; halves
+/// where there is no chord.
+double find_exit(const VertexFaceMotion& m, int v, int face, const Interval& span, double end_distance,
                  Worker& worker) {
   constexpr double kExact = 1.0 / 4096.0;  // of the interval
   constexpr int kChords = 6;               // after which halves are the safer way
   struct {
     double time, distance;
-  } inside{from, 0.0}, outside{1.0, end_distance};
-  const auto find_distance = [&](double t) {
-    const SurfaceAt faces{m.faces.features, m.faces.x_t0, m.faces.x_t1, t};
-    return find_signed_distance(faces, m.tree(worker), m.vertex_at(v, t), face);
-  };
-  inside.distance = std::min(0.0, find_distance(from));
+  } inside{span.begin, 0.0}, outside{span.end, end_distance};
+  inside.distance = std::min(0.0, find_distance(m, v, face, span.begin, worker));
   double aside = 0.25 * kExact;
   for (int i = 0; outside.time - inside.time > kExact; ++i) {
     const double width = outside.time - inside.time;
@@ -45,7 +46,7 @@ double find_exit(const VertexFaceMotion& m, int v, int face, double from, double
     const double t = has_chord ? std::clamp(inside.time + chord * width + aside, inside.time + 0.25 * kExact,
                                             outside.time - 0.25 * kExact)
                                : inside.time + 0.5 * width;
-    const double distance = find_distance(t);
+    const double distance = find_distance(m, v, face, t, worker);
     if (distance < 0.0)
       inside = {t, distance};
     else
@@ -53,6 +54,22 @@ double find_exit(const VertexFaceMotion& m, int v, int face, double from, double
     aside = distance < 0.0 ? 0.25 * kExact : -0.25 * kExact;
   }
   return outside.time;
+}
+
+/// A vertex that is outside at t₁, `end_distance` from the surface, has left sideways, unless its last
+/// interval ended by a crossing of the plane within the face: then it pressed until it came out, not until
+/// the plane.
+Penalty end_sideways(const VertexFaceMotion& m, const VertexTask& task, const PairPath& path,
+                     const Penalty& penalty, double end_distance, Worker& worker) {
+  const Interval& last = penalty.intervals[static_cast<std::size_t>(penalty.num_intervals) - 1];
+  if (!penalty.inside_at_end) {
+    const std::array<Vec3, 4> x = interpolate(path, last.end);
+    if (compute_barycentric(x[0], x[1], x[2], x[3]).minCoeff() >= -kInsideMargin) return penalty;
+    end_distance = find_distance(m, task.vertex, task.face, last.end, worker);
+    if (!(end_distance > 0.0)) return penalty;
+  }
+  return compute_vertex_face_penalty(path, task.was_inside,
+                                     find_exit(m, task.vertex, task.face, last, end_distance, worker));
 }
 
 /// Places on a surface about a vertex that may lie behind it.
@@ -228,11 +245,8 @@ void ContactDetector::Impl::settle(VertexTask& task, Worker& worker) const {
   const bool inside = is_behind(m.faces, nearest, p);
   task.inside = inside;
   m.side.face_of_vertex[static_cast<std::size_t>(v)] = inside ? walked.face : -1;
-  if (!inside && penalty.inside_at_end) {
-    const double from = penalty.intervals[static_cast<std::size_t>(penalty.num_intervals) - 1].begin;
-    const double distance = std::sqrt(nearest.squared_distance);
-    penalty = compute_vertex_face_penalty(path, was_inside, find_exit(m, v, face, from, distance, worker));
-  }
+  if (!inside && penalty.num_intervals > 0)
+    penalty = end_sideways(m, task, path, penalty, std::sqrt(nearest.squared_distance), worker);
   if (is_discrete && inside) {
     face = nearest.face;
     path = m.path(v, face);
