@@ -62,6 +62,7 @@ ContactDetector::Impl::Impl(const Triangles& surface, int num_body_vertices,
   for (Eigen::Index e = 0; e < tool.edges.cols(); ++e)
     tool_edge_length += (tool_rest.col(tool.edges(0, e)) - tool_rest.col(tool.edges(1, e))).norm();
   const SurfaceAt at_rest{tool, tool_rest, tool_rest};
+  tool_is_convex = tool.parts.size() == 1;
   for (int e = 0; e < static_cast<int>(tool.edges.cols()); ++e)
     for (int k = 0; k < 2; ++k)
       // The far corner of one face behind the plane of the other, but for rounding.
@@ -140,6 +141,7 @@ void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, cons
   const double moved = body_motion ? *body_motion : (x_t1 - x_t0).cwiseAbs().maxCoeff();
   const Mat3 turn = pose_t1.orientation.toRotationMatrix() - pose_t0.orientation.toRotationMatrix();
   const double tool_moved = (pose_t1.position - pose_t0.position).norm() + turn.norm() * impl.tool_reach;
+  ARGIL_ASSERT(std::isfinite(moved + tool_moved), moved, tool_moved);
   for (Worker& worker : impl.workers) {
     worker.body_tree.advance(moved);
     worker.tool_tree.advance(tool_moved);
@@ -192,8 +194,12 @@ bool ContactDetector::overlaps(const Points& x, const Pose& pose) const {
             pierces(tool.corner(g, k), tool.corner(g, (k + 1) % 3), body, f))
           return true;
   }
-  // Neither surface crosses the other: one is inside the other as a whole, or they are apart.
-  return is_inside(body, body_tree, tool.corner(0, 0), 0) || is_inside(tool, tool_tree, body.corner(0, 0), 0);
+  // Neither surface crosses the other: a part of one is inside the other as a whole, or they are apart.
+  const auto is_any_inside = [](const SurfaceAt& surface, BoundingTree& tree, const SurfaceAt& other) {
+    return std::any_of(other.features.parts.begin(), other.features.parts.end(),
+                       [&](int face) { return is_inside(surface, tree, other.corner(face, 0), 0); });
+  };
+  return is_any_inside(body, body_tree, tool) || is_any_inside(tool, tool_tree, body);
 }
 
 ContactState ContactDetector::state() const {

@@ -4,6 +4,32 @@
 #include <array>
 
 namespace argil::contact {
+namespace {
+
+std::vector<int> find_parts(const Triangles& triangle_edges, const Eigen::Matrix2Xi& edge_triangles) {
+  std::vector<int> first;
+  std::vector<int> next;
+  std::vector<bool> is_seen(static_cast<std::size_t>(triangle_edges.cols()), false);
+  const auto see = [&](int f) {
+    if (is_seen[static_cast<std::size_t>(f)]) return false;
+    is_seen[static_cast<std::size_t>(f)] = true;
+    next.push_back(f);
+    return true;
+  };
+  for (int f = 0; f < static_cast<int>(triangle_edges.cols()); ++f) {
+    if (!see(f)) continue;
+    first.push_back(f);
+    while (!next.empty()) {
+      const int present = next.back();
+      next.pop_back();
+      for (int k = 0; k < 3; ++k)
+        for (int side = 0; side < 2; ++side) see(edge_triangles(side, triangle_edges(k, present)));
+    }
+  }
+  return first;
+}
+
+}  // namespace
 
 SurfaceFeatures::SurfaceFeatures(const Triangles& t, int num_vertices)
     : triangles(t), vertex_owner(static_cast<std::size_t>(num_vertices), -1) {
@@ -63,6 +89,7 @@ SurfaceFeatures::SurfaceFeatures(const Triangles& t, int num_vertices)
       if (other != f) ring.push_back(other);
     ring_begin.push_back(static_cast<int>(ring.size()));
   }
+  parts = find_parts(triangle_edges, edge_triangles);
 }
 
 }  // namespace argil::contact

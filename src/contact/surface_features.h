@@ -20,6 +20,7 @@ struct SurfaceFeatures {
   std::vector<int> edge_owner;      ///< triangle that owns each edge
   std::vector<int> fan_begin, fan;  ///< triangles around each vertex, increasing
   std::vector<int> ring_begin, ring;  ///< triangles that share a vertex with each triangle, itself left out
+  std::vector<int> parts;             ///< the first triangle of each part that no edge joins to another
 };
 
 }  // namespace argil::contact

@@ -55,6 +55,17 @@ inline mesh::TriangleMesh make_flat_slab(int n = 20, double size = 0.1, double t
   return make_slab(n, size, thickness, [](double, double) { return 0.0; });
 }
 
+/// Both in one, the second moved by `by`.
+inline mesh::TriangleMesh make_pair(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b,
+                                    const Vec3& by) {
+  mesh::TriangleMesh both;
+  both.vertices.resize(3, a.vertices.cols() + b.vertices.cols());
+  both.vertices << a.vertices, b.vertices.colwise() + by;
+  both.triangles.resize(3, a.triangles.cols() + b.triangles.cols());
+  both.triangles << a.triangles, b.triangles.array() + a.num_vertices();
+  return both;
+}
+
 /// A detector with a body at rest and a tool that is led from place to place.
 struct Scene {
   mesh::TriangleMesh body;

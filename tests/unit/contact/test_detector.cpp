@@ -164,6 +164,25 @@ TEST(Overlap, IsSeenForVerticesEdgesAndWholeInclusion) {
   EXPECT_TRUE(around.detector.overlaps(around.body.vertices, Pose{}));  // body wholly inside the tool
 }
 
+TEST(Overlap, IsSeenForEachPartOfASurface) {
+  constexpr double kApart = 0.05;
+  const mesh::TriangleMesh ball = make_sphere_tool(0.003, 1);
+  const mesh::TriangleMesh slab = make_flat_slab(4, 0.02, 0.02);
+  const Vec3 inside(0.001, 0.002, -0.01);  // of the slab
+  for (const double second : {-kApart, kApart}) {
+    const Vec3 by(second, 0, 0);
+    const Scene two_tools(slab, test::make_pair(ball, ball, by), Vec3::Zero());
+    EXPECT_TRUE(two_tools.detector.overlaps(slab.vertices, Pose{inside, Quat::Identity()}));
+    EXPECT_TRUE(two_tools.detector.overlaps(slab.vertices, Pose{inside - by, Quat::Identity()}));
+    EXPECT_FALSE(two_tools.detector.overlaps(slab.vertices, Pose{inside - 2.0 * by, Quat::Identity()}));
+    const Scene two_slabs(test::make_pair(slab, slab, by), ball, Vec3::Zero());
+    EXPECT_TRUE(two_slabs.detector.overlaps(two_slabs.body.vertices, Pose{inside, Quat::Identity()}));
+    EXPECT_TRUE(two_slabs.detector.overlaps(two_slabs.body.vertices, Pose{inside + by, Quat::Identity()}));
+    EXPECT_FALSE(
+        two_slabs.detector.overlaps(two_slabs.body.vertices, Pose{inside + 2.0 * by, Quat::Identity()}));
+  }
+}
+
 TEST(Determinism, SameBitsAgainAndFromACheckpoint) {
   const auto place = [](int i) { return Vec3(-0.02 + 2e-4 * i, 0.001, kR + 1e-4 - 2e-5 * std::min(i, 60)); };
   Scene one(make_flat_slab(), make_sphere_tool(kR, 2), place(0));

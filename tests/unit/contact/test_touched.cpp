@@ -33,6 +33,21 @@ TEST(TouchedArea, TendsToTheCircleOfASphereInAPlane) {
   EXPECT_LT(last, 0.01);
 }
 
+TEST(TouchedArea, OfTwoBallsInOneTriangleIsTheSumOfTheirs) {
+  constexpr double kApart = 0.02;
+  const Vec3 place(-0.003, -0.012, kR + 1e-4);  // of the first; both over one triangle
+  const auto measure = [&](const mesh::TriangleMesh& tool) {
+    Scene scene(make_flat_slab(1, 0.05), tool, place);
+    scene.move(place - Vec3(0, 0, 0.0021));
+    double area = 0.0;
+    for (const double a : scene.contacts.touched_area) area += a;
+    return area;
+  };
+  const mesh::TriangleMesh ball = make_sphere_tool(kR, 3);
+  const double of_two = measure(test::make_pair(ball, ball, {kApart, 0, 0}));
+  EXPECT_NEAR(of_two, 2.0 * measure(ball), 0.05 * of_two);  // by points, as for any shape that is not convex
+}
+
 TEST(TouchedArea, IsNeverMoreThanTheTrianglesAndOnlyWhenAskedFor) {
   Scene scene(make_flat_slab(), make_sphere_tool(kR, 2), {0.0013, 0.0007, kR + 1e-4});
   scene.contacts.with_touched = false;
