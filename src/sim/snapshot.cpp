@@ -72,7 +72,7 @@ void BodySide::exchange_state(Archive& archive) {
     m_fidelity.exchange_state(archive);
   }
   if (!archive.is_restoring()) return;
-  const StepStatus status = m_solid.update_kinematics(m_state.solid.x, m_hand.ticks);
+  const StepStatus status = m_solid.restore_kinematics(m_state.solid.x, m_hand.ticks);
   ARGIL_ASSERT(status.is_ok());
 }
 

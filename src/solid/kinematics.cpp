@@ -129,7 +129,6 @@ int Kinematics::find_worst_point() const {
 }
 
 void Kinematics::exchange_frames(Archive& archive) {
-  if (m_frame.size() == 0) return;
   archive.array("solid/frame", m_frame);
   archive.array("solid/turned_gradient", m_turned_gradient);
 }

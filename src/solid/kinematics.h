@@ -37,6 +37,7 @@ class Kinematics {
   double volume_ratio(int point) const { return m_volume_ratio(point); }
   int find_worst_point() const;  ///< whose det F is not finite, or the least
 
+  bool has_frames() const { return m_frame.size() > 0; }
   /// What frames remember of earlier rotations.
   void exchange_frames(Archive& archive);
 

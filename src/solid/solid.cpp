@@ -235,11 +235,10 @@ StepStatus Solid::update_kinematics(const Points& x, Tick tick) {
   return update_motion(x, tick, false);
 }
 
-StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frame) {
+StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frames) {
   const std::vector<int>* batches = m_region && !m_has_old_nodes ? &m_region->batches() : nullptr;
   m_kinematics.update(m_elements, x,
-                      {batches, keeps_frame && m_kept_rotation.size() > 0, frame_tolerance(),
-                       m_is_tet_changed, m_is_batch_new});
+                      {batches, keeps_frames, frame_tolerance(), m_is_tet_changed, m_is_batch_new});
   const double least = m_kinematics.min_volume_ratio();
   // Strain of the linear model has no inside to turn out; in statics its solution is what was asked for.
   const bool may_invert = m_is_static && m_params.model == StrainModel::linear;

@@ -96,8 +96,8 @@ class Solid {
   void settle_region(SolidState& state, const std::vector<char>& is_flowing);
   void wake_all();   ///< the whole body moves again
   void sleep_all();  ///< none of it until something acts; it has no speed
-  /// Does ahead of the first step what is done once: memory, and the forces of tets that do not move. `force`:
-  /// 3×n [N] that act already, of which no node needs to be told.
+  /// Does ahead of the first step what is done once: memory, and the forces of tets that do not move.
+  /// `force`: 3×n [N] that act already, of which no node needs to be told.
   void make_ready(const SolidState& state, const Points& force);
   bool is_awake(Eigen::Index node) const;
   /// Is it set for any run of kLanes tets that may move?
@@ -153,6 +153,8 @@ class Solid {
   /// What the matrix remembers of earlier rotations, and which part of the body sleeps; restored once the
   /// tets have their moduli and size at rest.
   void exchange_frames(Archive& archive);
+  /// After that: kinematics as those of the saved x were, with frames that lag as far as they did.
+  StepStatus restore_kinematics(const Points& x, Tick tick);
 
   const Elements& elements() const { return m_elements; }
   const Constraints& constraints() const { return m_constraints; }
@@ -223,11 +225,12 @@ class Solid {
   double find_felt_pull(int run, const LargestWay& largest, const StepLoads& loads) const;
   void visit_region();
   double frame_tolerance() const;
+  bool has_lagging_frames() const;
   bool may_lag_further() const;
   Elasticity elasticity(int tet) const;
   void compute_volume_changes(const TensorField& plastic_strain, Field& change) const;
   void update_volume_change(const TensorField& plastic_strain);
-  StepStatus update_motion(const Points& x, Tick tick, bool keeps_frame);
+  StepStatus update_motion(const Points& x, Tick tick, bool keeps_frames);
 
   // assembly.cpp
   void assemble_internal_force();

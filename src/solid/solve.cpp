@@ -327,12 +327,24 @@ void Solid::exchange_frames(Archive& archive) {
     archive.number("region/held_back", m_held_back);
     archive.any_size("region/last_load", m_last_load);
   }
-  if (archive.is_restoring()) m_has_old_nodes = m_has_old_forces = true;
+  if (archive.is_restoring()) {
+    m_has_old_nodes = m_has_old_forces = true;
+    std::fill(m_is_tet_changed.begin(), m_is_tet_changed.end(), char{1});
+    std::fill(m_is_batch_new.begin(), m_is_batch_new.end(), char{1});
+  }
   archive.number("solid/frame_slack", m_frame_slack);
   archive.number("solid/frame_error", m_frame_error.left);
   archive.number("solid/frame_error_way", m_frame_error.way);
   archive.number("solid/frame_error_steps", m_frame_error.steps);
-  if (frame_tolerance() > 0.0) m_kinematics.exchange_frames(archive);
+  if (has_lagging_frames()) m_kinematics.exchange_frames(archive);
+}
+
+bool Solid::has_lagging_frames() const {
+  return m_kinematics.has_frames() && frame_tolerance() > 0.0;
+}
+
+StepStatus Solid::restore_kinematics(const Points& x, Tick tick) {
+  return update_motion(x, tick, has_lagging_frames());
 }
 
 }  // namespace argil::solid

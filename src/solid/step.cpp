@@ -316,7 +316,7 @@ StepStatus Solid::search_line(const StepLoads& loads, Tick tick) {
   StepStatus status = StepStatus::ok();
   for (int i = 0; i <= kHalvings; ++i, share *= 0.5) {
     set_iterate(share);
-    status = update_motion(m_x, tick, true);
+    status = update_motion(m_x, tick, m_kept_rotation.size() > 0);
     if (!status.is_ok()) continue;
     update_volume_change(*m_plastic_strain);
     const double after = compute_potential(loads);

@@ -391,5 +391,42 @@ TEST(FidelityAuto, GivesTheSameBitsAtAnyThreadCountAndOnReturn) {
   }
 }
 
+/// A long bar that is pressed here and, before that has come to rest, faster there. Frames of tets that sleep
+/// lag by what was allowed when they last moved, not by what is now.
+TEST(FidelityAuto, ABodyOfWhichPartSleepsGivesTheSameBitsOnReturn) {
+  constexpr Tick kTicks = 240, kEvery = 8;
+  const auto hand = [](Tick tick) {
+    const auto t = static_cast<double>(tick);
+    const bool is_there = t > 120.0;
+    const double way =
+        is_there ? std::min((t - 130.0) / 40.0, 1.0) : std::min({t / 40.0, (120.0 - t) / 40.0, 1.0});
+    device::DeviceSample sample = hand_over(3e-4 - 2.3e-3 * way);
+    sample.position.x() += is_there ? 0.12 : 0.02;
+    return sample;
+  };
+  Params params = make_params(FidelityMode::automatic);
+  params.solid.extent = solid::Extent::local;
+  params.solid.solver.tolerance = 1e-4;
+  const auto make = [&] {
+    return Simulation(test::make_block_body(80, 6, 4, Vec3(0.4, 0.03, kHeight)),
+                      contact::make_sphere_tool(kToolRadius, 2), params, hand(0));
+  };
+  Simulation whole = make();
+  std::vector<Snapshot> saved;
+  for (Tick k = 1; k <= kTicks; ++k) {
+    ASSERT_TRUE(whole.tick(hand(k)).is_ok()) << k;
+    if (k % kEvery == 0) saved.push_back(whole.take_snapshot());
+  }
+  for (std::size_t i = 0; i + 2 < saved.size(); ++i) {
+    Simulation again = make();
+    again.restore(saved[i], "snapshot");
+    const Tick end = again.clock().tick + 2 * kEvery;
+    for (Tick k = again.clock().tick + 1; k <= end; ++k) ASSERT_TRUE(again.tick(hand(k)).is_ok()) << k;
+    const Snapshot last = again.take_snapshot();
+    for (const char* name : {"solid/x", "solid/frame"})
+      EXPECT_TRUE((last.at(name).array() == saved[i + 2].at(name).array()).all()) << name << ' ' << end;
+  }
+}
+
 }  // namespace
 }  // namespace argil::sim
