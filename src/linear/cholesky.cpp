@@ -3,6 +3,7 @@
 #include <cholmod.h>
 
 #include <algorithm>
+#include <new>
 
 #include "base/check.h"
 
@@ -34,6 +35,10 @@ struct SparseCholesky::Impl {
     cholmod_free_sparse(&lower, &common);
     cholmod_finish(&common);
   }
+  /// Throws bad_alloc when the last call wanted more memory than there is, or than an int can count.
+  void check_memory() const {
+    if (common.status == CHOLMOD_OUT_OF_MEMORY || common.status == CHOLMOD_TOO_LARGE) throw std::bad_alloc();
+  }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 };
@@ -48,11 +53,14 @@ SparseCholesky::SparseCholesky(const std::vector<int>& column_begin, const std::
   Impl& impl = *m_impl;
   const std::size_t n = column_begin.size() - 1;
   impl.lower = cholmod_allocate_sparse(n, n, row.size(), 1, 1, -1, CHOLMOD_REAL, &impl.common);
+  impl.check_memory();
   std::copy(column_begin.begin(), column_begin.end(), static_cast<int*>(impl.lower->p));
   std::copy(row.begin(), row.end(), static_cast<int*>(impl.lower->i));
   impl.factor = cholmod_analyze(impl.lower, &impl.common);
+  impl.check_memory();
   ARGIL_ASSERT(impl.factor != nullptr && impl.common.status == CHOLMOD_OK, impl.common.status);
   impl.rhs = cholmod_allocate_dense(n, 1, n, CHOLMOD_REAL, &impl.common);
+  impl.check_memory();
 }
 
 std::span<double> SparseCholesky::values() {
@@ -62,6 +70,7 @@ std::span<double> SparseCholesky::values() {
 bool SparseCholesky::factorise() {
   Impl& impl = *m_impl;
   cholmod_factorize(impl.lower, impl.factor, &impl.common);
+  impl.check_memory();
   if (impl.common.status != CHOLMOD_OK || impl.factor->minor != impl.factor->n) return false;
   if (impl.factor->is_super) return true;
   // LDLᵀ of an indefinite matrix succeeds; its D shows it.
@@ -78,6 +87,7 @@ void SparseCholesky::solve(std::span<const double> b, std::span<double> x) {
   std::copy(b.begin(), b.end(), static_cast<double*>(impl.rhs->x));
   const int solved = cholmod_solve2(CHOLMOD_A, impl.factor, impl.rhs, nullptr, &impl.solution, nullptr,
                                     &impl.work_y, &impl.work_e, &impl.common);
+  impl.check_memory();
   ARGIL_ASSERT(solved == 1, impl.common.status);
   std::copy_n(static_cast<const double*>(impl.solution->x), x.size(), x.begin());
 }

@@ -14,7 +14,7 @@ enum class FactorKind {
 };
 
 /// CHOLMOD's factor of a symmetric positive definite matrix of numbers. The ordering is found once for a
-/// pattern.
+/// pattern. Throws bad_alloc when there is too little memory for a factor.
 class SparseCholesky {
  public:
   /// Pattern of the lower triangle in compressed columns: `column_begin` (n + 1), `row` increasing within a

@@ -68,6 +68,7 @@ SolveReport ConjugateGradients::solve(Operator& matrix, Preconditioner& precondi
   SolveReport report;
   matrix.multiply(x, m_w);
   const double first = std::sqrt(set_residual(b));
+  if (!std::isfinite(first)) return {false, 0, std::numeric_limits<double>::quiet_NaN()};
   const double rounding = kRounding * std::sqrt(compute_squares(b));
   goal = std::max({tolerance * first, rounding, goal});
   double residual = first;

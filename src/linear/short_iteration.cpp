@@ -31,9 +31,9 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
     return compute_dot(b.data(), b.data(), begin, end);
   });
   const double rounding = kRounding * std::sqrt(squares_of_b);
+  if (!std::isfinite(first)) return {false, 0, std::numeric_limits<double>::quiet_NaN()};
   if (first <= rounding) return {true, 0, 0.0};
   if (first <= goal) return {true, 0, 1.0, first};
-  if (!std::isfinite(first)) return {false, 0, std::numeric_limits<double>::quiet_NaN()};
 
   m_blocks.update(matrix, whole, m_runs);
   const double share = std::max({tolerance, rounding / first, goal / first});

@@ -133,7 +133,8 @@ class JacobiSolver final : public Solver {
 
 /// The factor of an earlier matrix preconditions; it is renewed when the last solve with it was slow, for
 /// then the matrix has moved away from it, and at once when a solve with it fails. `pcg` does without a
-/// factor until a solve is long: below that, its triangular solves cost more than they save.
+/// factor until a solve is long, below which its triangular solves cost more than they save, or meets a
+/// matrix that is not positive definite once it is rounded to floats.
 class KeptFactorSolver final : public Solver {
  public:
   KeptFactorSolver(const SolverParams& params, int threads)
@@ -151,7 +152,7 @@ class KeptFactorSolver final : public Solver {
       const SolveReport report = m_jacobi.solve(matrix, product, b, max_iterations, m_goal, x);
       m_cost.iterations += report.iterations;
       m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
-      if (report.converged || m_is_part || std::isinf(report.relative_residual)) return report;
+      if (report.converged || m_is_part) return report;
       if (product.has_unstored())
         return {false, report.iterations, report.relative_residual, report.first, true};
       m_has_factor = true;
@@ -188,6 +189,7 @@ class KeptFactorSolver final : public Solver {
     archive.number(prefix + "last_iterations", m_last_iterations);
     bool is_fresh = m_is_fresh;
     archive.number(prefix + "is_fresh", is_fresh);
+    if (archive.is_restoring()) m_is_valid = false;
     if (exchange_factor(archive, prefix, m_factorised)) {
       BlockMatrix matrix = pattern;
       matrix.values = m_factorised;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -37,8 +38,8 @@ struct SolverParams {
 
 /// What the solves of a run have cost so far.
 struct SolverCost {
-  int solves = 0;
-  int iterations = 0;
+  std::int64_t solves = 0;
+  std::int64_t iterations = 0;
   int factorisations = 0;
   double multiplications = 0.0;  ///< about; of products and triangular solves, factorisations left out
 };

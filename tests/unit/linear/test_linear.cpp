@@ -1,5 +1,11 @@
 // Solvers against the closed-form solution of a 1-D Laplacian and against Eigen's dense LDLᵀ, which shares no
 // code with them.
+#include <cmath>
+#include <limits>
+#include <new>
+
+#include <SuiteSparse_config.h>
+
 #include <Eigen/Cholesky>
 
 #include <gtest/gtest.h>
@@ -429,6 +435,37 @@ TEST(DirectSolver, DoesNotCallASolutionConvergedThatIsNone) {
   }
 }
 
+TEST(Iterations, DoNotCallASolutionConvergedWhoseRightHandSideIsInfinite) {
+  const BlockMatrix a = make_random_spd(30, 17);
+  MatrixOperator product(a, 1);
+  Points b = make_random_vector(30, 18);
+  b(1, 3) = std::numeric_limits<double>::infinity();
+  for (const SolverKind kind : {SolverKind::pcg, SolverKind::pcg_jacobi, SolverKind::pcg_cholesky})
+    for (const double tolerance : {1e-2, 1e-8}) {
+      SolverParams params;
+      params.kind = kind;
+      params.tolerance = tolerance;
+      Points x = Points::Zero(3, 30);
+      const SolveReport report = make_solver(params)->solve(a, product, b, x);
+      EXPECT_FALSE(report.converged) << static_cast<int>(kind) << ' ' << tolerance;
+      EXPECT_TRUE(std::isnan(report.relative_residual)) << static_cast<int>(kind) << ' ' << tolerance;
+    }
+}
+
+TEST(SparseCholesky, SaysThatMemoryIsTooLittleAndNotThatTheMatrixIsIndefinite) {
+  const BlockMatrix a = make_random_spd(300, 41);
+  const auto fail = [](std::size_t) -> void* { return nullptr; };
+  const auto fail_again = [](void*, std::size_t) -> void* { return nullptr; };
+  CholeskyFactor factor(a);
+  EXPECT_TRUE(factor.factorise(a));
+  const auto kept = SuiteSparse_config;
+  SuiteSparse_config.malloc_func = fail;
+  SuiteSparse_config.realloc_func = fail_again;
+  EXPECT_THROW(CholeskyFactor{a}, std::bad_alloc);
+  EXPECT_THROW((void)factor.factorise(a), std::bad_alloc);
+  SuiteSparse_config = kept;
+}
+
 TEST(JacobiSolver, SeesThatAMatrixIsNotPositiveDefinite) {
   // −A is solved as well as A by the same recurrence; its pᵀAp alone tells them apart.
   BlockMatrix a = make_random_spd(30, 19);
@@ -439,6 +476,40 @@ TEST(JacobiSolver, SeesThatAMatrixIsNotPositiveDefinite) {
       make_solver({SolverKind::pcg_jacobi})->solve(a, product, make_random_vector(30, 20), x);
   EXPECT_FALSE(report.converged);
   EXPECT_TRUE(std::isinf(report.relative_residual));
+}
+
+/// A path of springs that all but floats: the rounding of its diagonal to floats outweighs what holds it.
+BlockMatrix make_floating_chain(int rows, std::uint64_t seed) {
+  constexpr double kHeld = 1e-9;
+  BlockMatrix a = make_chain(rows);
+  a.values.setZero();
+  for (const int b : a.diagonal) a.block(b) = Mat3::Identity() * kHeld;
+  Rng rng(seed);
+  for (int r = 0; r + 1 < rows; ++r) {
+    const Mat3 spring = Mat3::Identity() * (1.0 + rng.uniform());
+    a.block(a.diagonal[static_cast<std::size_t>(r)]) += spring;
+    a.block(a.diagonal[static_cast<std::size_t>(r) + 1]) += spring;
+    a.block(a.diagonal[static_cast<std::size_t>(r)] + 1) -= spring;
+    a.block(a.diagonal[static_cast<std::size_t>(r) + 1] - 1) -= spring;
+  }
+  return a;
+}
+
+TEST(KeptFactorSolver, BringsInAFactorWhereTheRoundingOfFloatsMakesTheMatrixIndefinite) {
+  SolverParams in_floats;
+  in_floats.kind = SolverKind::pcg_jacobi;
+  int indefinite = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const BlockMatrix a = make_floating_chain(30, seed);
+    MatrixOperator product(a, 1);
+    const Points b = Points::Ones(3, 30);  // rigid motion: x = 1 / kHeld
+    Points x = Points::Zero(3, 30);
+    indefinite += std::isinf(make_solver(in_floats)->solve(a, product, b, x).relative_residual) ? 1 : 0;
+    x.setZero();
+    EXPECT_TRUE(make_solver({})->solve(a, product, b, x).converged) << seed;
+    EXPECT_NEAR(x(1, 7), 1e9, 1e9 * SolverParams{}.tolerance) << seed;
+  }
+  EXPECT_GE(indefinite, 5);
 }
 
 TEST(KeptFactorSolver, BringsInAFactorWithTheFirstLongSolve) {
@@ -457,7 +528,7 @@ TEST(KeptFactorSolver, BringsInAFactorWithTheFirstLongSolve) {
   EXPECT_EQ(solver->cost().factorisations, 0);
   EXPECT_LE(iterations(make_laplacian(300)), 1);  // over its diagonal: hundreds
   EXPECT_EQ(solver->cost().factorisations, 1);
-  const int before = solver->cost().iterations;
+  const std::int64_t before = solver->cost().iterations;
   EXPECT_LE(iterations(make_laplacian(300)), 1);
   EXPECT_LE(solver->cost().iterations, before + 1);  // and none over the diagonal any more
 }
