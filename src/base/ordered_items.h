@@ -15,6 +15,8 @@ class OrderedItems {
  public:
   explicit OrderedItems(int threads) : m_threads(threads) {}
 
+  /// Takes the memory for sums over so many items, whichever are visited.
+  void prepare(std::ptrdiff_t count) const { m_of_block.reserve(count_blocks(count)); }
   /// body(i) for every item.
   template <class Body>
   void each(std::ptrdiff_t count, Body body) const {
@@ -43,6 +45,9 @@ class OrderedItems {
  private:
   static constexpr std::ptrdiff_t kLength = 64;
 
+  static constexpr std::size_t count_blocks(std::ptrdiff_t items) {
+    return static_cast<std::size_t>((items + kLength - 1) / kLength);
+  }
   std::ptrdiff_t count_visited(std::ptrdiff_t count) const {
     return m_visited ? static_cast<std::ptrdiff_t>(m_visited->size()) : count;
   }
@@ -58,10 +63,7 @@ class OrderedItems {
   }
   template <class Term, class Join>
   void find_of_blocks(std::ptrdiff_t count, Term term, Join join) const {
-    const auto count_blocks = [](std::ptrdiff_t items) {
-      return static_cast<std::size_t>((items + kLength - 1) / kLength);
-    };
-    m_of_block.reserve(count_blocks(count));  // whichever are visited
+    prepare(count);
     m_of_block.resize(count_blocks(count_visited(count)));
     each_block(count, [&](std::ptrdiff_t block, std::ptrdiff_t begin, std::ptrdiff_t end) {
       double of_block = 0.0;

@@ -14,11 +14,13 @@ class OrderedRuns {
  public:
   explicit OrderedRuns(int threads) : m_threads(threads) {}
 
+  /// Takes the memory for sums of so many items, whichever runs are visited.
+  void prepare(std::ptrdiff_t count) { m_sums.reserve(static_cast<std::size_t>(count_all_runs(count))); }
   /// body(begin, end) for every run; its number is added to the sum that is returned. No allocation after the
-  /// first call of one count, whichever runs are visited.
+  /// first call of one count.
   template <class Body>
   double sum(std::ptrdiff_t count, Body body) {
-    m_sums.reserve(static_cast<std::size_t>(count_all_runs(count)));
+    prepare(count);
     m_sums.resize(static_cast<std::size_t>(count_runs(count)));
     double* sums = m_sums.data();
     each_run(count, [sums, &body](std::ptrdiff_t i, std::ptrdiff_t begin, std::ptrdiff_t end) {

@@ -60,6 +60,7 @@ void ShortIteration::prepare(const BlockMatrix& pattern) {
   const auto num_rows = static_cast<std::size_t>(pattern.num_rows());
   for (std::vector<float>* vector : {&m_r, &m_t, &m_s, &m_p, &m_rho, &m_x}) vector->resize(4 * num_rows);
   const auto num_runs = static_cast<std::size_t>(OrderedRuns::count_all_runs(pattern.num_rows()));
+  m_runs.prepare(pattern.num_rows());
   m_sums.reserve(num_runs);
   m_solved.reserve(num_runs);
   m_last.prepare(pattern.num_rows());

@@ -20,7 +20,7 @@ Session::Session(sim::Simulation& simulation, device::HapticDevice& device, Sess
       m_device(device),
       m_options(std::move(options)),
       m_period(simulation.params().rates.haptic_period),
-      m_mailbox(simulation.solid().elements().num_nodes()),
+      m_mailbox(simulation.solid().elements().num_nodes(), simulation.body_side().surface().num_vertices()),
       m_ticks(static_cast<std::size_t>(m_options.record_buffer_s / m_period) + 1),
       m_steps(kWaitingSteps),
       m_sample_number(m_options.first_sample) {

@@ -12,7 +12,8 @@ namespace argil::live {
 /// hand looks and goes on; it never waits, and what it takes and gives are swapped, not copied.
 class StepMailbox {
  public:
-  explicit StepMailbox(Eigen::Index num_nodes) : m_load(num_nodes) { m_load.reserve(); }
+  StepMailbox(Eigen::Index num_nodes, Eigen::Index num_vertices)
+      : m_load(num_nodes), m_answer(num_vertices) {}
 
   // The hand's thread.
   /// May a step be given now? Not while one is under way.

@@ -76,10 +76,8 @@ bool ContactSurface::find_moved(const OrderedItems& nodes, const Points& x, std:
   const std::vector<int>* visited = nodes.visited();
   if (!visited || m_is_corner.empty()) return false;
   vertices.clear();
-  vertices.reserve(static_cast<std::size_t>(num_vertices()));
   std::copy_if(visited->begin(), visited->end(), std::back_inserter(vertices),
                [this](int node) { return m_is_corner[static_cast<std::size_t>(node)] != 0; });
-  if (places.cols() < static_cast<Eigen::Index>(vertices.size())) places.resize(3, num_vertices());
   for (std::size_t i = 0; i < vertices.size(); ++i)
     places.col(static_cast<Eigen::Index>(i)) = x.col(vertices[i]);
   return true;

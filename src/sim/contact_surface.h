@@ -27,7 +27,8 @@ class ContactSurface {
   /// Positions of the vertices [m] for nodes at x.
   void find_positions(const Points& x, Points& out) const;
 
-  /// The vertices that go with these nodes, and their places. False: all of them have to be found.
+  /// The vertices that go with these nodes, and their places, into columns that are there. False: all of them
+  /// have to be found.
   bool find_moved(const OrderedItems& nodes, const Points& x, std::vector<int>& vertices,
                   Points& places) const;
 

@@ -56,11 +56,9 @@ struct ContactLoad {
   std::vector<ContactGroup> groups;
   std::size_t last_detection = 0;  ///< entry of `stiffness` where the last detection's contacts begin
 
-  explicit ContactLoad(Eigen::Index num_nodes) : force(num_nodes) {}
+  explicit ContactLoad(Eigen::Index num_nodes);
   /// Ready for the ticks of another step; keeps its storage.
   void clear();
-  /// Takes storage for as many contacts as a late step may gather.
-  void reserve();
 };
 
 /// What a step of the body gives the hand.
@@ -71,6 +69,11 @@ struct BodyAnswer {
   std::vector<int> moved;
   Points surface_x;  ///< places of all vertices of the touched surface, or of these [m], where it has moved
   device::Wrench felt;  ///< what the hand felt, less what the body has yielded to it
+
+  /// Takes storage for a touched surface of `num_vertices`.
+  explicit BodyAnswer(Eigen::Index num_vertices) : surface_x(3, num_vertices) {
+    moved.reserve(static_cast<std::size_t>(num_vertices));
+  }
 };
 
 /// What a tick of the hand shares with the steps of the body. In batch a step takes no time: it begins and is

@@ -11,8 +11,8 @@ namespace argil::sim {
 
 using device::ToolMode;
 
-void ContactLoad::reserve() {
-  constexpr std::size_t kContacts = 16384;
+ContactLoad::ContactLoad(Eigen::Index num_nodes) : force(num_nodes) {
+  constexpr std::size_t kContacts = 16384;  // more than a late step gathers
   stiffness.reserve(kContacts);
   yields.reserve(kContacts);
   groups.reserve(kContacts);
@@ -45,6 +45,7 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
       m_gate(params.device, params.rates.haptic_period) {
   m_clock.period = params.rates.haptic_period;
   m_detector.share(params.threads);
+  m_moved.reserve(static_cast<std::size_t>(surface.num_vertices()));
   begin_at(start);
 }
 
@@ -58,8 +59,6 @@ void HandSide::begin_at(const device::DeviceSample& start) {
 /// A first look at contacts, which sees nothing move.
 void HandSide::prepare_alone() {
   m_detector.share(1);
-  m_load.reserve();
-  m_moved.reserve(static_cast<std::size_t>(m_surface.num_vertices()));
   m_detector.find_contacts(m_state.contact_x, m_state.contact_x, m_state.tool, m_state.tool, m_contacts, 0.0);
 }
 
@@ -75,7 +74,6 @@ void HandSide::see(BodyAnswer& answer) {
   } else {
     if (!m_is_surface_known && !m_state.has_moved) m_state.surface_x = m_state.contact_x;
     m_is_surface_known = true;
-    m_moved.reserve(static_cast<std::size_t>(m_state.surface_x.cols()));
     for (std::size_t i = 0; i < answer.moved.size(); ++i)
       m_state.surface_x.col(answer.moved[i]) = answer.surface_x.col(static_cast<Eigen::Index>(i));
     m_moved.insert(m_moved.end(), answer.moved.begin(), answer.moved.end());

@@ -9,7 +9,8 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
     : m_params(params),
       m_body_side(std::move(body), m_params),
       m_hand(tool, m_params, m_body_side.surface(), m_body_side.solid().elements(), start),
-      m_load(m_body_side.solid().elements().num_nodes()) {
+      m_load(m_body_side.solid().elements().num_nodes()),
+      m_answer(m_body_side.surface().num_vertices()) {
   m_hand.place_surface(surface_now());
 }
 

@@ -146,8 +146,6 @@ void Solid::compute_stiffness_product(const Points& u, double kept, double exact
 /// K u with the present rotations where those of the stored matrix lag: of nodes that move, for isotropic
 /// laws of 4-node tets.
 void Solid::compute_present_product(const Points& u, Points& force) {
-  m_change.strain.resize(6, m_elements.num_tets());
-  m_change.corner_force.resize(3, m_corner_force.cols());
   const StrainArrays strains{u.data(), m_elements.nodes.data(), m_elements.gradient.data(),
                              m_kinematics.rotation().data(), m_change.strain.data()};
   each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_strains(strains, begin, end); });

@@ -53,8 +53,19 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   m_v_hat.setZero(3, num_nodes);
   m_v = m_v_base = m_v_start = m_zero = m_v_hat;
   m_is_row_stale.resize(m_node_of_row.size(), 1);
+  m_rows.prepare(num_free());
+  m_near_rows.prepare(num_free());
+  m_nodes.prepare(num_nodes);
   m_rhs.setZero(3, num_free());
   m_delta.setZero(3, num_free());
+  m_left.resize(3, num_free());
+  m_correction.resize(3, num_free());
+  m_point_sums.reserve(static_cast<std::size_t>((m_elements.num_points() + kLanes - 1) / kLanes));
+  if (may_lag_further()) {
+    m_direction.resize(3, num_nodes);
+    m_change.strain.resize(6, m_elements.num_tets());
+    m_change.corner_force.resize(3, m_corner_force.cols());
+  }
   constexpr int kLarge = 1500;  // rows; with fewer, keeping the lists costs what a smaller solve saves
   if (m_params.extent == Extent::local || (m_params.extent == Extent::automatic && num_free() >= kLarge)) {
     m_region = std::make_unique<ActiveSet>(m_elements, m_node_of_row, m_row_of_node);

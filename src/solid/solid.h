@@ -108,7 +108,6 @@ class Solid {
     const std::ptrdiff_t count = m_elements.num_points();
     const std::vector<int>* batches = m_region ? &m_region->batches() : nullptr;
     const auto num_batches = static_cast<std::size_t>((count + kLanes - 1) / kLanes);
-    m_point_sums.reserve(num_batches);
     m_point_sums.resize(batches ? batches->size() : num_batches);
     double* sums = m_point_sums.data();
     parallel_for(static_cast<std::ptrdiff_t>(m_point_sums.size()), m_threads, [=, &body](std::ptrdiff_t i) {

@@ -48,7 +48,6 @@ class Solid::Product final : public linear::Operator {
     const MatrixShares share = m_solid.shares();
     Points& u = m_solid.m_direction;
     Points& force = m_solid.m_product;
-    u.resize(3, m_solid.m_elements.num_nodes());
     m_solid.each_node([&](std::ptrdiff_t n) {
       const int row = m_solid.m_row_of_node[static_cast<std::size_t>(n)];
       u.col(n) = row < 0 ? Vec3::Zero() : Vec3(x.col(row));
@@ -188,7 +187,6 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
 /// ‖b − A δ‖, which m_left becomes, of rows that are solved for: by present rotations where these are at
 /// hand.
 double Solid::find_left(Product& product) {
-  m_left.resize(3, num_free());
   if (may_lag_further())
     product.multiply_present(m_delta, m_left);
   else
@@ -239,7 +237,6 @@ bool Solid::correct_solution(const StepLoads& loads) {
   const double enough =
       std::min(2.0 * std::max(m_params.solver.tolerance * m_first_residual, share), m_tau * loads.limit);
   if (left > enough) left = find_left(product);
-  m_correction.resize(3, num_free());
   m_solver->set_goal(0.5 * enough);
   bool has_changed = false;
   for (double before = std::numeric_limits<double>::infinity();

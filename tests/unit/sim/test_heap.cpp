@@ -178,11 +178,42 @@ TEST(TickOfARegion, TakesNothingFromTheHeapWhereItHasNotBeen) {
   }
 }
 
+/// What the first touch takes goes with the contacts, and not with the mesh. The bodies differ in what is far
+/// from the tool.
+TEST(FirstTouch, TakesTheSameFromTheHeapOnABodyOfNineTimesAsManyTets) {
+  const auto count_bytes = [](int cells, FidelityMode mode) {
+    Params params = make_params();
+    params.fidelity.mode = mode;
+    params.contact.friction = 0.0;
+    params.kernel.radius = 0.008;
+    params.solid.extent = solid::Extent::local;
+    const auto hand = [](int tick) {
+      device::DeviceSample sample;
+      sample.position = {0.0153, 0.0153, 0.02 + kToolRadius + 1e-3 - 2e-5 * tick};
+      sample.mode = device::ToolMode::push;
+      return sample;
+    };
+    Simulation simulation(test::make_block_body(cells, cells, 4, Vec3(0.0025 * cells, 0.0025 * cells, 0.02)),
+                          contact::make_sphere_tool(kToolRadius, 2), params, hand(0));
+    const std::size_t before = test::count_bytes();
+    for (int k = 1; k <= 100; ++k) EXPECT_TRUE(simulation.tick(hand(k)).is_ok());
+    EXPECT_GT(simulation.hand_state().hand_force.norm(), 0.01);
+    return static_cast<double>(test::count_bytes() - before);
+  };
+  for (const FidelityMode mode : {FidelityMode::full, FidelityMode::automatic}) {
+    const double small = count_bytes(12, mode);
+    const double large = count_bytes(36, mode);
+    EXPECT_NEAR(large / small, 1.0, 0.1) << small << " and " << large << " bytes";
+  }
+}
+
 TEST(HeapCount, SeesAnAllocation) {
+  const std::size_t bytes = test::count_bytes();
   const std::size_t before = test::count_allocations();
   const std::vector<int> list(1000, 1);
   const Field field = Field::Zero(1000);
   EXPECT_GE(test::count_allocations() - before, 2U);
+  EXPECT_GE(test::count_bytes() - bytes, 1000 * (sizeof(int) + sizeof(double)));
   EXPECT_EQ(field.sum() + list[3], 1.0);
 }
 
