@@ -270,7 +270,7 @@ class ExitCodes(unittest.TestCase):
         time.sleep(0.5)
 
     def test_130_a_terminated_run_goes_on_where_it_was_and_has_one_writer(self):
-        write_press(self.folder / "press.csv", 10.0, 0.0435)
+        write_press(self.folder / "press.csv", 40.0, 0.0435)  # seconds of work
         command = [ARGIL, "run", "scene.json", "-o", "out.h5", "-q", "--set", "/haptics/physics_period_ticks=5"]
         with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True) as run:
             self.wait_for("out.h5")
