@@ -158,10 +158,17 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
   if (m_is_static && !m_static_solver)
     m_static_solver = linear::make_solver(make_exact(m_params.solver), m_threads);
   linear::Solver& solver = m_is_static ? *m_static_solver : *m_solver;
-  solver.set_goal(is_newton() ? 0.0 : m_tau * loads.slack);
+  // With other contacts, or more nodes, the same step goes on: to where its first solve was to end.
+  const auto set_goal = [&](double first_residual) {
+    solver.set_goal(is_newton() ? 0.0
+                                : std::max(m_tau * loads.slack, m_params.solver.tolerance * first_residual));
+  };
+  set_goal(is_first ? 0.0 : m_first_residual);
   const bool follows_force = m_region && !m_is_static && loads.region_slack > 0.0;
   if (follows_force) grow_region_by_force(loads);
   linear::SolveReport report = solver.solve(m_matrix, product, m_rhs, m_delta);
+  if (is_first) m_first_residual = report.first;
+  set_goal(m_first_residual);
   // What the solution pulls at and the hand would feel moves, too: some layers of it in a blow, none as a
   // rule.
   constexpr int kMostLayers = 16;
@@ -180,7 +187,6 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
   m_counters.has_solved |= report.iterations > 0 || linear::is_direct(m_params.solver.kind);
   m_counters.residual = report.relative_residual;
   m_counters.imbalance = report.relative_residual * report.first / m_tau;
-  if (is_first) m_first_residual = report.first;
   return report;
 }
 

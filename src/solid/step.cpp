@@ -159,7 +159,7 @@ double Solid::compute_excess() const {
 /// r = M (v̂ − v) + τ (f_ext + M g − f_int − D v) less the fall of the contacts' forces; statics: the forces
 /// alone.
 void Solid::compute_residual(const StepLoads& loads) {
-  assemble_internal_force();
+  if (is_newton() || m_iterations == 0) assemble_internal_force();  // other contacts, the same place
   m_corner_scale = is_newton() ? m_corner_force.squaredNorm() : 0.0;
   const bool is_viscous =
       !m_is_static && m_params.rayleigh_stiffness > 0.0 &&
