@@ -15,7 +15,7 @@ memory of all runs.
 """
 import argparse
 import json
-import os
+import re
 import subprocess
 import tempfile
 import time
@@ -114,12 +114,21 @@ def call(argil, folder, settings):
     start = time.perf_counter()
     process = subprocess.Popen([argil, "run", folder / "slab.json", "-q", "-o", folder / "slab.h5", "--threads", "1", *sets],
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)  # of this child alone
+    # What the system accounts to an ended child begins with this script's own memory.
+    peak = 0.0
+    while process.poll() is None:
+        peak = read_peak_MiB(process.pid) or peak
+        time.sleep(0.002)
     seconds = time.perf_counter() - start
-    process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0:
         raise subprocess.CalledProcessError(process.returncode, process.args)
-    return seconds, usage.ru_maxrss / 1024
+    return seconds, peak
+
+
+def read_peak_MiB(pid):
+    """Largest resident memory so far of a process that runs its own program; 0 of one that has ended."""
+    found = re.search(r"^VmHWM:\s*(\d+) kB", Path(f"/proc/{pid}/status").read_text(), re.MULTILINE)
+    return int(found[1]) / 1024 if found else 0.0
 
 
 class Sample(NamedTuple):
