@@ -7,8 +7,13 @@
 #include "linear/vectors.h"
 
 namespace argil::linear {
+void BlockJacobi::prepare(Eigen::Index num_rows) {
+  m_rows.prepare(num_rows);
+  m_inverse.resize(3, 3 * num_rows + 1);
+}
+
 void BlockJacobi::update(const BlockMatrix& matrix, Operator& whole) {
-  m_inverse.resize(3, 3 * static_cast<Eigen::Index>(matrix.num_rows()) + 1);
+  prepare(matrix.num_rows());
   m_inverse.rightCols<1>().setZero();
   m_rows.each(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row)
@@ -57,13 +62,14 @@ double ConjugateGradients::advance(double alpha, double beta, Points& x) {
   });
 }
 
+void ConjugateGradients::prepare(Eigen::Index num_rows) {
+  m_rows.prepare(num_rows);
+  for (Points* vector : {&m_r, &m_z, &m_p, &m_q, &m_w}) vector->resize(3, num_rows);
+}
+
 SolveReport ConjugateGradients::solve(Operator& matrix, Preconditioner& preconditioner, const Points& b,
                                       double tolerance, int max_iterations, Points& x, double goal) {
-  m_r.resize(3, b.cols());
-  m_z.resize(3, b.cols());
-  m_p.resize(3, b.cols());
-  m_q.resize(3, b.cols());
-  m_w.resize(3, b.cols());
+  prepare(b.cols());
   constexpr double kRounding = 1e-14;  // of ‖b‖
   SolveReport report;
   matrix.multiply(x, m_w);

@@ -29,6 +29,8 @@ class Preconditioner {
 class BlockJacobi final : public Preconditioner {
  public:
   explicit BlockJacobi(int threads) : m_rows(threads) {}
+  /// Takes the memory for so many rows; update does the same.
+  void prepare(Eigen::Index num_rows);
   void update(const BlockMatrix& matrix, Operator& whole);
   double apply(const Points& r, Points& z) override;
 
@@ -55,6 +57,8 @@ class StaleCholesky final : public Preconditioner {
 class ConjugateGradients {
  public:
   explicit ConjugateGradients(int threads) : m_rows(threads) {}
+  /// Takes the memory for so many rows; solve does the same.
+  void prepare(Eigen::Index num_rows);
 
   /// `goal`: a norm of the residual that is small enough as well.
   SolveReport solve(Operator& matrix, Preconditioner& preconditioner, const Points& b, double tolerance,

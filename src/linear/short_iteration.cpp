@@ -21,12 +21,7 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
   m_is_changed = false;
   m_sums.resize(static_cast<std::size_t>(m_runs.count_runs(num_rows)));
 
-  whole.multiply(x, m_product);
-  const double first = std::sqrt(m_runs.sum(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    m_product.middleCols(begin, end - begin) =
-        b.middleCols(begin, end - begin) - m_product.middleCols(begin, end - begin);
-    return compute_dot(m_product.data(), m_product.data(), begin, end);
-  }));
+  const double first = find_residual(whole, b, x);
   const double squares_of_b = m_runs.sum(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     return compute_dot(b.data(), b.data(), begin, end);
   });
@@ -37,18 +32,50 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
 
   m_blocks.update(matrix, whole, m_runs);
   const double share = std::max({tolerance, rounding / first, goal / first});
-  SolveReport report = iterate(whole, first, share, max_iterations);
-  report.first = first;
-  m_runs.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    for (std::ptrdiff_t row = begin; row < end; ++row)
-      for (std::ptrdiff_t k = 0; k < 3; ++k)
-        x.data()[3 * row + k] += first * static_cast<double>(m_x.data()[4 * row + k]);
-  });
+  SolveReport report = iterate(whole, first, share, max_iterations, true);
+  add_to(x, first);
   if (report.converged)
     m_last.keep(m_runs, num_rows, m_x.data(), first);
   else
     m_last.clear(0, num_rows);
+  // Rounding grows with the iterations: after many of them what is left is taken in double, and they go on
+  // from there.
+  constexpr int kTrusted = 50;
+  constexpr double kWorthwhile = 0.5;  // of what was left, for another round
+  for (double before = std::numeric_limits<double>::infinity();
+       report.converged && report.iterations > kTrusted;) {
+    const double left = find_residual(whole, b, x);
+    report.relative_residual = left / first;
+    report.converged = report.relative_residual <= share;
+    if (report.converged || !(left < kWorthwhile * before) || report.iterations >= max_iterations) break;
+    before = left;
+    const SolveReport more =
+        iterate(whole, left, share * first / left, max_iterations - report.iterations, false);
+    add_to(x, left);
+    report.iterations += more.iterations;
+    report.converged = more.converged;
+  }
+  report.first = first;
   return report;
+}
+
+/// ‖b − A x‖ in double, which m_product becomes.
+double ShortIteration::find_residual(Operator& whole, const Points& b, const Points& x) {
+  whole.multiply(x, m_product);
+  return std::sqrt(m_runs.sum(b.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    m_product.middleCols(begin, end - begin) =
+        b.middleCols(begin, end - begin) - m_product.middleCols(begin, end - begin);
+    return compute_dot(m_product.data(), m_product.data(), begin, end);
+  }));
+}
+
+/// x += scale · what the iteration found.
+void ShortIteration::add_to(Points& x, double scale) const {
+  m_runs.each(x.cols(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t row = begin; row < end; ++row)
+      for (std::ptrdiff_t k = 0; k < 3; ++k)
+        x.data()[3 * row + k] += scale * static_cast<double>(m_x.data()[4 * row + k]);
+  });
 }
 
 void ShortIteration::exchange_state(Archive& archive, const std::string& prefix) {
@@ -98,7 +125,9 @@ void ShortIteration::clear_left_rows() {
 }
 
 /// A x = r / `first`, which has the norm 1, until what is left of it is below `goal`.
-SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, int max_iterations) {
+/// `begins`: with what the last solves added.
+SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, int max_iterations,
+                                    bool begins) {
   const std::ptrdiff_t num_rows = m_product.cols();
   m_runs.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row)
@@ -107,8 +136,8 @@ SolveReport ShortIteration::iterate(Operator& whole, double first, double goal, 
     for (std::vector<float>* vector : {&m_x, &m_t, &m_p, &m_rho, &m_s})
       std::fill(vector->begin() + 4 * begin, vector->begin() + 4 * end, 0.0F);
   });
-  const LastChanges::Start start =
-      m_last.begin(m_blocks.rows(), whole, m_runs, num_rows, m_x.data(), m_r.data());
+  LastChanges::Start start;
+  if (begins) start = m_last.begin(m_blocks.rows(), whole, m_runs, num_rows, m_x.data(), m_r.data());
   return whole.has_unstored() ? iterate_over_blocks(whole, start, goal, max_iterations)
                               : sweep(start, goal, max_iterations);
 }

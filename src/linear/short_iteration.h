@@ -36,7 +36,9 @@ class ShortIteration {
 
  private:
   void clear_left_rows();
-  SolveReport iterate(Operator& whole, double first, double goal, int max_iterations);
+  double find_residual(Operator& whole, const Points& b, const Points& x);
+  void add_to(Points& x, double scale) const;
+  SolveReport iterate(Operator& whole, double first, double goal, int max_iterations, bool begins);
   SolveReport sweep(const LastChanges::Start& start, double goal, int max_iterations);
   SolveReport iterate_over_blocks(Operator& whole, const LastChanges::Start& start, double goal,
                                   int max_iterations);

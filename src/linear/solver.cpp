@@ -90,8 +90,15 @@ class JacobiIteration {
     return m_iteration.solve(product, m_jacobi, b, m_tolerance, max_iterations, x, goal);
   }
   void prepare(const BlockMatrix& pattern) {
-    if (m_is_short) m_short.prepare(pattern);
+    if (m_is_short) {
+      m_short.prepare(pattern);
+    } else {
+      m_jacobi.prepare(pattern.num_rows());
+      m_iteration.prepare(pattern.num_rows());
+    }
   }
+  /// Does it round the matrix to floats?
+  bool is_short() const { return m_is_short; }
   bool visit(const std::vector<int>* runs) {
     if (m_is_short) m_short.visit(runs);
     return m_is_short;
@@ -152,7 +159,9 @@ class KeptFactorSolver final : public Solver {
       const SolveReport report = m_jacobi.solve(matrix, product, b, max_iterations, m_goal, x);
       m_cost.iterations += report.iterations;
       m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
-      if (report.converged || m_is_part) return report;
+      // What doubles call indefinite a factor does, too.
+      const bool is_indefinite = std::isinf(report.relative_residual) && !m_jacobi.is_short();
+      if (report.converged || m_is_part || is_indefinite) return report;
       if (product.has_unstored())
         return {false, report.iterations, report.relative_residual, report.first, true};
       m_has_factor = true;
@@ -174,11 +183,13 @@ class KeptFactorSolver final : public Solver {
   }
 
   void prepare(const BlockMatrix& pattern) override {
+    m_guess.resize(3, pattern.num_rows());
     if (!m_has_factor) m_jacobi.prepare(pattern);
   }
 
   bool visit(const std::vector<int>* runs) override {
-    m_is_part = runs != nullptr && !m_has_factor && m_jacobi.visit(runs);
+    const bool can_visit = m_jacobi.visit(runs);
+    m_is_part = runs != nullptr && !m_has_factor && can_visit;
     return m_is_part;
   }
 

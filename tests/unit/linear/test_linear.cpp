@@ -478,6 +478,23 @@ TEST(JacobiSolver, SeesThatAMatrixIsNotPositiveDefinite) {
   EXPECT_TRUE(std::isinf(report.relative_residual));
 }
 
+TEST(Iterations, GoOnWhereManyOfThemInFloatsHaveLeftMoreThanTheyKnow) {
+  const BlockMatrix a = make_laplacian(400);  // condition 6.5e4
+  MatrixOperator product(a, 1);
+  const Points b = Points::Ones(3, 400);
+  SolverParams params;
+  params.kind = SolverKind::pcg_jacobi;
+  params.tolerance = kRoomForFloats;
+  Points x = Points::Zero(3, 400);
+  const SolveReport report = make_solver(params)->solve(a, product, b, x);
+  Points Ax(3, 400);
+  product.multiply(x, Ax);
+  EXPECT_TRUE(report.converged);
+  EXPECT_GT(report.iterations, 50);
+  EXPECT_LE((b - Ax).norm(), params.tolerance * b.norm());
+  EXPECT_NEAR(report.relative_residual, (b - Ax).norm() / b.norm(), 1e-3 * params.tolerance);
+}
+
 /// A path of springs that all but floats: the rounding of its diagonal to floats outweighs what holds it.
 BlockMatrix make_floating_chain(int rows, std::uint64_t seed) {
   constexpr double kHeld = 1e-9;
@@ -510,6 +527,18 @@ TEST(KeptFactorSolver, BringsInAFactorWhereTheRoundingOfFloatsMakesTheMatrixInde
     EXPECT_NEAR(x(1, 7), 1e9, 1e9 * SolverParams{}.tolerance) << seed;
   }
   EXPECT_GE(indefinite, 5);
+}
+
+TEST(KeptFactorSolver, DoesNotFactoriseWhatDoublesCallIndefinite) {
+  BlockMatrix a = make_random_spd(30, 19);
+  a.values *= -1.0;
+  MatrixOperator product(a, 1);
+  SolverParams params;
+  params.tolerance = 1e-8;
+  const std::unique_ptr<Solver> solver = make_solver(params);
+  Points x = Points::Zero(3, 30);
+  EXPECT_TRUE(std::isinf(solver->solve(a, product, make_random_vector(30, 3), x).relative_residual));
+  EXPECT_EQ(solver->cost().factorisations, 0);
 }
 
 TEST(KeptFactorSolver, BringsInAFactorWithTheFirstLongSolve) {
