@@ -31,7 +31,8 @@ BodySide::BodySide(Body body, const Params& params)
       m_solid(m_body.mesh, m_body.topology, m_body.supports, make_solid_params(params), params.threads),
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation, params.threads),
       m_surface(params.contact_surface, m_body, m_solid.elements()),
-      m_fidelity(params.fidelity, params.solid.rayleigh_stiffness / step_seconds()) {
+      m_fidelity(params.fidelity, params.solid.rayleigh_stiffness /
+                                      solid::compute_tau(params.solid.integrator, step_seconds())) {
   const Eigen::Index n = m_solid.elements().num_nodes();
   m_state.solid = m_solid.make_rest_state();
   m_load_force = solid::compute_load_force(m_solid.elements(), m_body.topology.boundary, m_body.loads);
@@ -231,7 +232,8 @@ StepStatus BodySide::refresh_materials(double tolerance) {
   const bool gains_weight = m_params.water.adds_mass && m_params.solid.gravity.norm() > 0.0;
   if (gains_weight && !m_changed_tets.empty()) m_state.is_at_rest = false;
   const bool may_grow = m_params.water.swelling > 0.0 && !m_changed_tets.empty();
-  if (!may_grow || !(m_water.saturation().array() > 0.0).any()) return StepStatus::ok();
+  const bool is_start = tolerance < 0.0;  // dry clay has the size that it came with
+  if (!may_grow || (is_start && (m_water.saturation().array() == 0.0).all())) return StepStatus::ok();
   m_state.is_at_rest = false;
   return m_solid.update_kinematics(m_state.solid.x, tick());
 }

@@ -291,7 +291,8 @@ StepStatus LocalCompliance::press(const BodyAtFrame& body, std::vector<ContactSp
   m_pressed.clear();
   for (std::size_t c = 0; c < m; ++c)
     if (m_right[c] > 0.0) m_pressed.push_back(static_cast<int>(c));
-  for (std::size_t round = 0; round <= 3 * m; ++round) {
+  bool is_balanced = false;
+  for (std::size_t round = 0; round <= 3 * m && !is_balanced; ++round) {
     if (!solve_balance(m))
       return StepStatus::failed(
           {body.tick, "contact", -1, "compliance is not positive definite, pivot", 0.0, 0.0});
@@ -308,9 +309,12 @@ StepStatus LocalCompliance::press(const BodyAtFrame& body, std::vector<ContactSp
       taken = static_cast<int>(c);
     }
     constexpr double kTouching = 1e-12;  // [m] rounding of positions
-    if (largest <= kTouching) break;
-    m_pressed.insert(std::lower_bound(m_pressed.begin(), m_pressed.end(), taken), taken);
+    is_balanced = largest <= kTouching;
+    if (!is_balanced) m_pressed.insert(std::lower_bound(m_pressed.begin(), m_pressed.end(), taken), taken);
   }
+  if (!is_balanced)
+    return StepStatus::failed({body.tick, "contact", -1, "rounds in which the compliance finds no balance",
+                               static_cast<double>(3 * m + 1), static_cast<double>(3 * m)});
   std::fill(m_force.begin(), m_force.end(), Vec3::Zero());
   for (std::size_t c = 0; c < m; ++c) {
     springs[c].force = std::max(0.0, m_trial[c]);

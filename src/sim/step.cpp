@@ -170,18 +170,24 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
     m_solid.finish_step(solid);
     apply_clay_kernel(load, h);  // v ← G_d^{h/h_ref} v
     m_solid.move(solid);
-    for (const int n : load.force.nodes)
-      m_state.contact_work += load.force.at.col(n).dot(solid.x.col(n) - m_solid.x_start().col(n));
   }
   {
     const StageScope scope(m_observer, Stage::kinematics);
+    const double energy_given = m_state.energy_given;
     StepStatus status = check_energy(load);
     if (status.is_ok()) status = m_solid.update_kinematics(solid.x, tick());  // F → R → ε
     if (!status.is_ok()) {
       solid.x = m_solid.x_start();  // the last good state stays
       solid.v = m_solid.v_start();
+      m_state.energy_given = energy_given;
+      answer.felt = load.hand.felt;
+      const StepStatus back = m_solid.restore_kinematics(solid.x, tick());
+      ARGIL_ASSERT(back.is_ok());
       return status;
     }
+    m_solid.keep_start(solid);
+    for (const int n : load.force.nodes)
+      m_state.contact_work += load.force.at.col(n).dot(solid.x.col(n) - m_solid.x_start().col(n));
   }
   const StageScope scope(m_observer, Stage::plasticity);
   apply_plastic_flow(h);  // trial ε_p of every tet, committed at once

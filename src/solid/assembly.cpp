@@ -101,9 +101,9 @@ void Solid::set_corner_products(const Points& u, double kept, double exact) {
       H.noalias() += u.col(m_elements.nodes(i, tet)) * m_elements.gradient.col(N * p + i).transpose();
     return H;
   };
-  Field mean_kept, mean_exact;  // p1_nodal: the nodes' mean volume change
+  auto& [change, mean_kept, mean_exact, gradient] = m_of_nodal;  // p1_nodal: the nodes' mean volume change
   const auto average = [&](const auto& gradient_of, Field& mean) {
-    Field change(m_elements.num_tets());
+    change.resize(m_elements.num_tets());
     for (int t = 0; t < m_elements.num_tets(); ++t)
       change(t) = gradient_of(t).cwiseProduct(displacement_gradient(t)).sum();
     m_nodal->average(change, mean);

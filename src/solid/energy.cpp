@@ -30,9 +30,8 @@ double Solid::compute_elastic_energy(const TensorField& plastic_strain) const {
   });
   if (!m_nodal) return own;
   m_nodal->update_stiffness();
-  Field change;
-  compute_volume_changes(plastic_strain, change);
-  return own + m_nodal->compute_energy(change);
+  compute_volume_changes(plastic_strain, m_of_nodal.change);
+  return own + m_nodal->compute_energy(m_of_nodal.change);
 }
 
 StrainSummary Solid::summarise(const TensorField& plastic_strain) const {

@@ -29,6 +29,29 @@ bool Solid::is_awake(Eigen::Index node) const {
   return !m_region || (row >= 0 && m_region->is_row_awake(row));
 }
 
+void Solid::make_region() {
+  m_region = std::make_unique<ActiveSet>(m_elements, m_node_of_row, m_row_of_node);
+  m_pulls.reserve(m_region->awake().size());
+  m_run_speed.reserve(m_region->awake().size());
+  visit_region();
+}
+
+void Solid::drop_region() {
+  m_region.reset();
+  m_rows.visit(nullptr);
+  m_near_rows.visit(nullptr);
+  m_nodes.visit(nullptr);
+  m_solver->visit(nullptr);
+  m_held_back = 0.0;
+}
+
+/// From now on, in the midst of a step, the whole body moves and always will.
+void Solid::leave_region(const StepLoads& loads) {
+  m_region->wake_all();
+  if (m_region->update()) take_in_region(loads);
+  drop_region();
+}
+
 void Solid::visit_region() {
   m_rows.visit(&m_region->awake());
   m_near_rows.visit(&m_region->near());

@@ -87,7 +87,8 @@ void Solid::store_nodal_stiffness() {
 void Solid::update_nodal_stiffness() {
   add_nodal_stiffness(m_kinematics.turned_gradient(), shares().kept);
   if (shares().exact == 0.0) return;
-  Eigen::Matrix3Xd gradient(3, m_elements.gradient.cols());
+  Eigen::Matrix3Xd& gradient = m_of_nodal.gradient;
+  gradient.resize(3, m_elements.gradient.cols());
   for (int t = 0; t < m_elements.num_tets(); ++t)
     gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t)) =
         volume_gradient(t) * m_elements.gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t));

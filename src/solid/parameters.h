@@ -25,6 +25,9 @@ enum class Integrator {
   symplectic_euler,  ///< explicit, stable below the step 2/ω_max
 };
 
+/// τ of x' = x̂ + τ v' in a step of this length that has a past [s].
+double compute_tau(Integrator integrator, double step_s);
+
 enum class Iteration {
   one,     ///< one linearised step, rotations kept [Baraff1998]
   newton,  ///< to convergence, with line search on the incremental potential

@@ -65,14 +65,14 @@ Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
     m_direction.resize(3, num_nodes);
     m_change.strain.resize(6, m_elements.num_tets());
     m_change.corner_force.resize(3, m_corner_force.cols());
+    if (m_nodal) {
+      m_change.volume.resize(m_elements.num_tets());
+      m_change.pressure.resize(m_elements.num_tets());
+    }
   }
   constexpr int kLarge = 1500;  // rows; with fewer, keeping the lists costs what a smaller solve saves
-  if (m_params.extent == Extent::local || (m_params.extent == Extent::automatic && num_free() >= kLarge)) {
-    m_region = std::make_unique<ActiveSet>(m_elements, m_node_of_row, m_row_of_node);
-    m_pulls.reserve(m_region->awake().size());
-    m_run_speed.reserve(m_region->awake().size());
-    visit_region();
-  }
+  if (m_params.extent == Extent::local || (m_params.extent == Extent::automatic && num_free() >= kLarge))
+    make_region();
 }
 
 /// Must a step be told where this support is? Backward Euler's leaves what does not move where it is.

@@ -88,8 +88,9 @@ class Solid {
   double compute_imbalance(const StepLoads& loads) const;
   /// One linear solve and, for Newton's method, its line search. Sets `solved` when no other is wanted.
   StepStatus solve(const StepLoads& loads, Tick tick, bool& solved);
-  void finish_step(SolidState& state);  ///< v ← v', and what bdf2 must remember
-  void move(SolidState& state) const;   ///< x ← x̂ + τ v; prescribed components go where they must
+  void finish_step(SolidState& state) const;  ///< v ← v'
+  void move(SolidState& state) const;         ///< x ← x̂ + τ v; prescribed components go where they must
+  void keep_start(SolidState& state) const;   ///< of a step that is made, what bdf2 must remember
 
   /// Extent::local, after a step's kinematics and flow: runs that have been slow for some steps, and whose
   /// tets do not flow, fall asleep and lose their speed. `is_flowing`: of each run of kLanes tets.
@@ -222,6 +223,9 @@ class Solid {
   Vec3 find_way(Eigen::Index row) const;
   double find_reach(std::size_t row, const LargestWay& largest) const;
   double find_felt_pull(int run, const LargestWay& largest, const StepLoads& loads) const;
+  void make_region();
+  void drop_region();
+  void leave_region(const StepLoads& loads);
   void visit_region();
   double frame_tolerance() const;
   bool has_lagging_frames() const;
@@ -278,7 +282,7 @@ class Solid {
 
   // step.cpp
   void keep_damping_frame();
-  double compute_tau(const SolidState& state, double step_s) const;
+  double find_tau(const SolidState& state, double step_s) const;
   void predict(const SolidState& state, const StepLoads& loads, double step_s);
   bool place_supports(double time, double share);
   void compute_residual(const StepLoads& loads);
@@ -380,7 +384,11 @@ class Solid {
     TensorField strain;
     Eigen::Matrix3Xd corner_force;
     Field volume, pressure;
-  } m_change;                     // of 4-node tets by a small displacement, the present rotations kept
+  } m_change;  // of 4-node tets by a small displacement, the present rotations kept
+  mutable struct {
+    Field change, mean_kept, mean_exact;  // of volume, of each tet
+    Eigen::Matrix3Xd gradient;
+  } m_of_nodal;                   // working arrays of p1_nodal
   double m_first_residual = 0.0;  // of the first guess of its first solve
   double m_residual_scale = 0.0;
   double m_corner_scale = 0.0;      // Σ‖corner force‖²

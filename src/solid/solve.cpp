@@ -94,6 +94,7 @@ StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
   if (is_explicit()) {
     for (int row = 0; row < num_free(); ++row)
       m_delta.col(row) = m_rhs.col(row) / m_mass(m_node_of_row[static_cast<std::size_t>(row)]);
+    m_counters.has_solved = true;
     set_iterate(1.0);
     return StepStatus::ok();
   }
@@ -139,9 +140,9 @@ linear::SolverParams Solid::make_exact(linear::SolverParams solver) {
 /// A δ = r. First guess: the body goes on as before; when contacts were exchanged, the step with the others.
 linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
   if (num_free() == 0) return {true, 0, 0.0};
-  const auto guess = [&] {
+  const auto guess = [&](bool is_anew) {
     if (is_newton()) m_delta.setZero();
-    if (is_first)
+    if (is_anew)
       m_near_rows.each(num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
         for (std::ptrdiff_t row = begin; row < end; ++row) {
           const int n = m_node_of_row[static_cast<std::size_t>(row)];
@@ -153,22 +154,20 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
         if (m_constraints.support(k, m_node_of_row[static_cast<std::size_t>(row)]) >= 0)
           m_delta(k, row) = 0.0;
   };
-  guess();
+  guess(is_first);
   Product product(*this, loads.contacts);
   if (m_is_static && !m_static_solver)
     m_static_solver = linear::make_solver(make_exact(m_params.solver), m_threads);
   linear::Solver& solver = m_is_static ? *m_static_solver : *m_solver;
-  // With other contacts, or more nodes, the same step goes on: to where its first solve was to end.
-  const auto set_goal = [&](double first_residual) {
-    solver.set_goal(is_newton() ? 0.0
-                                : std::max(m_tau * loads.slack, m_params.solver.tolerance * first_residual));
-  };
-  set_goal(is_first ? 0.0 : m_first_residual);
+  const double slack = is_newton() ? 0.0 : m_tau * loads.slack;
+  // With other contacts the same step goes on: to where its first solve was to end.
+  const bool goes_on = !is_first && !is_newton();
+  solver.set_goal(goes_on ? std::max(slack, m_params.solver.tolerance * m_first_residual) : slack);
   const bool follows_force = m_region && !m_is_static && loads.region_slack > 0.0;
   if (follows_force) grow_region_by_force(loads);
   linear::SolveReport report = solver.solve(m_matrix, product, m_rhs, m_delta);
   if (is_first) m_first_residual = report.first;
-  set_goal(m_first_residual);
+  solver.set_goal(slack);
   // What the solution pulls at and the hand would feel moves, too: some layers of it in a blow, none as a
   // rule.
   constexpr int kMostLayers = 16;
@@ -177,10 +176,15 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
     report = solver.solve(m_matrix, product, m_rhs, m_delta);
     report.iterations += first.iterations;
   }
+  if (!report.converged && m_region && !m_is_static) {  // what a solve of the whole can do: by a factor
+    leave_region(loads);
+    guess(true);
+    report = solver.solve(m_matrix, product, m_rhs, m_delta);
+  }
   if (report.wants_stored) {
     store_nodal_stiffness();
     assemble_matrix(loads.contacts);
-    guess();
+    guess(is_first);
     report = solver.solve(m_matrix, product, m_rhs, m_delta);
   }
   m_counters.linear_iterations += report.iterations;
@@ -251,7 +255,13 @@ bool Solid::correct_solution(const StepLoads& loads) {
     m_near_rows.each(num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       m_correction.middleCols(begin, end - begin).setZero();
     });
-    const linear::SolveReport report = m_solver->solve(m_matrix, product, m_left, m_correction);
+    linear::SolveReport report = m_solver->solve(m_matrix, product, m_left, m_correction);
+    if (report.wants_stored) {
+      store_nodal_stiffness();
+      assemble_matrix(loads.contacts);
+      m_correction.setZero();
+      report = m_solver->solve(m_matrix, product, m_left, m_correction);
+    }
     m_counters.linear_iterations += report.iterations;
     if (!report.converged) break;
     m_rows.each(num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -270,7 +280,7 @@ void Solid::prepare_response(const SolidState& state, double step_s) {
   store_nodal_stiffness();  // its solves are exact ones
   m_is_static = false;
   m_plastic_strain = &state.plastic_strain;
-  m_tau = compute_tau(state, step_s);
+  m_tau = find_tau(state, step_s);
   m_is_projected = true;
   keep_damping_frame();
   update_volume_change(state.plastic_strain);
@@ -315,6 +325,10 @@ void Solid::exchange_state(Archive& archive) {
   archive.number("solid/stores_nodal", stores_nodal);
   if (stores_nodal) store_nodal_stiffness();
   m_solver->exchange_state(archive, "solver/", m_matrix);
+  bool has_region = m_region != nullptr;
+  archive.number("region/is_used", has_region);
+  if (has_region && !m_region) make_region();
+  if (!has_region && m_region) drop_region();
   bool has_response_solver = m_response_solver != nullptr;
   archive.number("response/is_known", has_response_solver);
   if (!has_response_solver) return;

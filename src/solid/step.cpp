@@ -59,11 +59,10 @@ void Solid::keep_damping_frame() {
     m_kept_rotation.resize(3, 0);
 }
 
-/// τ of each integrator. The first step of bdf2 has no past and is backward Euler's.
-double Solid::compute_tau(const SolidState& state, double step_s) const {
-  switch (m_params.integrator) {
+double compute_tau(Integrator integrator, double step_s) {
+  switch (integrator) {
     case Integrator::bdf2:
-      return state.x_before.size() == 0 ? step_s : 2.0 / 3.0 * step_s;
+      return 2.0 / 3.0 * step_s;
     case Integrator::newmark:
       return 0.5 * step_s;
     case Integrator::backward_euler:
@@ -73,9 +72,15 @@ double Solid::compute_tau(const SolidState& state, double step_s) const {
   return step_s;
 }
 
+/// The first step of bdf2 has no past and is backward Euler's.
+double Solid::find_tau(const SolidState& state, double step_s) const {
+  const bool has_past = m_params.integrator != Integrator::bdf2 || state.x_before.size() > 0;
+  return has_past ? compute_tau(m_params.integrator, step_s) : step_s;
+}
+
 /// x̂, v̂, τ of each integrator.
 void Solid::predict(const SolidState& state, const StepLoads& loads, double step_s) {
-  m_tau = compute_tau(state, step_s);
+  m_tau = find_tau(state, step_s);
   switch (m_params.integrator) {
     case Integrator::backward_euler:
     case Integrator::symplectic_euler:
@@ -129,6 +134,7 @@ void Solid::set_rounding() {
   const double rounding = kOperations * std::numeric_limits<double>::epsilon() * m_x.cwiseAbs().maxCoeff();
   const int N = m_elements.nodes_per_tet;
   const int Q = m_elements.points_per_tet;
+  m_corner_scale = m_corner_force.squaredNorm();
   m_rounding.resize(m_elements.num_nodes());
   parallel_for(m_elements.num_nodes(), m_threads, [&](std::ptrdiff_t node) {
     double squares = 0.0;
@@ -160,7 +166,7 @@ double Solid::compute_excess() const {
 /// alone.
 void Solid::compute_residual(const StepLoads& loads) {
   if (is_newton() || m_iterations == 0) assemble_internal_force();  // other contacts, the same place
-  m_corner_scale = is_newton() ? m_corner_force.squaredNorm() : 0.0;
+  if (is_newton()) set_rounding();
   const bool is_viscous =
       !m_is_static && m_params.rayleigh_stiffness > 0.0 &&
       m_nodes.sum(m_v.cols(), [&](std::ptrdiff_t n) { return m_v.col(n).isZero(0.0) ? 0.0 : 1.0; }) > 0.0;
@@ -207,7 +213,6 @@ void Solid::set_residual_scale(const StepLoads& loads) {
   });
   m_residual_scale = given + m_tau * reactions;
   m_is_driven = given > 0.0 || m_is_shifted;
-  set_rounding();
   // Of the energy: force times what rounding moves each corner.
   const auto corners = static_cast<double>(m_elements.nodes.size());
   m_potential_rounding = kRounding * m_x.cwiseAbs().maxCoeff() * std::sqrt(corners * m_corner_scale);
@@ -326,17 +331,19 @@ StepStatus Solid::search_line(const StepLoads& loads, Tick tick) {
   return StepStatus::failed({tick, "solid", -1, "line search: slope of the potential", slope, 0.0});
 }
 
-void Solid::finish_step(SolidState& state) {
-  if (m_params.integrator == Integrator::bdf2) {
-    state.x_before = state.x;
-    state.v_before = state.v;
-  }
+void Solid::finish_step(SolidState& state) const {
   each_node([&](std::ptrdiff_t n) { state.v.col(n) = m_v.col(n); });
 }
 
 void Solid::move(SolidState& state) const {
   each_node([&](std::ptrdiff_t n) { state.x.col(n) = m_x_hat.col(n) + m_tau * state.v.col(n); });
   for (const auto& [n, k] : m_placed_components) state.x(k, n) = m_held_x(k, n);
+}
+
+void Solid::keep_start(SolidState& state) const {
+  if (m_params.integrator != Integrator::bdf2) return;
+  state.x_before = m_x_start;
+  state.v_before = m_v_start;
 }
 
 }  // namespace argil::solid

@@ -81,7 +81,9 @@ struct Scene {
   StepStatus step(double h, std::span<const solid::PointStiffness> contacts = {}) {
     ARGIL_TRY(solve(h, contacts));
     solid.move(state);
-    return solid.update_kinematics(state.x, 0);
+    ARGIL_TRY(solid.update_kinematics(state.x, 0));
+    solid.keep_start(state);
+    return StepStatus::ok();
   }
   StepStatus find_equilibrium() { return solid.find_equilibrium(state, solid::StepLoads{load}); }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <tuple>
 
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
@@ -112,6 +113,24 @@ const Case kCases[] = {
     {"linear", [](Params& p) { p.solid.model = solid::StrainModel::linear; }},
     {"neo_hookean", [](Params& p) { p.solid.model = solid::StrainModel::neo_hookean; }},
     {"p1_nodal", [](Params& p) { p.solid.element = solid::ElementKind::p1_nodal; }},
+    {"p1_nodal_bdf2",
+     [](Params& p) {
+       p.elastic = {1e5, 0.45};
+       p.solid.element = solid::ElementKind::p1_nodal;
+       p.solid.integrator = solid::Integrator::bdf2;
+     }},
+    {"p1_nodal_fidelity",
+     [](Params& p) {
+       p.elastic = {1e5, 0.45};
+       p.solid.element = solid::ElementKind::p1_nodal;
+       p.fidelity.mode = FidelityMode::automatic;
+     }},
+    {"p1_nodal_newton",
+     [](Params& p) {
+       p.elastic = {1e5, 0.45};
+       p.solid.element = solid::ElementKind::p1_nodal;
+       p.solid.iteration = solid::Iteration::newton;
+     }},
     {"bdf2", [](Params& p) { p.solid.integrator = solid::Integrator::bdf2; }},
     {"explicit",
      [](Params& p) {
@@ -181,12 +200,13 @@ TEST(TickOfARegion, TakesNothingFromTheHeapWhereItHasNotBeen) {
 /// What the first touch takes goes with the contacts, and not with the mesh. The bodies differ in what is far
 /// from the tool.
 TEST(FirstTouch, TakesTheSameFromTheHeapOnABodyOfNineTimesAsManyTets) {
-  const auto count_bytes = [](int cells, FidelityMode mode) {
+  const auto count_bytes = [](int cells, FidelityMode mode, solid::Extent extent, double tolerance) {
     Params params = make_params();
+    params.solid.solver.tolerance = tolerance;
     params.fidelity.mode = mode;
     params.contact.friction = 0.0;
     params.kernel.radius = 0.008;
-    params.solid.extent = solid::Extent::local;
+    params.solid.extent = extent;
     const auto hand = [](int tick) {
       device::DeviceSample sample;
       sample.position = {0.0153, 0.0153, 0.02 + kToolRadius + 1e-3 - 2e-5 * tick};
@@ -200,9 +220,13 @@ TEST(FirstTouch, TakesTheSameFromTheHeapOnABodyOfNineTimesAsManyTets) {
     EXPECT_GT(simulation.hand_state().hand_force.norm(), 0.01);
     return static_cast<double>(test::count_bytes() - before);
   };
-  for (const FidelityMode mode : {FidelityMode::full, FidelityMode::automatic}) {
-    const double small = count_bytes(12, mode);
-    const double large = count_bytes(36, mode);
+  for (const auto& [mode, extent, tolerance] :
+       {std::tuple{FidelityMode::full, solid::Extent::local, 1e-3},
+        std::tuple{FidelityMode::automatic, solid::Extent::local, 1e-3},
+        std::tuple{FidelityMode::full, solid::Extent::whole, 1e-3},
+        std::tuple{FidelityMode::full, solid::Extent::whole, 1e-6}}) {
+    const double small = count_bytes(12, mode, extent, tolerance);
+    const double large = count_bytes(36, mode, extent, tolerance);
     EXPECT_NEAR(large / small, 1.0, 0.1) << small << " and " << large << " bytes";
   }
 }

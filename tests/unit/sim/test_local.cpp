@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "contact/tool_shape.h"
+#include "mesh/shapes.h"
 #include "sim/simulation.h"
 #include "support/block_body.h"
 
@@ -227,6 +228,48 @@ TEST(LocalExtent, UnderFidelityReturnsToTheSameBits) {
       run_on(*simulation, 62);
     }
   }
+}
+
+/// A flat tet under the tool, beside which floats lose what holds its neighbours: the whole body is solved
+/// for then, by a factor, and on return from a checkpoint, too.
+TEST(LocalExtent, IsLeftWhereFloatsMakeItsMatrixIndefinite) {
+  Body body = test::make_block_body(12, 12, 4, Vec3(0.06, 0.06, 0.02));
+  mesh::flatten_tet(body.mesh, 1e-9);
+  body.topology = mesh::make_topology(body.mesh);
+  const auto hand = [](Tick tick) {
+    device::DeviceSample sample;
+    sample.position = {0.0303, 0.0302, 0.02 + kToolRadius + 2e-5 - 1e-5 * static_cast<double>(tick)};
+    sample.mode = device::ToolMode::push;
+    return sample;
+  };
+  const auto make = [&](solid::Extent extent) {
+    return Simulation(body, contact::make_sphere_tool(kToolRadius, 2), make_params(extent, 1e-3), hand(0));
+  };
+  const auto run_on = [&](Simulation& simulation, Tick last) {
+    while (simulation.clock().tick < last) {
+      const StepStatus status = simulation.tick(hand(simulation.clock().tick + 1));
+      ASSERT_TRUE(status.is_ok()) << to_string(status.failure());
+    }
+  };
+  Simulation local = make(solid::Extent::local);
+  const Snapshot before = local.take_snapshot();
+  run_on(local, 12);
+  EXPECT_EQ(local.physics_record().active_nodes, local.solid().num_free());
+  EXPECT_EQ(local.physics_record().factorisations, 1);
+  const Snapshot after = local.take_snapshot();
+  run_on(local, 20);
+  EXPECT_GT(local.hand_state().hand_force.norm(), 0.01);
+  Simulation whole = make(solid::Extent::whole);
+  run_on(whole, 20);
+  EXPECT_NEAR((local.hand_state().hand_force - whole.hand_state().hand_force).norm(), 0.0, 1e-3);
+
+  Simulation fresh = make(solid::Extent::local);
+  fresh.restore(after, "run.h5");
+  run_on(fresh, 20);
+  EXPECT_EQ(fresh.state_hash(), local.state_hash());
+  fresh.restore(before, "run.h5");  // to where it had its region
+  run_on(fresh, 20);
+  EXPECT_EQ(fresh.state_hash(), local.state_hash());
 }
 
 TEST(LocalExtent, IsTakenByItselfWhereItSaves) {

@@ -244,6 +244,35 @@ TEST(Simulation, NothingMovesWhileTheToolIsAway) {
   EXPECT_EQ(simulation.hand_state().hand_force, Vec3(0, 0, 0));
 }
 
+TEST(Simulation, AStepThatFailsLeavesTheBodyAsItWas) {
+  Params params = make_params();
+  params.solid.integrator = solid::Integrator::bdf2;
+  params.contact = {5000.0, 5000.0};
+  params.solid.implicit_contact = false;
+  Simulation simulation = make_simulation(params);
+  StepStatus status = StepStatus::ok();
+  BodyState before = simulation.body_state();
+  PhysicsRecord record = simulation.physics_record();
+  for (int k = 1; k <= 40; ++k) {
+    status = simulation.tick(over(0.001 - 5e-4 * k, device::ToolMode::push));
+    if (!status.is_ok()) break;
+    before = simulation.body_state();
+    record = simulation.physics_record();
+  }
+  ASSERT_FALSE(status.is_ok());
+  EXPECT_EQ(status.failure().stage, "solid");
+  const BodyState& state = simulation.body_state();
+  ASSERT_GT(before.contact_work, 0.0);
+  EXPECT_EQ(state.solid.x, before.solid.x);
+  EXPECT_EQ(state.solid.v, before.solid.v);
+  EXPECT_EQ(state.solid.x_before, before.solid.x_before);
+  EXPECT_EQ(state.solid.v_before, before.solid.v_before);
+  EXPECT_EQ(state.contact_work, before.contact_work);
+  EXPECT_EQ(state.energy_given, before.energy_given);
+  EXPECT_EQ(simulation.physics_record().elastic_energy, record.elastic_energy);
+  EXPECT_EQ(simulation.physics_record().min_volume_ratio, record.min_volume_ratio);
+}
+
 TEST(Simulation, StateHashTellsTheLastBit) {
   Simulation a = make_simulation(make_params());
   Simulation b = make_simulation(make_params());
