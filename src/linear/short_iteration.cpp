@@ -34,14 +34,12 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
   const double share = std::max({tolerance, rounding / first, goal / first});
   SolveReport report = iterate(whole, first, share, max_iterations, true);
   add_to(x, first);
-  if (report.converged)
-    m_last.keep(m_runs, num_rows, m_x.data(), first);
-  else
-    m_last.clear(0, num_rows);
+  if (report.converged) m_last.keep(m_runs, num_rows, m_x.data(), first);
   // Rounding grows with the iterations: after many of them what is left is taken in double, and they go on
   // from there.
   constexpr int kTrusted = 50;
   constexpr double kWorthwhile = 0.5;  // of what was left, for another round
+  constexpr double kAim = 0.4;         // of what is wanted: less than that, lest a round ends just short
   for (double before = std::numeric_limits<double>::infinity();
        report.converged && report.iterations > kTrusted;) {
     const double left = find_residual(whole, b, x);
@@ -50,11 +48,13 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
     if (report.converged || !(left < kWorthwhile * before) || report.iterations >= max_iterations) break;
     before = left;
     const SolveReport more =
-        iterate(whole, left, share * first / left, max_iterations - report.iterations, false);
+        iterate(whole, left, kAim * share * first / left, max_iterations - report.iterations, false);
     add_to(x, left);
     report.iterations += more.iterations;
+    report.relative_residual = more.relative_residual * left / first;
     report.converged = more.converged;
   }
+  if (!report.converged) m_last.clear(0, num_rows);
   report.first = first;
   return report;
 }

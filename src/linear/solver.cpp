@@ -159,9 +159,10 @@ class KeptFactorSolver final : public Solver {
       const SolveReport report = m_jacobi.solve(matrix, product, b, max_iterations, m_goal, x);
       m_cost.iterations += report.iterations;
       m_cost.multiplications += (report.iterations + 1.0) * count_entries(matrix);
-      // What doubles call indefinite a factor does, too.
+      // What doubles call indefinite a factor does, too; and nothing solves for what is no number.
       const bool is_indefinite = std::isinf(report.relative_residual) && !m_jacobi.is_short();
-      if (report.converged || m_is_part || is_indefinite) return report;
+      const bool is_no_number = std::isnan(report.relative_residual) && report.iterations == 0;
+      if (report.converged || m_is_part || is_indefinite || is_no_number) return report;
       if (product.has_unstored())
         return {false, report.iterations, report.relative_residual, report.first, true};
       m_has_factor = true;

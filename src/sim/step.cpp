@@ -150,9 +150,21 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
   loads.region_slack = m_fidelity.region_slack();
   if (load.is_pressed)
     loads.mobility = [this, &load](Eigen::Index node) { return clay_factor(node, load, step_seconds()); };
+  const double energy_given = m_state.energy_given;
+  // The last good state stays.
+  const auto take_back = [&](const StepStatus& failed) {
+    solid.x = m_solid.x_start();
+    solid.v = m_solid.v_start();
+    m_state.energy_given = energy_given;
+    answer.felt = load.hand.felt;
+    const StepStatus back = m_solid.restore_kinematics(solid.x, tick());
+    ARGIL_ASSERT(back.is_ok());
+    return failed;
+  };
   {
     const StageScope scope(m_observer, Stage::assemble);
-    ARGIL_TRY(m_solid.begin_step(solid, loads, h, time_at_end(), tick()));
+    const StepStatus status = m_solid.begin_step(solid, loads, h, time_at_end(), tick());
+    if (!status.is_ok()) return take_back(status);
   }
   for (bool solved = false; !solved;) {
     {
@@ -162,7 +174,8 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
     const bool is_first = m_solid.counters().newton_iterations == 0;
     if (!m_fidelity.is_full() && is_first && falls_asleep(load, loads)) return StepStatus::ok();
     const StageScope scope(m_observer, Stage::solve);
-    if (!solved) ARGIL_TRY(m_solid.solve(loads, tick(), solved));  // A δv = b
+    const StepStatus status = solved ? StepStatus::ok() : m_solid.solve(loads, tick(), solved);  // A δv = b
+    if (!status.is_ok()) return take_back(status);
   }
   {
     const StageScope scope(m_observer, Stage::solve);
@@ -173,18 +186,9 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
   }
   {
     const StageScope scope(m_observer, Stage::kinematics);
-    const double energy_given = m_state.energy_given;
     StepStatus status = check_energy(load);
     if (status.is_ok()) status = m_solid.update_kinematics(solid.x, tick());  // F → R → ε
-    if (!status.is_ok()) {
-      solid.x = m_solid.x_start();  // the last good state stays
-      solid.v = m_solid.v_start();
-      m_state.energy_given = energy_given;
-      answer.felt = load.hand.felt;
-      const StepStatus back = m_solid.restore_kinematics(solid.x, tick());
-      ARGIL_ASSERT(back.is_ok());
-      return status;
-    }
+    if (!status.is_ok()) return take_back(status);
     m_solid.keep_start(solid);
     for (const int n : load.force.nodes)
       m_state.contact_work += load.force.at.col(n).dot(solid.x.col(n) - m_solid.x_start().col(n));

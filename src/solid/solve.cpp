@@ -176,16 +176,22 @@ linear::SolveReport Solid::solve_system(const StepLoads& loads, bool is_first) {
     report = solver.solve(m_matrix, product, m_rhs, m_delta);
     report.iterations += first.iterations;
   }
-  if (!report.converged && m_region && !m_is_static) {  // what a solve of the whole can do: by a factor
-    leave_region(loads);
+  const auto solve_anew = [&] {
+    const int before = report.iterations;
     guess(true);
     report = solver.solve(m_matrix, product, m_rhs, m_delta);
+    report.iterations += before;
+    if (is_first) m_first_residual = report.first;
+  };
+  const bool is_number = report.iterations > 0 || !std::isnan(report.relative_residual);
+  if (!report.converged && is_number && m_region && !m_is_static) {  // of the whole, where a factor may do
+    leave_region(loads);
+    solve_anew();
   }
   if (report.wants_stored) {
     store_nodal_stiffness();
     assemble_matrix(loads.contacts);
-    guess(is_first);
-    report = solver.solve(m_matrix, product, m_rhs, m_delta);
+    solve_anew();
   }
   m_counters.linear_iterations += report.iterations;
   m_counters.has_solved |= report.iterations > 0 || linear::is_direct(m_params.solver.kind);

@@ -244,9 +244,13 @@ TEST(Simulation, NothingMovesWhileTheToolIsAway) {
   EXPECT_EQ(simulation.hand_state().hand_force, Vec3(0, 0, 0));
 }
 
-TEST(Simulation, AStepThatFailsLeavesTheBodyAsItWas) {
+class FailedStep : public testing::TestWithParam<solid::Iteration> {};
+
+TEST_P(FailedStep, LeavesTheBodyAsItWas) {
   Params params = make_params();
   params.solid.integrator = solid::Integrator::bdf2;
+  params.solid.iteration = GetParam();
+  params.solid.newton_max_iterations = 4;
   params.contact = {5000.0, 5000.0};
   params.solid.implicit_contact = false;
   Simulation simulation = make_simulation(params);
@@ -272,6 +276,9 @@ TEST(Simulation, AStepThatFailsLeavesTheBodyAsItWas) {
   EXPECT_EQ(simulation.physics_record().elastic_energy, record.elastic_energy);
   EXPECT_EQ(simulation.physics_record().min_volume_ratio, record.min_volume_ratio);
 }
+
+INSTANTIATE_TEST_SUITE_P(Simulation, FailedStep,
+                         testing::Values(solid::Iteration::one, solid::Iteration::newton));
 
 TEST(Simulation, StateHashTellsTheLastBit) {
   Simulation a = make_simulation(make_params());
