@@ -145,6 +145,15 @@ StepStatus BodySide::check_energy(const ContactLoad& contacts) {
       {tick(), "solid", -1, "kinetic energy [J] of a body that was given less", kinetic, bound});
 }
 
+/// Puts the body back to where the step began that has failed.
+void BodySide::take_back(double energy_given) {
+  m_state.solid.x = m_solid.x_start();
+  m_state.solid.v = m_solid.v_start();
+  m_state.energy_given = energy_given;
+  const StepStatus status = m_solid.restore_kinematics(m_state.solid.x, tick());
+  ARGIL_ASSERT(status.is_ok());
+}
+
 /// ε_p of a point after a step's flow.
 Vec6 BodySide::compute_flow(int point, double step_s) const {
   const int tet = m_solid.elements().tet_of_point(point);

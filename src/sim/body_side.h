@@ -66,6 +66,7 @@ class BodySide {
   double clay_factor(Eigen::Index node, const ContactLoad& load, double step_s) const;
   void apply_clay_kernel(const ContactLoad& load, double step_s);
   StepStatus check_energy(const ContactLoad& contacts);
+  void take_back(double energy_given);
   Vec6 compute_flow(int point, double step_s) const;
   void apply_plastic_flow(double step_s);
   double flow_at_points(std::ptrdiff_t begin, std::ptrdiff_t end, double step_s);

@@ -151,20 +151,15 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
   if (load.is_pressed)
     loads.mobility = [this, &load](Eigen::Index node) { return clay_factor(node, load, step_seconds()); };
   const double energy_given = m_state.energy_given;
-  // The last good state stays.
-  const auto take_back = [&](const StepStatus& failed) {
-    solid.x = m_solid.x_start();
-    solid.v = m_solid.v_start();
-    m_state.energy_given = energy_given;
+  const auto fail = [&](const StepStatus& status) {
+    take_back(energy_given);  // the last good state stays
     answer.felt = load.hand.felt;
-    const StepStatus back = m_solid.restore_kinematics(solid.x, tick());
-    ARGIL_ASSERT(back.is_ok());
-    return failed;
+    return status;
   };
   {
     const StageScope scope(m_observer, Stage::assemble);
     const StepStatus status = m_solid.begin_step(solid, loads, h, time_at_end(), tick());
-    if (!status.is_ok()) return take_back(status);
+    if (!status.is_ok()) return fail(status);
   }
   for (bool solved = false; !solved;) {
     {
@@ -175,7 +170,7 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
     if (!m_fidelity.is_full() && is_first && falls_asleep(load, loads)) return StepStatus::ok();
     const StageScope scope(m_observer, Stage::solve);
     const StepStatus status = solved ? StepStatus::ok() : m_solid.solve(loads, tick(), solved);  // A δv = b
-    if (!status.is_ok()) return take_back(status);
+    if (!status.is_ok()) return fail(status);
   }
   {
     const StageScope scope(m_observer, Stage::solve);
@@ -188,7 +183,7 @@ StepStatus BodySide::physics_step(ContactLoad& load, BodyAnswer& answer) {
     const StageScope scope(m_observer, Stage::kinematics);
     StepStatus status = check_energy(load);
     if (status.is_ok()) status = m_solid.update_kinematics(solid.x, tick());  // F → R → ε
-    if (!status.is_ok()) return take_back(status);
+    if (!status.is_ok()) return fail(status);
     m_solid.keep_start(solid);
     for (const int n : load.force.nodes)
       m_state.contact_work += load.force.at.col(n).dot(solid.x.col(n) - m_solid.x_start().col(n));
