@@ -11,7 +11,7 @@
 #include "embed/cage.h"
 #include "mesh/readers.h"
 #include "output/result_reader.h"
-#include "study/run.h"
+#include "run/run.h"
 #include "support/scene_files.h"
 #include "support/shared_data.h"
 #include "support/temp_folder.h"
@@ -91,12 +91,12 @@ TEST_P(PressedBody, PushesBackAndKeepsItsWits) {
   const Vec3 target = vertices.col(top) + Vec3(0, 0, 0.008 - depth);
   const double floor = vertices.row(2).minCoeff() + 0.25 * body.size * extent.z() / extent.maxCoeff();
 
-  study::RunOptions run;
+  run::RunOptions run;
   run.quiet = true;
   run.scenario = test::write_text(folder / "scene.json",
                                   make_scenario(key, target - window.lowest, window.start, floor));
   run.output = folder / "out.h5";
-  ASSERT_EQ(study::run(run), study::kDone);
+  ASSERT_EQ(run::run(run), run::kDone);
   const output::ResultReader result(run.output);
   double largest = 0.0;
   double lift = 0.0;
