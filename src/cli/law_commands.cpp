@@ -12,7 +12,7 @@
 #include "contact/queries.h"
 #include "embed/cage.h"
 #include "mesh/quality.h"
-#include "mesh/readers.h"
+#include "mesh_files/readers.h"
 #include "run/files.h"
 #include "run/run.h"
 #include "scenario/probe.h"
@@ -33,8 +33,9 @@ struct Options {
 int make_cage_file(const std::string& surface, const std::string& output, int target_tets, double scale) {
   run::require_input_file(surface);
   run::check_cage_name(surface, output);
-  const embed::Cage cage = embed::make_cage(mesh::read_triangle_mesh(surface, scale), {target_tets}, surface);
-  mesh::write_gmsh(cage.mesh, output);
+  const embed::Cage cage =
+      embed::make_cage(mesh_files::read_triangle_mesh(surface, scale), {target_tets}, surface);
+  mesh_files::write_gmsh(cage.mesh, output);
   const embed::CageReport& r = cage.report;
   std::printf("%s: %d tets, %d vertices, cell %.4g m, boundary %.4g m off the surface, ", output.c_str(),
               r.num_tets, cage.mesh.num_vertices(), r.cell_size, r.offset);

@@ -9,7 +9,7 @@
 
 #include "device/trace.h"
 #include "embed/cage.h"
-#include "mesh/readers.h"
+#include "mesh_files/readers.h"
 #include "output/result_reader.h"
 #include "run/run.h"
 #include "support/scene_files.h"
@@ -71,7 +71,7 @@ TEST_P(PressedBody, PushesBackAndKeepsItsWits) {
   const std::string file = test::shared_data(body.file);
   const bool is_surface = file.ends_with(".obj");
   const Points raw =
-      is_surface ? mesh::read_triangle_mesh(file).vertices : mesh::read_tet_mesh(file).vertices;
+      is_surface ? mesh_files::read_triangle_mesh(file).vertices : mesh_files::read_tet_mesh(file).vertices;
   const Vec3 extent = raw.rowwise().maxCoeff() - raw.rowwise().minCoeff();
   const double scale = body.size / extent.maxCoeff();
   std::string key = R"("mesh": {"file": ")" + file + R"(", "scale": )" + std::to_string(scale) + "}";
@@ -79,7 +79,7 @@ TEST_P(PressedBody, PushesBackAndKeepsItsWits) {
   if (is_surface) {
     key = R"("surface": {"file": ")" + file + R"(", "target_tets": 5000, "scale": )" + std::to_string(scale) +
           "}";
-    mesh::TriangleMesh surface = mesh::read_triangle_mesh(file, std::stod(std::to_string(scale)));
+    mesh::TriangleMesh surface = mesh_files::read_triangle_mesh(file, std::stod(std::to_string(scale)));
     vertices = embed::make_cage(surface, {5000}, file).mesh.vertices;
   }
   Eigen::Index top = 0;

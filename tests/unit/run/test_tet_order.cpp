@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "base/rng.h"
-#include "mesh/shapes.h"
 #include "output/result_reader.h"
 #include "run/run.h"
+#include "shapes/shapes.h"
 #include "support/scene_files.h"
 #include "support/temp_folder.h"
 
@@ -19,7 +19,7 @@ namespace {
 class TetOrder : public testing::Test {
  protected:
   test::TempFolder folder;
-  mesh::TetMesh ball = mesh::make_shape_mesh({mesh::ShapeKind::sphere, 0.04}, 600);
+  mesh::TetMesh ball = shapes::make_shape_mesh({shapes::ShapeKind::sphere, 0.04}, 600);
   mesh::TetMesh other;     // the same in another order
   std::vector<int> place;  // of the other's tets in the ball
 
