@@ -9,14 +9,14 @@
 
 #include "base/error.h"
 #include "cli/commands.h"
-#include "study/identity.h"
-#include "study/interrupt.h"
-#include "study/run.h"
+#include "run/identity.h"
+#include "run/interrupt.h"
+#include "run/run.h"
 
 int main(int argc, char** argv) {
-  using argil::study::ExitCode;
+  using argil::run::ExitCode;
   CLI::App app("Deterministic simulator of porous, deformable clay touched by a haptic tool", "argil");
-  app.set_version_flag("--version", argil::study::describe_build());
+  app.set_version_flag("--version", argil::run::describe_build());
   app.require_subcommand(1);
   int code = ExitCode::kDone;
   argil::cli::add_run_commands(app, code);
@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   } catch (const argil::InputError& error) {
     std::fprintf(stderr, "argil: %s\n", error.what());
     return ExitCode::kInputRefused;
-  } catch (const argil::study::Interrupted& signal) {
+  } catch (const argil::run::Interrupted& signal) {
     std::fprintf(stderr, "argil: %s\n", signal.what());
     return ExitCode::kInterrupted;
   } catch (const argil::IoError& error) {

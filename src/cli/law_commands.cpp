@@ -12,15 +12,15 @@
 #include "contact/queries.h"
 #include "embed/cage.h"
 #include "mesh/quality.h"
-#include "mesh/readers.h"
+#include "mesh_files/readers.h"
+#include "run/files.h"
+#include "run/run.h"
 #include "scenario/probe.h"
-#include "study/files.h"
-#include "study/run.h"
 
 namespace argil::cli {
 namespace {
 
-using study::ExitCode;
+using run::ExitCode;
 
 /// What the commands of this file are given; they share it, for only one of them runs.
 struct Options {
@@ -31,10 +31,11 @@ struct Options {
 };
 
 int make_cage_file(const std::string& surface, const std::string& output, int target_tets, double scale) {
-  study::require_input_file(surface);
-  study::check_cage_name(surface, output);
-  const embed::Cage cage = embed::make_cage(mesh::read_triangle_mesh(surface, scale), {target_tets}, surface);
-  mesh::write_gmsh(cage.mesh, output);
+  run::require_input_file(surface);
+  run::check_cage_name(surface, output);
+  const embed::Cage cage =
+      embed::make_cage(mesh_files::read_triangle_mesh(surface, scale), {target_tets}, surface);
+  mesh_files::write_gmsh(cage.mesh, output);
   const embed::CageReport& r = cage.report;
   std::printf("%s: %d tets, %d vertices, cell %.4g m, boundary %.4g m off the surface, ", output.c_str(),
               r.num_tets, cage.mesh.num_vertices(), r.cell_size, r.offset);
@@ -45,7 +46,7 @@ int make_cage_file(const std::string& surface, const std::string& output, int ta
 
 int print_times_of_impact(const std::string& kind, const std::string& queries, double separation) {
   const auto pair = kind == "vertex-face" ? contact::PairKind::vertex_face : contact::PairKind::edge_edge;
-  study::require_input_file(queries);
+  run::require_input_file(queries);
   const contact::QueryFile file = contact::read_queries(queries);
   std::puts("query,hit,time_of_impact");
   for (std::size_t q = 0; q < file.paths.size(); ++q) {

@@ -12,32 +12,32 @@
 #include "live/live.h"
 #include "output/compare.h"
 #include "output/info.h"
+#include "run/export.h"
+#include "run/files.h"
+#include "run/run.h"
 #include "scenario/model_summary.h"
 #include "scenario/tolerance_file.h"
-#include "study/export.h"
-#include "study/files.h"
-#include "study/run.h"
 
 namespace argil::cli {
 namespace {
 
-using study::ExitCode;
+using run::ExitCode;
 
 /// What the commands of this file are given; they share it, for only one of them runs.
 struct Options {
-  study::RunOptions run;
+  run::RunOptions run;
   live::LiveOptions live;
-  study::ExportOptions exported;
+  run::ExportOptions exported;
   bool reference = false;
   std::vector<std::string> devices;
   std::string first, second, tolerances;
 };
 
 int compare_files(const std::string& a, const std::string& b, const std::string& tolerances) {
-  for (const std::string& file : {a, b}) study::require_input_file(file);
+  for (const std::string& file : {a, b}) run::require_input_file(file);
   output::CompareOptions options;
   if (!tolerances.empty()) {
-    study::require_input_file(tolerances);
+    run::require_input_file(tolerances);
     options = scenario::load_tolerances(tolerances);
   }
   const output::CompareReport report = output::compare_results(a, b, options);
@@ -46,7 +46,7 @@ int compare_files(const std::string& a, const std::string& b, const std::string&
 }
 
 int print_info(const std::string& file) {
-  study::require_input_file(file);
+  run::require_input_file(file);
   const output::ResultReader reader(file);
   std::cout << output::describe_result(reader);
   if (const auto scenario = reader.find_provenance("scenario"))
@@ -68,8 +68,8 @@ void print_devices(std::vector<std::string> names) {
   std::fputs(device::describe_devices(names, kPatience).c_str(), stdout);
 }
 
-int validate(const study::RunOptions& options) {
-  const scenario::Scenario s = study::load(options);
+int validate(const run::RunOptions& options) {
+  const scenario::Scenario s = run::load(options);
   for (const std::string& warning : s.warnings) std::fprintf(stderr, "argil: warning: %s\n", warning.c_str());
   std::printf("%s: valid\n", s.file.c_str());
   return ExitCode::kDone;
@@ -95,7 +95,7 @@ void add_run_commands(CLI::App& app, int& code) {
   run->add_flag("--resume", o->run.resume, "go on from the result's last checkpoint, if there is one");
   run->add_flag("--dry-run", o->run.dry_run, "check and build everything, write nothing");
   run->add_flag("-q,--quiet", o->run.quiet, "print errors only");
-  run->callback([o, &code] { code = study::run(o->run); });
+  run->callback([o, &code] { code = run::run(o->run); });
 
   CLI::App* live = app.add_subcommand("live", "run a scenario with a device in the place of its trace");
   live->add_option("SCENARIO", o->run.scenario, "scenario (JSON)")->required();
@@ -124,7 +124,7 @@ void add_run_commands(CLI::App& app, int& code) {
 
   CLI::App* show = app.add_subcommand("show", "print a scenario with every default written out");
   add_scenario(show);
-  show->callback([o] { std::cout << scenario::print_resolved(study::load(o->run)); });
+  show->callback([o] { std::cout << scenario::print_resolved(run::load(o->run)); });
 
   CLI::App* schema = app.add_subcommand("schema", "print the JSON Schema of a scenario");
   schema->add_flag("--reference", o->reference, "print the reference page (Markdown) instead");
@@ -148,7 +148,7 @@ void add_run_commands(CLI::App& app, int& code) {
       ->check(finite_number(false))
       ->capture_default_str();
   exporting->add_flag("--cage", o->exported.cage, "show the cage also where there is a skin");
-  exporting->callback([o, &code] { code = study::export_result(o->exported); });
+  exporting->callback([o, &code] { code = run::export_result(o->exported); });
 
   CLI::App* compare =
       app.add_subcommand("compare", "compare two result files bit by bit, or within tolerances");

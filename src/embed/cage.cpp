@@ -11,9 +11,9 @@
 #include "base/error.h"
 #include "embed/tet_locator.h"
 #include "embed/triangle_tree.h"
-#include "mesh/implicit.h"
 #include "mesh/quality.h"
 #include "mesh/topology.h"
+#include "shapes/implicit.h"
 
 namespace argil::embed {
 namespace {
@@ -63,9 +63,9 @@ void require_usable_input(const mesh::TriangleMesh& surface, const CageOptions& 
 
 // Zero at the boundary of the union of the thickened skin and of what it winds round. The second part alone
 // closes holes; both are continuous where the union's boundary can lie.
-mesh::ImplicitSurface make_thick_surface(const TriangleTree& tree, const Points& vertices, double reach,
-                                         double cell_size) {
-  mesh::ImplicitSurface thick;
+shapes::ImplicitSurface make_thick_surface(const TriangleTree& tree, const Points& vertices, double reach,
+                                           double cell_size) {
+  shapes::ImplicitSurface thick;
   thick.lower = vertices.rowwise().minCoeff() - Vec3::Constant(reach);
   thick.upper = vertices.rowwise().maxCoeff() + Vec3::Constant(reach);
   const Vec3 lower = thick.lower;
@@ -190,7 +190,7 @@ double guess_cell_size(const mesh::TriangleMesh& skin, int target_tets) {
   return high;
 }
 
-void require_room(const mesh::ImplicitSurface& thick, double cell_size, const std::string& name) {
+void require_room(const shapes::ImplicitSurface& thick, double cell_size, const std::string& name) {
   constexpr double kMostCubes = 1e8;
   const double num_cubes = ((thick.upper - thick.lower).array() / cell_size + 4.0).prod();
   if (!(num_cubes <= kMostCubes))
@@ -211,10 +211,10 @@ Cage make_cage(const mesh::TriangleMesh& surface, const CageOptions& options, co
   int num_tets = 0;
   for (int round = 0; round < kRounds; ++round) {
     tree.set_radius(offset * cell_size);
-    const mesh::ImplicitSurface thick =
+    const shapes::ImplicitSurface thick =
         make_thick_surface(tree, skin.vertices, offset.maxCoeff() * cell_size, cell_size);
     require_room(thick, cell_size, name);
-    mesh::TetMesh mesh = mesh::stuff_isosurface(thick, cell_size);
+    mesh::TetMesh mesh = shapes::stuff_isosurface(thick, cell_size);
     num_tets = mesh.num_tets();
     const double ratio = static_cast<double>(std::max(num_tets, 1)) / options.target_tets;
     const double count_error = std::abs(ratio - 1.0);

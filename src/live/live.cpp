@@ -16,16 +16,16 @@
 #include "device/release_guard.h"
 #include "live/figures.h"
 #include "live/recorder.h"
+#include "run/files.h"
+#include "run/loop.h"
+#include "run/replay.h"
+#include "run/start.h"
 #include "scenario/build.h"
-#include "study/files.h"
-#include "study/loop.h"
-#include "study/replay.h"
-#include "study/start.h"
 
 namespace argil::live {
 namespace {
 
-using study::ExitCode;
+using run::ExitCode;
 
 std::atomic<Session*> g_session =
     nullptr;  // what a signal ends; the pointer and what it does are free of locks
@@ -82,7 +82,7 @@ void require_live(const scenario::Scenario& s) {
 device::DeviceOptions make_device_options(const scenario::Scenario& s, const device::Trace& trace) {
   device::DeviceOptions options;
   options.device_to_world = s.trace.options.device_to_world;
-  options.mode = study::find_fixed_mode(s).value_or(s.trace.options.default_mode);
+  options.mode = run::find_fixed_mode(s).value_or(s.trace.options.default_mode);
   options.period = s.params.rates.haptic_period;
   options.intent = trace;
   options.hand = s.hand.params;
@@ -112,7 +112,7 @@ output::SessionHead make_head(const scenario::Scenario& s, const device::DeviceI
   const device::DeviceLimits& limits = s.params.device;
   output::SessionHead head{info.name, sample, find_tighter(limits.max_force, info.max_force),
                            find_tighter(limits.max_torque, info.max_torque)};
-  head.start.mode = study::find_fixed_mode(s).value_or(sample.mode);
+  head.start.mode = run::find_fixed_mode(s).value_or(sample.mode);
   return head;
 }
 
@@ -127,8 +127,8 @@ void warn_of_stiffness(const scenario::Scenario& s, const device::DeviceInfo& in
 }
 
 void check_watch_name(const scenario::Scenario& s, const std::string& watch, const std::string& result) {
-  study::check_result_name(s, watch, "--watch");
-  for (const std::string& written : {result, study::name_xdmf(result)})
+  run::check_result_name(s, watch, "--watch");
+  for (const std::string& written : {result, run::name_xdmf(result)})
     if (std::filesystem::weakly_canonical(watch) == std::filesystem::weakly_canonical(written))
       throw InputError(watch, "", "is what the result is written to", "give another name to --watch");
 }
@@ -142,9 +142,9 @@ double find_water_capacity(const sim::Simulation& simulation) {
 Tick find_num_ticks(const scenario::Scenario& s, const LiveOptions& options, const device::Trace& trace) {
   constexpr double kMost = 1e15;
   const double period = s.params.rates.haptic_period;
-  if (options.duration == 0.0) return options.device == "simulated" ? study::count_ticks(s, trace) : 0;
+  if (options.duration == 0.0) return options.device == "simulated" ? run::count_ticks(s, trace) : 0;
   const bool is_countable = options.duration > 0.0 && options.duration <= kMost * period;
-  const Tick ticks = is_countable ? study::count_ticks(s, options.duration) : 0;
+  const Tick ticks = is_countable ? run::count_ticks(s, options.duration) : 0;
   std::ostringstream problem;
   problem << options.duration << " s is not from one tick (" << period << " s) to 1e15 ticks";
   if (ticks < 1) throw InputError("--duration", "", problem.str(), "give a duration in that range");
@@ -214,11 +214,11 @@ int conduct(sim::Simulation& simulation, device::HapticDevice& device, const Ses
     attend(session, recorder, figures, water_capacity, options.run.quiet);
   }
   device.stop();
-  study::end_session(simulation, file);
+  run::end_session(simulation, file);
   file.append_timing(figures.list());
   const SessionEnd end = session.end();
   file.finish(session.failure(), end != SessionEnd::done && end != SessionEnd::failed);
-  output::write_xdmf(result, study::name_xdmf(result));
+  output::write_xdmf(result, run::name_xdmf(result));
   return print_end(session, device, result, figures, options.run.quiet);
 }
 
@@ -226,10 +226,10 @@ int conduct(sim::Simulation& simulation, device::HapticDevice& device, const Ses
 
 int run_live(const LiveOptions& options) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error of the write, like a full disk
-  const scenario::Scenario s = study::load(options.run);
+  const scenario::Scenario s = run::load(options.run);
   require_live(s);
-  const std::string result = study::name_result(s, options.run);
-  study::check_result_name(s, result);
+  const std::string result = run::name_result(s, options.run);
+  run::check_result_name(s, result);
   if (!options.watch.empty()) check_watch_name(s, options.watch, result);
   scenario::Scene scene = scenario::build_scene(s);
   const auto device = attach(options.device, make_device_options(s, scene.trace));
@@ -242,8 +242,8 @@ int run_live(const LiveOptions& options) {
   };
   device::DevicePoll first = device->poll();
   output::SessionHead head = head_now(first);
-  sim::Simulation simulation(std::move(scene.body), tool, study::session_params(head, s.params), head.start);
-  study::print_notes(scene, options.run);
+  sim::Simulation simulation(std::move(scene.body), tool, run::session_params(head, s.params), head.start);
+  run::print_notes(scene, options.run);
   warn_of_stiffness(s, device->info());
   std::unique_ptr<Watch> watch;
   if (!options.watch.empty()) watch = std::make_unique<Watch>(options.watch, simulation);
@@ -251,15 +251,13 @@ int run_live(const LiveOptions& options) {
   if (const device::DevicePoll now = device->poll(); now.is_valid()) first = now;
   head = head_now(first);
   simulation.hand().begin_at(head.start);
-  study::require_free_start(simulation, tool, "--device " + options.device, "",
-                            "move the device away from it");
-  const scenario::Scenario bare = study::without_trace(s);
-  output::ResultFile file(result,
-                          study::make_header(bare, simulation, scene, tool, study::find_identity(bare)));
+  run::require_free_start(simulation, tool, "--device " + options.device, "", "move the device away from it");
+  const scenario::Scenario bare = run::without_trace(s);
+  output::ResultFile file(result, run::make_header(bare, simulation, scene, tool, run::find_identity(bare)));
   file.begin_session(head, true);
   file.append(simulation.make_frame());
   const SessionOptions session_options{
-      .num_ticks = num_ticks, .mode = study::find_fixed_mode(s), .first_sample = first.number};
+      .num_ticks = num_ticks, .mode = run::find_fixed_mode(s), .first_sample = first.number};
   return conduct(simulation, *device, session_options, file, watch.get(), result, options);
 }
 

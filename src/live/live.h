@@ -2,13 +2,13 @@
 
 #include <string>
 
-#include "study/run.h"
+#include "run/run.h"
 
 namespace argil::live {
 
 /// How `argil live` was called. Of `run` all but trace, resume and dry_run counts.
 struct LiveOptions {
-  study::RunOptions run;
+  run::RunOptions run;
   std::string device;     ///< as device::make_device takes it
   double duration = 0.0;  ///< [s]; 0: a simulated hand's trace to its end, any other device until a signal
   std::string watch;      ///< file that grows while others read it; empty: none

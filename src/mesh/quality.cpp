@@ -10,7 +10,6 @@
 
 #include "base/error.h"
 #include "base/ordered_sum.h"
-#include "mesh/stuffing.h"
 #include "mesh/topology.h"
 
 namespace argil::mesh {

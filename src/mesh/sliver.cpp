@@ -1,4 +1,5 @@
 // One bad tet, on purpose.
+#include "mesh/sliver.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +7,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "mesh/shapes.h"
 #include "mesh/topology.h"
 
 namespace argil::mesh {

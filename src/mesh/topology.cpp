@@ -77,4 +77,39 @@ Field compute_volumes(const Points& vertices, const Tets& tets) {
   return volumes;
 }
 
+std::vector<int> find_non_manifold_vertices(const Triangles& triangles, int num_vertices) {
+  std::vector<int> begin(static_cast<std::size_t>(num_vertices) + 1, 0);
+  for (Eigen::Index i = 0; i < triangles.size(); ++i)
+    ++begin[static_cast<std::size_t>(triangles.data()[i]) + 1];
+  for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
+  std::vector<std::array<int, 2>> spokes(static_cast<std::size_t>(triangles.size()));  // next and last corner
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (int i = 0; i < 3; ++i)
+      spokes[static_cast<std::size_t>(next[static_cast<std::size_t>(triangles(i, t))]++)] = {
+          triangles((i + 1) % 3, t), triangles((i + 2) % 3, t)};
+  std::vector<int> bad;
+  for (int v = 0; v < num_vertices; ++v) {
+    const auto first = spokes.begin() + begin[static_cast<std::size_t>(v)];
+    const auto last = spokes.begin() + begin[static_cast<std::size_t>(v) + 1];
+    if (first == last) continue;
+    // One closed fan: going from spoke to spoke comes back to the first after every triangle, and no earlier.
+    std::sort(first, last);
+    bool is_fan = std::adjacent_find(first, last, [](auto& a, auto& b) { return a[0] == b[0]; }) == last;
+    std::ptrdiff_t length = 0;
+    int spoke = (*first)[0];
+    while (is_fan) {
+      const auto on = std::lower_bound(first, last, std::array<int, 2>{spoke, -1});
+      is_fan = on != last && (*on)[0] == spoke;
+      if (!is_fan) break;
+      spoke = (*on)[1];
+      ++length;
+      if (spoke == (*first)[0]) break;
+      is_fan = length < last - first;
+    }
+    if (!is_fan || length != last - first) bad.push_back(v);
+  }
+  return bad;
+}
+
 }  // namespace argil::mesh

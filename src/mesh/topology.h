@@ -22,4 +22,7 @@ Topology make_topology(const TetMesh& mesh);
 /// Volume [m³] of every tet at positions `vertices`.
 Field compute_volumes(const Points& vertices, const Tets& tets);
 
+/// Vertices of a triangle surface whose triangles do not form one closed fan, increasing.
+std::vector<int> find_non_manifold_vertices(const Triangles& triangles, int num_vertices);
+
 }  // namespace argil::mesh

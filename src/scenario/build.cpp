@@ -10,7 +10,8 @@
 #include "embed/cage.h"
 #include "mesh/order.h"
 #include "mesh/quality.h"
-#include "mesh/readers.h"
+#include "mesh/sliver.h"
+#include "mesh_files/readers.h"
 #include "scenario/medium_check.h"
 #include "solid/rigid_motion.h"
 
@@ -75,29 +76,29 @@ void make_mesh(const Scenario& s, Scene& scene) {
   sim::Body& body = scene.body;
   switch (s.body.kind) {
     case BodyKind::mesh:
-      body.mesh = mesh::read_tet_mesh(s.body.file, s.body.scale);
+      body.mesh = mesh_files::read_tet_mesh(s.body.file, s.body.scale);
       break;
     case BodyKind::shape:
-      if (s.body.skin_triangles > 0) body.skin = mesh::make_shape_skin(s.body.shape, s.body.skin_triangles);
+      if (s.body.skin_triangles > 0) body.skin = shapes::make_shape_skin(s.body.shape, s.body.skin_triangles);
       if (body.skin.num_triangles() > 0) {
         embed::Cage cage = embed::make_cage(body.skin, {s.body.target_tets}, s.file);
         scene.notes.push_back(describe_cage(cage.report));
         body.mesh = std::move(cage.mesh);
       } else {
         body.mesh = from_scenario(s, "/body/shape",
-                                  [&] { return mesh::make_shape_mesh(s.body.shape, s.body.target_tets); });
+                                  [&] { return shapes::make_shape_mesh(s.body.shape, s.body.target_tets); });
       }
       if (s.body.sliver < 1.0)
         from_scenario(s, "/body/shape/sliver", [&] { mesh::flatten_tet(body.mesh, s.body.sliver); });
       break;
     case BodyKind::surface:
-      body.skin = mesh::read_triangle_mesh(s.body.file, s.body.scale);
+      body.skin = mesh_files::read_triangle_mesh(s.body.file, s.body.scale);
       if (s.body.cage_file.empty()) {
         embed::Cage cage = embed::make_cage(body.skin, {s.body.target_tets}, s.body.file);
         scene.notes.push_back(describe_cage(cage.report));
         body.mesh = std::move(cage.mesh);
       } else {
-        body.mesh = mesh::read_tet_mesh(s.body.cage_file);
+        body.mesh = mesh_files::read_tet_mesh(s.body.cage_file);
       }
       break;
   }
@@ -200,7 +201,7 @@ mesh::TriangleMesh make_tool(const Scenario& s) {
     case ToolKind::mesh:
       break;
   }
-  mesh::TriangleMesh tool = mesh::read_triangle_mesh(s.tool.file, s.tool.scale);
+  mesh::TriangleMesh tool = mesh_files::read_triangle_mesh(s.tool.file, s.tool.scale);
   mesh::require_size(tool.vertices, s.tool.file);
   contact::require_closed_surface(tool, s.tool.file);
   return tool;

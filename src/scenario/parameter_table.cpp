@@ -89,20 +89,22 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
          "Cell data NAME_x, NAME_y, NAME_z along the aligned pores of each tet, any length; empty: "
          "/material/effective_medium/axis.")
       .applies = only(BodyKind::mesh);
-  b.choice<mesh::ShapeKind>("/body/shape/kind", body.shape.kind,
-                            {{mesh::ShapeKind::sphere, "sphere"},
-                             {mesh::ShapeKind::cylinder, "cylinder"},
-                             {mesh::ShapeKind::box, "box"},
-                             {mesh::ShapeKind::dinosaur, "dinosaur"},
-                             {mesh::ShapeKind::figure, "figure"}},
-                            "Body that argil makes itself.")
+  b.choice<shapes::ShapeKind>("/body/shape/kind", body.shape.kind,
+                              {{shapes::ShapeKind::sphere, "sphere"},
+                               {shapes::ShapeKind::cylinder, "cylinder"},
+                               {shapes::ShapeKind::box, "box"},
+                               {shapes::ShapeKind::dinosaur, "dinosaur"},
+                               {shapes::ShapeKind::figure, "figure"}},
+                              "Body that argil makes itself.")
       .applies = only(BodyKind::shape);
   b.number("/body/shape/size_m", body.shape.size, size_range(), "m",
            "Diameter of the sphere, length of the dinosaur, height of the others.")
       .applies = only(BodyKind::shape);
   b.number("/body/shape/slenderness", body.shape.slenderness, between(0.1, 10), "",
            "box: height over the edge of its square base.")
-      .applies = [&body] { return body.kind == BodyKind::shape && body.shape.kind == mesh::ShapeKind::box; };
+      .applies = [&body] {
+    return body.kind == BodyKind::shape && body.shape.kind == shapes::ShapeKind::box;
+  };
   b.integer("/body/shape/target_tets", body.target_tets, between(100, 5e6),
             "Wanted number of tets, reached within 15 %.")
       .applies = only(BodyKind::shape);

@@ -5,7 +5,7 @@
 
 #include "device/hand_model.h"
 #include "device/trace.h"
-#include "mesh/shapes.h"
+#include "shapes/shapes.h"
 #include "sim/params.h"
 #include "solid/loads.h"
 
@@ -34,7 +34,7 @@ struct BodySpec {
   std::string file;              ///< mesh, surface
   std::string cage_file;         ///< surface: a cage made before; empty: made now
   double scale = 1.0;            ///< file's unit in metres
-  mesh::Shape shape;             ///< shape
+  shapes::Shape shape;           ///< shape
   int target_tets = 10000;       ///< shape; surface without a cage file
   int skin_triangles = 20000;    ///< shape: at least so many; 0: no skin
   double sliver = 1.0;           ///< shape: height of one tet over what it was [–]; 1: as it was

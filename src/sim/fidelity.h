@@ -14,7 +14,7 @@ namespace argil::sim {
 enum class FidelityMode {
   full,       ///< all of it, always
   automatic,  ///< what the force at the hand needs
-  check,      ///< the same, beside a full run of the same motion (study/full_model.h)
+  check,      ///< the same, beside a full run of the same motion (run/full_model.h)
 };
 
 struct FidelityParams {

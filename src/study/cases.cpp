@@ -21,10 +21,10 @@
 
 #include "base/error.h"
 #include "output/result_reader.h"
-#include "study/files.h"
-#include "study/identity.h"
-#include "study/interrupt.h"
-#include "study/run.h"
+#include "run/files.h"
+#include "run/identity.h"
+#include "run/interrupt.h"
+#include "run/run.h"
 
 namespace argil::study {
 namespace {
@@ -91,7 +91,7 @@ bool is_whole(const std::string& file) {
 }
 
 /// Replaces this process by the program, which dies with its parent; only what is allowed after a fork.
-[[noreturn]] void become(char* const* arguments, int log, pid_t parent, const SignalPause& pause) {
+[[noreturn]] void become(char* const* arguments, int log, pid_t parent, const run::SignalPause& pause) {
   const int nothing = open("/dev/null", O_WRONLY);
   dup2(nothing, STDOUT_FILENO);
   dup2(log, STDERR_FILENO);
@@ -130,7 +130,7 @@ class Runner {
                  [this](std::size_t i) { return must_run(i); });
     for (const std::size_t i : waiting) {
       while (m_running.size() >= static_cast<std::size_t>(m_options.jobs)) await();
-      if (is_interrupted()) break;
+      if (run::is_interrupted()) break;
       start({i, 0});
     }
     while (!m_running.empty()) await();
@@ -176,12 +176,12 @@ class Runner {
   bool prepare(std::size_t i) {
     CaseResult& result = m_results[i];
     try {
-      const Identity identity =
-          find_identity(load(make_run_options(m_cases[i].scenario, m_cases[i].settings)));
+      const run::Identity identity =
+          run::find_identity(run::load(make_run_options(m_cases[i].scenario, m_cases[i].settings)));
       result.id = identity.id().substr(0, 16);
       result.inputs = identity.inputs;
     } catch (const InputError& refused) {
-      result.exit_code = kInputRefused;
+      result.exit_code = run::kInputRefused;
       result.reason = leave_out_folder(refused.what(), m_cases[i].scenario);
       return false;
     }
@@ -201,7 +201,8 @@ class Runner {
     const bool is_kept =
         read_result(path(i, ".case"), kept) && static_cast<int>(kept.cpu_seconds.size()) >= m_repeats[i];
     const bool has_file = is_whole(path(i, ".h5"));
-    if (!(is_kept && has_file) && !(read_result(path(i, ".case"), kept) && kept.exit_code == kInputRefused))
+    if (!(is_kept && has_file) &&
+        !(read_result(path(i, ".case"), kept) && kept.exit_code == run::kInputRefused))
       return true;
     result = kept;
     result.file = has_file ? path(i, ".h5") : "";
@@ -223,7 +224,7 @@ class Runner {
     const int out = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (out < 0) throw IoError(log, std::string("could not be written (") + std::strerror(errno) + ")");
     const pid_t parent = getpid();
-    const SignalPause pause;  // a child that still had our handlers would not end
+    const run::SignalPause pause;  // a child that still had our handlers would not end
     const pid_t child = fork();
     if (child == 0) become(arguments.data(), out, parent, pause);
     const int error = errno;
@@ -235,9 +236,9 @@ class Runner {
 
   /// Of the next one that ends. When the study is to end, all are told to.
   pid_t wait_for_child(int& status, rusage& usage) {
-    const SignalPause pause;
+    const run::SignalPause pause;
     while (true) {
-      if (is_interrupted() && !std::exchange(m_is_ending, true))
+      if (run::is_interrupted() && !std::exchange(m_is_ending, true))
         for (const auto& [child, job] : m_running) kill(child, SIGTERM);
       if (const pid_t child = wait4(-1, &status, WNOHANG, &usage); child != 0) return child;
       pause.sleep();
@@ -257,8 +258,8 @@ class Runner {
     result.peak_memory_MiB = static_cast<double>(usage.ru_maxrss) / 1024.0;
     take(job, result);
     const bool is_whole = !is_accident(result.exit_code) &&
-                          (result.exit_code == kInputRefused || job.repeat + 1 >= m_repeats[job.place]);
-    if (!is_whole && !is_accident(result.exit_code) && !is_interrupted())
+                          (result.exit_code == run::kInputRefused || job.repeat + 1 >= m_repeats[job.place]);
+    if (!is_whole && !is_accident(result.exit_code) && !run::is_interrupted())
       return start({job.place, job.repeat + 1});
     if (is_whole) write_result(result, path(job.place, ".case"));
     std::error_code ignored;
@@ -286,11 +287,11 @@ class Runner {
     } catch (const std::runtime_error& broken) {  // a killed run's file
       result.reason = broken.what();
     }
-    if (result.exit_code == kInterrupted)
+    if (result.exit_code == run::kInterrupted)
       result.reason = "interrupted";
     else if (result.exit_code > 128)
       result.reason = "killed by signal " + std::to_string(result.exit_code - 128);
-    if (job.repeat > 0 || (is_interrupted() && is_accident(result.exit_code))) {
+    if (job.repeat > 0 || (run::is_interrupted() && is_accident(result.exit_code))) {
       fs::remove(file, error);
       return;
     }
@@ -319,8 +320,9 @@ class Runner {
 
 }  // namespace
 
-RunOptions make_run_options(const std::string& scenario, const std::vector<scenario::Setting>& settings) {
-  RunOptions options;
+run::RunOptions make_run_options(const std::string& scenario,
+                                 const std::vector<scenario::Setting>& settings) {
+  run::RunOptions options;
   options.scenario = scenario;
   for (const scenario::Setting& setting : settings)
     options.settings.push_back(setting.pointer + "=" + setting.value);
@@ -328,17 +330,17 @@ RunOptions make_run_options(const std::string& scenario, const std::vector<scena
 }
 
 bool is_accident(int exit_code) {
-  return exit_code != kDone && exit_code != kInputRefused && exit_code != kRunFailed;
+  return exit_code != run::kDone && exit_code != run::kInputRefused && exit_code != run::kRunFailed;
 }
 
 void check_interrupt(const CaseOptions& options) {
-  if (is_interrupted())
-    throw Interrupted("interrupted; what has ended is kept in " + options.folder +
-                      ", and the same command goes on from there");
+  if (run::is_interrupted())
+    throw run::Interrupted("interrupted; what has ended is kept in " + options.folder +
+                           ", and the same command goes on from there");
 }
 
 std::vector<CaseResult> run_cases(const std::vector<Case>& cases, const CaseOptions& options) {
-  watch_signals();
+  run::watch_signals();
   return Runner(cases, options).run();
 }
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "run/run.h"
 #include "scenario/scenario.h"
-#include "study/run.h"
 
 namespace argil::study {
 
@@ -35,7 +35,7 @@ struct CaseOptions {
 };
 
 /// Options of `argil run` for a scenario with settings.
-RunOptions make_run_options(const std::string& scenario, const std::vector<scenario::Setting>& settings);
+run::RunOptions make_run_options(const std::string& scenario, const std::vector<scenario::Setting>& settings);
 
 /// Can a run that ended with this code end otherwise another time? Killed, or without room to write.
 bool is_accident(int exit_code);

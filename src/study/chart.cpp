@@ -7,10 +7,10 @@
 
 #include "base/error.h"
 #include "output/study_table.h"
+#include "run/run.h"
 #include "scenario/study_file.h"
 #include "study/measure.h"
 #include "study/outcome.h"
-#include "study/run.h"
 
 namespace argil::study {
 namespace {
@@ -63,15 +63,15 @@ std::vector<Row> run_rows(const scenario::ChartStudy& study, const CaseOptions& 
   if (results[kReference].id == results[kRefined].id && !results[kReference].id.empty())
     throw InputError(study.file, "/refined", "makes the same run as /reference",
                      "refine mesh, step or tolerance, so that the reference's own error is known");
-  if (results[kReference].exit_code != kDone) cases.resize(2);  // nothing to compare with
+  if (results[kReference].exit_code != run::kDone) cases.resize(2);  // nothing to compare with
   rows.resize(cases.size());
   results = run_cases(cases, options);
   std::optional<output::ResultReader> truth, refined;
-  if (results[kReference].exit_code == kDone) truth.emplace(results[kReference].file);
-  if (results[kRefined].exit_code == kDone) refined.emplace(results[kRefined].file);
+  if (results[kReference].exit_code == run::kDone) truth.emplace(results[kReference].file);
+  if (results[kRefined].exit_code == run::kDone) refined.emplace(results[kRefined].file);
   std::vector<scenario::Scenario> scenes(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
-    if (!results[i].file.empty()) scenes[i] = load(make_run_options(study.scenario, cases[i].settings));
+    if (!results[i].file.empty()) scenes[i] = run::load(make_run_options(study.scenario, cases[i].settings));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     check_interrupt(options);
     Row& row = rows[i];
@@ -81,7 +81,7 @@ std::vector<Row> run_rows(const scenario::ChartStudy& study, const CaseOptions& 
       row.figures = compute_figures(reader, scenes[i]);
       const std::size_t other = i == kReference ? kRefined : kReference;  // its own error: to the finer one
       const auto& other_reader = i == kReference ? refined : truth;
-      if (row.result.exit_code == kDone && i != kRefined && other_reader)
+      if (row.result.exit_code == run::kDone && i != kRefined && other_reader)
         compare(row, reader, *other_reader,
                 {scenes[i].params.solid.element, scenes[other].params.solid.element});
     }
@@ -126,7 +126,7 @@ output::StudyTable make_table(const scenario::ChartStudy& study, const std::vect
   for (const Row& row : rows) {
     const RunErrors& e = row.errors;
     const RunFigures& f = row.figures;
-    const bool has_run = row.result.exit_code == kDone || row.result.exit_code == kRunFailed;
+    const bool has_run = row.result.exit_code == run::kDone || row.result.exit_code == run::kRunFailed;
     const auto figure = [has_run](double value) { return has_run ? value : kUnknown; };
     const auto counted = [](double value) { return value > 0.0 ? value : kUnknown; };
     table.rows.push_back({row.curve,
@@ -164,7 +164,7 @@ output::StudyTable make_table(const scenario::ChartStudy& study, const std::vect
 int print_reference_failure(const Row& row) {
   std::fprintf(stderr, "argil: the %s run did not end well: %s\n", row.curve.c_str(),
                row.result.reason.c_str());
-  return kRunFailed;
+  return run::kRunFailed;
 }
 
 /// Runs the study and writes its table; the rows.
@@ -199,7 +199,7 @@ int chart(StudyOptions options) {
   const scenario::ChartStudy study = scenario::read_chart_study(options.study);
   const std::vector<Row> rows = make_chart(study, options);
   for (const std::size_t i : {kReference, kRefined})
-    if (rows[i].result.exit_code != kDone) return print_reference_failure(rows[i]);
+    if (rows[i].result.exit_code != run::kDone) return print_reference_failure(rows[i]);
   if (!options.cases.quiet)
     std::printf("%s.csv: %zu runs, the reference's own force error %.2g\n", options.output.c_str(),
                 rows.size(), rows[kReference].errors.force);
@@ -211,13 +211,13 @@ int chart(StudyOptions options) {
 int chart_budget(StudyOptions options, double budget) {
   const scenario::ChartStudy study = scenario::read_chart_study(options.study);
   const std::vector<Row> rows = make_chart(study, options);
-  if (rows[kReference].result.exit_code != kDone) return print_reference_failure(rows[kReference]);
+  if (rows[kReference].result.exit_code != run::kDone) return print_reference_failure(rows[kReference]);
   const double own_error = rows[kReference].errors.force;
   const Row* best = find_best(rows, budget, own_error);
   if (!best) {
     std::fprintf(stderr, "argil: no run of %s costs at most %g CPU seconds a second\n", study.file.c_str(),
                  budget);
-    return kRunFailed;
+    return run::kRunFailed;
   }
   std::fprintf(stderr, "argil: %s %s: force error %.2g at %.2g CPU seconds a second\n", best->curve.c_str(),
                print_settings(best->point).c_str(), best->errors.force, best->cost());
@@ -225,7 +225,7 @@ int chart_budget(StudyOptions options, double budget) {
     std::fprintf(stderr, "argil: that is within the reference's own error of %.2g: the cheapest such run\n",
                  own_error);
   std::fputs(scenario::print_patch(join(study.settings, best->settings)).c_str(), stdout);
-  return kDone;
+  return run::kDone;
 }
 
 }  // namespace argil::study

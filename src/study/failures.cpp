@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "output/result_reader.h"
-#include "study/run.h"
+#include "run/run.h"
 
 namespace argil::study {
 namespace {
@@ -76,7 +76,7 @@ class Shrinking {
   const Place& place() const { return m_place; }
 
  private:
-  bool reached_end() const { return m_place.result.exit_code == kDone; }
+  bool reached_end() const { return m_place.result.exit_code == run::kDone; }
 
   /// A run that ends early is cut off there anyway.
   bool shorten() {

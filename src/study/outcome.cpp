@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "study/run.h"
+#include "run/run.h"
 
 namespace argil::study {
 namespace {
@@ -22,9 +22,9 @@ Outcome classify_failure(const std::string& reason) {
 
 Outcome classify(const CaseResult& result, const RunFigures& figures, const RunErrors& errors,
                  const OutcomeBounds& bounds) {
-  if (result.exit_code == kInputRefused) return Outcome::refused;
-  if (result.exit_code == kRunFailed) return classify_failure(result.reason);
-  if (result.exit_code != kDone) return Outcome::killed;
+  if (result.exit_code == run::kInputRefused) return Outcome::refused;
+  if (result.exit_code == run::kRunFailed) return classify_failure(result.reason);
+  if (result.exit_code != run::kDone) return Outcome::killed;
   if (figures.energy_gain > bounds.growing_above) return Outcome::growing_energy;
   if (figures.chatter > bounds.chatter_above && !(figures.chatter <= 2.0 * errors.true_chatter))
     return Outcome::chatter;

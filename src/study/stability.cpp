@@ -4,8 +4,8 @@
 #include <cstdio>
 
 #include "output/study_table.h"
+#include "run/run.h"
 #include "study/failures.h"
-#include "study/run.h"
 #include "study/stability_map.h"
 
 namespace argil::study {
@@ -28,7 +28,7 @@ output::StudyTable make_table(const StabilityMap& map) {
                    {"run", "-", "name of the result in the folder of runs"},
                    {"reason", "-", "why the run ended early"}};
   for (const Place& p : map.places()) {
-    const bool is_done = p.result.exit_code == kDone;
+    const bool is_done = p.result.exit_code == run::kDone;
     const auto figure = [&](double value) { return is_done ? value : kUnknown; };
     table.rows.push_back({"run", p.x, p.y, kUnknown, kUnknown, to_string(p.outcome), p.errors.force,
                           figure(p.figures.energy_gain), figure(p.figures.chatter),

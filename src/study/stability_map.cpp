@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "output/result_reader.h"
-#include "study/run.h"
+#include "run/run.h"
 
 namespace argil::study {
 
@@ -41,7 +41,7 @@ Settings StabilityMap::settings_at(double x, double y, const Variation& variatio
 }
 
 scenario::Scenario StabilityMap::load_place(const Place& place, const Variation& variation) const {
-  return load(make_run_options(m_study.scenario, settings_at(place.x, place.y, variation)));
+  return run::load(make_run_options(m_study.scenario, settings_at(place.x, place.y, variation)));
 }
 
 /// With the truth of each where there is to be one.
@@ -84,11 +84,11 @@ std::vector<std::size_t> StabilityMap::visit(const std::vector<std::pair<double,
 
 void StabilityMap::judge(Place& place, const Variation& variation, bool has_truth) const {
   std::optional<output::ResultReader> truth;
-  if (!place.truth.file.empty() && place.truth.exit_code == kDone) {
+  if (!place.truth.file.empty() && place.truth.exit_code == run::kDone) {
     truth.emplace(place.truth.file);
     place.true_peak_force = compute_peak_force(truth->read_haptic());
   }
-  if (place.result.exit_code == kDone) {
+  if (place.result.exit_code == run::kDone) {
     const output::ResultReader reader(place.result.file);
     const scenario::Scenario s = load_place(place, variation);
     place.figures = compute_figures(reader, s);

@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "base/error.h"
-#include "study/files.h"
-#include "study/identity.h"
-#include "study/run.h"
+#include "run/files.h"
+#include "run/identity.h"
+#include "run/run.h"
 
 namespace argil::study {
 namespace {
@@ -52,13 +52,13 @@ std::vector<std::pair<std::string, std::string>> describe_study(const std::strin
                                                                 const Settings& settings,
                                                                 const std::vector<CaseResult>& results) {
   namespace fs = std::filesystem;
-  std::string build = describe_build();
+  std::string build = run::describe_build();
   std::replace(build.begin(), build.end(), '\n', ';');
   return {{"about", about},
           {"study", fs::path(study).filename().string()},
-          {"study_sha256", hash_file(study)},
+          {"study_sha256", run::hash_file(study)},
           {"scenario", fs::path(scenario).filename().string()},
-          {"scenario_sha256", hash_file(scenario)},
+          {"scenario_sha256", run::hash_file(scenario)},
           {"inputs_sha256", list_inputs(results)},
           {"settings", print_settings(settings)},
           {"build", build},
@@ -72,15 +72,15 @@ void check_outputs(const StudyOptions& options, const std::string& scenario,
   for (const char* ending : {".csv", ".h5"})
     if (std::filesystem::exists(options.output + ending)) tables.push_back(options.output + ending);
   if (tables.empty()) return;
-  for (const std::string& table : tables) require_other_file(table, options.study, "the study");
+  for (const std::string& table : tables) run::require_other_file(table, options.study, "the study");
   for (const Settings& some : settings) {
     std::optional<scenario::Scenario> s;
     try {
-      s = load(make_run_options(scenario, some));
+      s = run::load(make_run_options(scenario, some));
     } catch (const InputError&) {  // a run that is refused reads nothing
       continue;
     }
-    for (const std::string& table : tables) require_no_input(*s, table);
+    for (const std::string& table : tables) run::require_no_input(*s, table);
   }
 }
 
@@ -100,7 +100,7 @@ int print_accidents(const std::string& study, const std::vector<Outcome>& outcom
   if (is_all_refused)
     std::fprintf(stderr, "argil: all %zu runs of %s were refused: see their reason in the table\n",
                  outcomes.size(), study.c_str());
-  return killed + unknown > 0 || is_all_refused ? kRunFailed : kDone;
+  return killed + unknown > 0 || is_all_refused ? run::kRunFailed : run::kDone;
 }
 
 Settings join(const Settings& a, const Settings& b) {

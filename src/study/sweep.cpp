@@ -17,13 +17,13 @@
 #include "output/result_reader.h"
 #include "output/study_table.h"
 #include "output/text.h"
+#include "run/files.h"
+#include "run/identity.h"
+#include "run/interrupt.h"
+#include "run/run.h"
 #include "scenario/scenario.h"
 #include "scenario/sweep_file.h"
-#include "study/files.h"
-#include "study/identity.h"
-#include "study/interrupt.h"
 #include "study/point_lock.h"
-#include "study/run.h"
 #include "study/sweep_figures.h"
 
 namespace argil::study {
@@ -56,8 +56,8 @@ std::vector<SweepPoint> load_points(const std::string& points) {
   return scenario::load_points(points);
 }
 
-RunOptions make_options(const SweepPoint& point, const std::string& points) {
-  RunOptions options;
+run::RunOptions make_options(const SweepPoint& point, const std::string& points) {
+  run::RunOptions options;
   options.scenario = (find_folder(points) / point.scenario).lexically_normal().string();
   for (const scenario::Setting& setting : point.settings)
     options.settings.push_back(setting.pointer + "=" + setting.value);
@@ -147,34 +147,34 @@ void write_published(const std::string& file, const std::string& text) {
 
 int run_point(const SweepPoint& point, const SweepRun& sweep) {
   const std::string name = name_point(sweep.points, point.index);
-  if (look(point, sweep.points).is_done) return kDone;
-  RunOptions options = make_options(point, sweep.points);
+  if (look(point, sweep.points).is_done) return run::kDone;
+  run::RunOptions options = make_options(point, sweep.points);
   options.output = name + ".part.h5";
   options.threads = sweep.threads;
   options.writes_xdmf = false;
   options.remedy = "run the point again, which goes on from its last checkpoint";
-  const scenario::Scenario s = load(options);
+  const scenario::Scenario s = run::load(options);
   options.resume = s.mode != scenario::Mode::equilibrium;  // which has no ticks to resume
-  if (find_identity(s).id() != point.id)
+  if (run::find_identity(s).id() != point.id)
     throw InputError(sweep.points, "point " + std::to_string(point.index),
                      "was expanded from other inputs or by another build of argil",
                      "run argil sweep expand again");
-  require_no_input(s, name + ".h5", "argil sweep expand -o");
+  run::require_no_input(s, name + ".h5", "argil sweep expand -o");
   const fs::path folder = fs::path(name).parent_path();
   fs::create_directories(folder);
   const PointLock lock(folder.string(), point.index);
-  if (look(point, sweep.points).is_done) return kDone;  // by another process, meanwhile
+  if (look(point, sweep.points).is_done) return run::kDone;  // by another process, meanwhile
   remove_unusable(options.output, point.id);
   fs::remove(name + ".refused");
   try {
-    const int code = run(options);
-    if (code == kDone || code == kRunFailed) publish(options.output, name + ".h5");
-    return code == kInterrupted ? kInterrupted : kDone;
+    const int code = run::run(options);
+    if (code == run::kDone || code == run::kRunFailed) publish(options.output, name + ".h5");
+    return code == run::kInterrupted ? run::kInterrupted : run::kDone;
   } catch (const InputError& error) {
     write_published(name + ".refused", point.id + "\n" + error.what() + "\n");
     std::fprintf(stderr, "argil: point %lld refused: %s\n", static_cast<long long>(point.index),
                  error.what());
-    return kDone;
+    return run::kDone;
   }
 }
 
@@ -182,17 +182,17 @@ int run_point(const SweepPoint& point, const SweepRun& sweep) {
 void check_table_name(const std::string& table, const std::vector<SweepPoint>& points,
                       const std::string& file) {
   if (!fs::exists(table)) return;
-  require_other_file(table, file, "the list of points");
+  run::require_other_file(table, file, "the list of points");
   for (const SweepPoint& point : points) {
     for (const char* ending : {".h5", ".part.h5"})
-      require_other_file(table, name_point(file, point.index) + ending, "a result of the sweep");
+      run::require_other_file(table, name_point(file, point.index) + ending, "a result of the sweep");
     std::optional<scenario::Scenario> s;
     try {
-      s = load(make_options(point, file));
+      s = run::load(make_options(point, file));
     } catch (const InputError&) {  // moved or changed since its points ran: it reads nothing any more
       continue;
     }
-    require_no_input(*s, table);
+    run::require_no_input(*s, table);
   }
 }
 
@@ -210,7 +210,7 @@ std::int64_t find_index(const SweepRun& sweep) {
 int expand_sweep(const std::string& file, const std::string& points) {
   check_points_name(points);
   for (const std::string& written : {points, name_part(points)})
-    require_other_file(written, file, "the sweep");
+    run::require_other_file(written, file, "the sweep");
   const scenario::Sweep sweep = scenario::load_sweep(file);
   const fs::path base = find_folder(sweep.scenario) / fs::path(sweep.scenario).filename();
   const std::string relative = base.lexically_relative(find_folder(points)).string();
@@ -218,9 +218,9 @@ int expand_sweep(const std::string& file, const std::string& points) {
   std::string text;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
     SweepPoint point{static_cast<std::int64_t>(i), "", relative, sweep.points[i]};
-    const scenario::Scenario s = load(make_options(point, points));
-    for (const std::string& written : {points, name_part(points)}) require_no_input(s, written);
-    point.id = find_identity(s).id();
+    const scenario::Scenario s = run::load(make_options(point, points));
+    for (const std::string& written : {points, name_part(points)}) run::require_no_input(s, written);
+    point.id = run::find_identity(s).id();
     const std::string line = print_point(point);
     const auto [same, is_new] = index_of.emplace(point.id, point.index);
     if (!is_new)
@@ -235,7 +235,7 @@ int expand_sweep(const std::string& file, const std::string& points) {
   }
   write_published(points, text);
   std::printf("%s: %zu points\n", points.c_str(), sweep.points.size());
-  return kDone;
+  return run::kDone;
 }
 
 int run_sweep(const SweepRun& sweep) {
@@ -245,18 +245,19 @@ int run_sweep(const SweepRun& sweep) {
   if (index < 0 || index > (count - 1) / sweep.block)
     throw InputError(sweep.points, "--index", std::to_string(index) + " is past the last block",
                      "give 0 to " + std::to_string((count - 1) / sweep.block));
-  watch_signals();
+  run::watch_signals();
   const std::int64_t end = std::min((index + 1) * sweep.block, count);
   for (std::int64_t i = index * sweep.block; i < end; ++i) {
-    if (is_interrupted()) {
+    if (run::is_interrupted()) {
       std::fprintf(stderr,
                    "argil: interrupted before point %lld of %s; the same command goes on from there\n",
                    static_cast<long long>(i), sweep.points.c_str());
-      return kInterrupted;
+      return run::kInterrupted;
     }
-    if (const int code = run_point(points[static_cast<std::size_t>(i)], sweep); code != kDone) return code;
+    if (const int code = run_point(points[static_cast<std::size_t>(i)], sweep); code != run::kDone)
+      return code;
   }
-  return kDone;
+  return run::kDone;
 }
 
 int print_missing(const std::string& file, std::int64_t block) {
@@ -273,7 +274,7 @@ int print_missing(const std::string& file, std::int64_t block) {
     i = last + 1;
   }
   if (!text.empty()) std::puts(text.c_str());
-  return kDone;
+  return run::kDone;
 }
 
 int collect_sweep(const std::string& file, const std::string& table_name) {
@@ -294,7 +295,7 @@ int collect_sweep(const std::string& file, const std::string& table_name) {
   output::write_csv(written, table_name + ".csv");
   output::write_hdf5(written, table_name + ".h5");
   std::printf("%s.csv: %zu points, %zu without figures\n", table_name.c_str(), points.size(), num_without);
-  return kDone;
+  return run::kDone;
 }
 
 }  // namespace argil::study

@@ -6,7 +6,7 @@
 
 #include "output/compare.h"
 #include "output/result_reader.h"
-#include "study/run.h"
+#include "run/run.h"
 #include "support/scene_files.h"
 #include "support/temp_folder.h"
 
@@ -30,16 +30,16 @@ TEST_P(EqualBits, AtOneAndMoreThreadsAndOverTwoRuns) {
   const test::TempFolder folder;
   const std::string trace =
       test::write_press_trace(folder / "press.csv", 0.048, 0.0435, 0.3, GetParam().mode);
-  study::RunOptions options;
+  run::RunOptions options;
   options.quiet = true;
   options.scenario = test::write_text(folder / "ball.json", test::make_ball_scenario(trace));
   options.settings = GetParam().settings;
   options.output = folder / "first.h5";
-  ASSERT_EQ(study::run(options), study::kDone);
+  ASSERT_EQ(run::run(options), run::kDone);
   for (const int threads : {1, 2, 7}) {
     options.threads = threads;
     options.output = folder / ("again" + std::to_string(threads) + ".h5");
-    ASSERT_EQ(study::run(options), study::kDone);
+    ASSERT_EQ(run::run(options), run::kDone);
     const output::CompareReport report = output::compare_results(folder / "first.h5", options.output, {});
     EXPECT_TRUE(report.is_equal()) << threads << " threads\n" << to_string(report);
     EXPECT_GT(report.num_compared, 100U);
@@ -70,14 +70,14 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(EqualBits, ADifferentStiffnessIsSeenByTheComparison) {
   const test::TempFolder folder;
   const std::string trace = test::write_press_trace(folder / "press.csv", 0.048, 0.0435, 0.2, "push");
-  study::RunOptions options;
+  run::RunOptions options;
   options.quiet = true;
   options.scenario = test::write_text(folder / "ball.json", test::make_ball_scenario(trace));
   options.output = folder / "a.h5";
-  ASSERT_EQ(study::run(options), study::kDone);
+  ASSERT_EQ(run::run(options), run::kDone);
   options.settings = {"/material/youngs_modulus_Pa=100000.00001"};
   options.output = folder / "b.h5";
-  ASSERT_EQ(study::run(options), study::kDone);
+  ASSERT_EQ(run::run(options), run::kDone);
   EXPECT_FALSE(output::compare_results(folder / "a.h5", folder / "b.h5", {}).is_equal());
 }
 

@@ -22,7 +22,7 @@
 #include "device/trace.h"
 #include "hdf5_input.h"
 #include "json_mutation.h"
-#include "mesh/readers.h"
+#include "mesh_files/readers.h"
 #include "scenario/scenario.h"
 #include "scenario/study_file.h"
 #include "scenario/sweep_file.h"
@@ -68,9 +68,9 @@ const std::map<std::string, Reader, std::less<>>& readers() {
   static const std::map<std::string, Reader, std::less<>> kReaders = {
       {"tets",
        {{".msh", ".mesh", ".node", ".vtk", ".vtu", ".veg"},
-        [](const std::string& file) { mesh::read_tet_mesh(file); }}},
+        [](const std::string& file) { mesh_files::read_tet_mesh(file); }}},
       {"surfaces",
-       {{".obj", ".stl", ".ply"}, [](const std::string& file) { mesh::read_triangle_mesh(file); }}},
+       {{".obj", ".stl", ".ply"}, [](const std::string& file) { mesh_files::read_triangle_mesh(file); }}},
       {"traces", {{".csv"}, [](const std::string& file) { device::read_trace(file, {}); }}},
       {"hdf5", {{".h5"}, [](const std::string& file) { device::read_trace(file, {}); }}},
       {"messages", {{".json"}, read_haply, Form::json}},

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh/shapes.h"
+#include "shapes/shapes.h"
 #include "support/block_mesh.h"
 #include "support/mirrored_mesh.h"
 #include "support/shaken_block.h"
@@ -116,8 +116,8 @@ TEST(Diffusion, CorrectedFluxHasTheRightDiffusivityOnAnyMesh) {
                {"Kuhn, across", test::make_block(16, 8, 8, Vec3(0.2, 0.1, 0.1)), 1},
                {"Kuhn, stretched", test::make_block(8, 8, 8, Vec3(0.4, 0.1, 0.1)), 1},
                {"shaken", test::make_shaken_block(8), 2},
-               {"cylinder", mesh::make_shape_mesh({mesh::ShapeKind::cylinder, 0.2}, 4000), 2},
-               {"box", mesh::make_shape_mesh({mesh::ShapeKind::box, 0.2}, 4000), 0}};
+               {"cylinder", shapes::make_shape_mesh({shapes::ShapeKind::cylinder, 0.2}, 4000), 2},
+               {"box", shapes::make_shape_mesh({shapes::ShapeKind::box, 0.2}, 4000), 0}};
   for (const auto& c : cases) {
     const double corrected = compute_effective_diffusivity(c.mesh, c.axis, FluxForm::corrected);
     const double two_point = compute_effective_diffusivity(c.mesh, c.axis, FluxForm::two_point);

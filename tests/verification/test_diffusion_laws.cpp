@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/rng.h"
-#include "mesh/shapes.h"
+#include "shapes/shapes.h"
 #include "support/block_mesh.h"
 #include "support/mirrored_mesh.h"
 #include "support/shaken_block.h"
@@ -248,7 +248,7 @@ TEST(ImplicitDiffusion, KeepsBoundsAndWaterAtAnyStep) {
 }
 
 TEST(ImplicitDiffusion, AgreesWithExplicitDiffusionInSmallSteps) {
-  const mesh::TetMesh mesh = mesh::make_shape_mesh({mesh::ShapeKind::cylinder, 0.1}, 1500);
+  const mesh::TetMesh mesh = shapes::make_shape_mesh({shapes::ShapeKind::cylinder, 0.1}, 1500);
   const Points centres = compute_centroids(mesh);
   const double bottom = centres.row(2).minCoeff();
   const Field start = 0.5 + 0.4 * (kPi / 0.1 * (centres.row(2).transpose().array() - bottom)).cos();

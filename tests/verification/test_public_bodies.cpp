@@ -9,9 +9,9 @@
 
 #include "device/trace.h"
 #include "embed/cage.h"
-#include "mesh/readers.h"
+#include "mesh_files/readers.h"
 #include "output/result_reader.h"
-#include "study/run.h"
+#include "run/run.h"
 #include "support/scene_files.h"
 #include "support/shared_data.h"
 #include "support/temp_folder.h"
@@ -71,7 +71,7 @@ TEST_P(PressedBody, PushesBackAndKeepsItsWits) {
   const std::string file = test::shared_data(body.file);
   const bool is_surface = file.ends_with(".obj");
   const Points raw =
-      is_surface ? mesh::read_triangle_mesh(file).vertices : mesh::read_tet_mesh(file).vertices;
+      is_surface ? mesh_files::read_triangle_mesh(file).vertices : mesh_files::read_tet_mesh(file).vertices;
   const Vec3 extent = raw.rowwise().maxCoeff() - raw.rowwise().minCoeff();
   const double scale = body.size / extent.maxCoeff();
   std::string key = R"("mesh": {"file": ")" + file + R"(", "scale": )" + std::to_string(scale) + "}";
@@ -79,7 +79,7 @@ TEST_P(PressedBody, PushesBackAndKeepsItsWits) {
   if (is_surface) {
     key = R"("surface": {"file": ")" + file + R"(", "target_tets": 5000, "scale": )" + std::to_string(scale) +
           "}";
-    mesh::TriangleMesh surface = mesh::read_triangle_mesh(file, std::stod(std::to_string(scale)));
+    mesh::TriangleMesh surface = mesh_files::read_triangle_mesh(file, std::stod(std::to_string(scale)));
     vertices = embed::make_cage(surface, {5000}, file).mesh.vertices;
   }
   Eigen::Index top = 0;
@@ -91,12 +91,12 @@ TEST_P(PressedBody, PushesBackAndKeepsItsWits) {
   const Vec3 target = vertices.col(top) + Vec3(0, 0, 0.008 - depth);
   const double floor = vertices.row(2).minCoeff() + 0.25 * body.size * extent.z() / extent.maxCoeff();
 
-  study::RunOptions run;
+  run::RunOptions run;
   run.quiet = true;
   run.scenario = test::write_text(folder / "scene.json",
                                   make_scenario(key, target - window.lowest, window.start, floor));
   run.output = folder / "out.h5";
-  ASSERT_EQ(study::run(run), study::kDone);
+  ASSERT_EQ(run::run(run), run::kDone);
   const output::ResultReader result(run.output);
   double largest = 0.0;
   double lift = 0.0;

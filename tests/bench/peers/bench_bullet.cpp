@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "contact/tool_shape.h"
-#include "mesh/shapes.h"
+#include "shapes/shapes.h"
 #include "sim/simulation.h"
 
 namespace argil {
@@ -191,7 +191,7 @@ void measure(benchmark::State& state, const mesh::TetMesh& mesh, const Step& ste
 }
 
 mesh::TetMesh make_box(const benchmark::State& state) {
-  return mesh::make_shape_mesh({mesh::ShapeKind::box, kEdge}, static_cast<int>(state.range(0)));
+  return shapes::make_shape_mesh({shapes::ShapeKind::box, kEdge}, static_cast<int>(state.range(0)));
 }
 
 void bullet(benchmark::State& state) {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "mesh/order.h"
-#include "mesh/readers.h"
 #include "mesh/topology.h"
+#include "mesh_files/readers.h"
 #include "solid/solid.h"
 
 namespace argil {
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: bench_elastic BOX.msh TOLERANCE STEPS THREADS\n");
     return 2;
   }
-  argil::mesh::TetMesh mesh = argil::mesh::read_tet_mesh(argv[1], argil::kEdge);
+  argil::mesh::TetMesh mesh = argil::mesh_files::read_tet_mesh(argv[1], argil::kEdge);
   argil::mesh::sort_tets(mesh);  // as scenarios do
   const argil::StepStatus status =
       argil::run(mesh, std::strtod(argv[2], nullptr), std::atoi(argv[3]), std::atoi(argv[4]));

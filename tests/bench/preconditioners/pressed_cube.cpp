@@ -8,8 +8,8 @@
 #include "base/check.h"
 #include "linear/pcg.h"
 #include "mesh/order.h"
-#include "mesh/shapes.h"
 #include "mesh/topology.h"
+#include "shapes/shapes.h"
 #include "solid/element.h"
 #include "solid/solid.h"
 
@@ -129,8 +129,8 @@ double compare(const StepSystem& system, const Points& change) {
 }  // namespace
 
 StepSystem make_pressed_cube(int target_tets) {
-  const mesh::Shape cube{mesh::ShapeKind::box, kEdge, 1.0};
-  mesh::TetMesh mesh = mesh::make_shape_mesh(cube, target_tets);
+  const shapes::Shape cube{shapes::ShapeKind::box, kEdge, 1.0};
+  mesh::TetMesh mesh = shapes::make_shape_mesh(cube, target_tets);
   mesh::sort_tets(mesh);  // as scenarios do
   solid::SolidParams params;
   params.solver.tolerance = 1e-10;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "mesh/readers.h"
-#include "mesh/shapes.h"
+#include "mesh_files/readers.h"
+#include "shapes/shapes.h"
 #include "support/shared_data.h"
 #include "unit/embed/cage_checks.h"
 
@@ -19,14 +19,15 @@ namespace {
 TEST(MakeCage, EnclosesAStandingFigure) {
   ARGIL_NEED_SHARED_DATA("surface/Animated_Human.obj");
   const mesh::TriangleMesh surface =
-      mesh::read_triangle_mesh(test::shared_data("surface/Animated_Human.obj"));
+      mesh_files::read_triangle_mesh(test::shared_data("surface/Animated_Human.obj"));
   ASSERT_EQ(surface.num_triangles(), 1578);
   for (const int target : {2000, 10000}) expect_good_cage(surface, target, "Animated_Human.obj");
 }
 
 TEST(MakeCage, EnclosesADinosaurWithHolesAndDegenerateFaces) {
   ARGIL_NEED_SHARED_DATA("surface/Stegosaurus.obj");
-  const mesh::TriangleMesh surface = mesh::read_triangle_mesh(test::shared_data("surface/Stegosaurus.obj"));
+  const mesh::TriangleMesh surface =
+      mesh_files::read_triangle_mesh(test::shared_data("surface/Stegosaurus.obj"));
   ASSERT_EQ(surface.num_vertices(), 1141);
   for (const int target : {2000, 10000}) expect_good_cage(surface, target, "Stegosaurus.obj");
 }
@@ -43,7 +44,7 @@ TEST(MakeCage, EnclosesAnOpenSheetALooseVertexAndABodyTurnedInsideOut) {
       2, 3, 2;                 // the last is degenerate, vertex 4 belongs to none
   expect_good_cage(sheet, 2000, "sheet");
 
-  mesh::TriangleMesh reversed = mesh::make_shape_skin({mesh::ShapeKind::sphere, 0.1}, 500);
+  mesh::TriangleMesh reversed = shapes::make_shape_skin({shapes::ShapeKind::sphere, 0.1}, 500);
   reversed.triangles.row(0).swap(reversed.triangles.row(1));
   expect_good_cage(reversed, 2000, "reversed");
   const Cage cage = make_cage(reversed, {2000}, "reversed");  // full, not a shell
@@ -65,7 +66,7 @@ TEST(MakeCage, StackedSheetsThatWindFarRoundStayInTheirBox) {
 
 TEST(MakeCage, ClosesAHoleByWhatTheSurfaceWindsRound) {
   // A bowl of three quarters of a sphere: its cage holds the inside up to about the plane of the mouth.
-  mesh::TriangleMesh bowl = mesh::make_shape_skin({mesh::ShapeKind::sphere, 1.0}, 3000);
+  mesh::TriangleMesh bowl = shapes::make_shape_skin({shapes::ShapeKind::sphere, 1.0}, 3000);
   int kept = 0;
   for (int t = 0; t < bowl.num_triangles(); ++t)
     if (bowl.vertices(2, bowl.triangles(0, t)) < 0.75) bowl.triangles.col(kept++) = bowl.triangles.col(t);
@@ -93,7 +94,7 @@ TEST(MakeCage, ClosesAHoleByWhatTheSurfaceWindsRound) {
 }
 
 TEST(MakeCage, HugsASphereSmoothlyWhereAVoxelStaircaseTurnsByNinetyDegrees) {
-  const mesh::TriangleMesh skin = mesh::make_shape_skin({mesh::ShapeKind::sphere, 1.0}, 20000);
+  const mesh::TriangleMesh skin = shapes::make_shape_skin({shapes::ShapeKind::sphere, 1.0}, 20000);
   const Cage cage = make_cage(skin, {10000}, "sphere");
   const test::SurfaceFacts facts =
       test::compute_surface_facts(cage.mesh.vertices, mesh::make_topology(cage.mesh).boundary);
@@ -112,15 +113,15 @@ TEST(MakeCage, HugsASphereSmoothlyWhereAVoxelStaircaseTurnsByNinetyDegrees) {
 }
 
 TEST(MakeCage, KeepsTheCreaturesInOnePiece) {
-  for (const mesh::ShapeKind kind : {mesh::ShapeKind::dinosaur, mesh::ShapeKind::figure}) {
-    const mesh::TriangleMesh skin = mesh::make_shape_skin({kind, 0.2}, 5000);
+  for (const shapes::ShapeKind kind : {shapes::ShapeKind::dinosaur, shapes::ShapeKind::figure}) {
+    const mesh::TriangleMesh skin = shapes::make_shape_skin({kind, 0.2}, 5000);
     const Cage cage = make_cage(skin, {2000}, "creature");
     EXPECT_EQ(test::count_components(cage.mesh), 1);
   }
 }
 
 TEST(MakeCage, GivesTheSameBitsTwice) {
-  const mesh::TriangleMesh skin = mesh::make_shape_skin({mesh::ShapeKind::figure, 0.2}, 3000);
+  const mesh::TriangleMesh skin = shapes::make_shape_skin({shapes::ShapeKind::figure, 0.2}, 3000);
   EXPECT_EQ(test::hash_mesh(make_cage(skin, {2000}, "a").mesh),
             test::hash_mesh(make_cage(skin, {2000}, "b").mesh));
 }
@@ -132,7 +133,7 @@ TEST(MakeCage, RefusesSurfacesWithoutExtentAndCountsOutOfRange) {
   point.triangles << 0, 1, 2;
   EXPECT_THROW(make_cage(point, {2000}, "point"), InputError);
   EXPECT_THROW(make_cage({}, {2000}, "empty"), InputError);
-  mesh::TriangleMesh skin = mesh::make_shape_skin({mesh::ShapeKind::sphere, 0.1}, 500);
+  mesh::TriangleMesh skin = shapes::make_shape_skin({shapes::ShapeKind::sphere, 0.1}, 500);
   EXPECT_THROW(make_cage(skin, {50}, "few"), InputError);
   skin.vertices(0, 3) = std::numeric_limits<double>::infinity();
   try {

@@ -9,15 +9,15 @@
 
 #include "base/error.h"
 #include "base/rng.h"
-#include "mesh/readers.h"
-#include "mesh/shapes.h"
+#include "mesh_files/readers.h"
+#include "shapes/shapes.h"
 #include "support/shared_data.h"
 
 namespace argil::embed {
 namespace {
 
 mesh::TetMesh make_cage_box() {
-  return mesh::make_shape_mesh({mesh::ShapeKind::box, 1.0}, 2000);
+  return shapes::make_shape_mesh({shapes::ShapeKind::box, 1.0}, 2000);
 }
 
 Points make_points_inside(int count) {
@@ -120,8 +120,9 @@ TEST(RegionOfInfluence, FallsLinearlyFromOneAtTheToolToZeroAtTheRadius) {
 
 TEST(Embedding, GivesTheWeightsThatVegaFemPublishedForItsTurtle) {
   ARGIL_NEED_SHARED_DATA("tets/turtle.interp");
-  const mesh::TetMesh cage = mesh::read_tet_mesh(test::shared_data("tets/turtle-volumetric-homogeneous.veg"));
-  const Points points = mesh::read_triangle_mesh(test::shared_data("tets/turtle.obj")).vertices;
+  const mesh::TetMesh cage =
+      mesh_files::read_tet_mesh(test::shared_data("tets/turtle-volumetric-homogeneous.veg"));
+  const Points points = mesh_files::read_triangle_mesh(test::shared_data("tets/turtle.obj")).vertices;
   ASSERT_EQ(cage.num_tets(), 1185);
   ASSERT_EQ(points.cols(), 1961);
   const Embedding embedding = make_embedding(cage, points, "turtle.obj");

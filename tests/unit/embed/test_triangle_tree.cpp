@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/rng.h"
-#include "mesh/shapes.h"
+#include "shapes/shapes.h"
 
 namespace argil::embed {
 namespace {
@@ -54,7 +54,7 @@ TEST(ClosestPoint, IsNoFartherThanAnySampleAndLiesInTheTriangle) {
 }
 
 TEST(TriangleTree, DistanceEqualsALoopOverAllTriangles) {
-  const mesh::TriangleMesh skin = mesh::make_shape_skin({mesh::ShapeKind::dinosaur, 1.0}, 3000);
+  const mesh::TriangleMesh skin = shapes::make_shape_skin({shapes::ShapeKind::dinosaur, 1.0}, 3000);
   TriangleTree tree(skin);
   Rng rng(9, "tree");
   Field radius(skin.num_vertices());
@@ -84,7 +84,7 @@ TEST(SolidAngle, OfAnOctantIsHalfPi) {
 }
 
 TEST(WindingNumber, IsOneInsideAndZeroOutsideAClosedSurface) {
-  const mesh::TriangleMesh skin = mesh::make_shape_skin({mesh::ShapeKind::sphere, 1.0}, 2000);
+  const mesh::TriangleMesh skin = shapes::make_shape_skin({shapes::ShapeKind::sphere, 1.0}, 2000);
   const TriangleTree tree(skin);
   Rng rng(4, "winding");
   for (int i = 0; i < 200; ++i) {
@@ -96,7 +96,7 @@ TEST(WindingNumber, IsOneInsideAndZeroOutsideAClosedSurface) {
 }
 
 TEST(WindingNumber, IsOneHalfInTheMouthOfAnOpenBowl) {
-  mesh::TriangleMesh bowl = mesh::make_shape_skin({mesh::ShapeKind::sphere, 1.0}, 2000);
+  mesh::TriangleMesh bowl = shapes::make_shape_skin({shapes::ShapeKind::sphere, 1.0}, 2000);
   int kept = 0;
   for (int t = 0; t < bowl.num_triangles(); ++t) {
     double highest = 0.0;

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "base/rng.h"
-#include "mesh/shapes.h"
+#include "shapes/shapes.h"
 
 namespace argil::mesh {
 namespace {
@@ -26,7 +26,7 @@ double find_mean_jump(const TetMesh& mesh) {
 }
 
 TetMesh make_shuffled_box() {
-  TetMesh mesh = make_shape_mesh({ShapeKind::box, 1.0}, 6000);
+  TetMesh mesh = shapes::make_shape_mesh({shapes::ShapeKind::box, 1.0}, 6000);
   Rng rng(5);
   for (int t = mesh.num_tets() - 1; t > 0; --t)
     mesh.tets.col(t).swap(mesh.tets.col(static_cast<int>(rng.uniform() * (t + 1))));

@@ -10,10 +10,10 @@
 
 #include "base/error.h"
 #include "base/rng.h"
-#include "sample_files.h"
 #include "support/block_mesh.h"
 #include "support/mesh_measures.h"
 #include "support/temp_folder.h"
+#include "support/two_tets.h"
 
 namespace argil::mesh {
 namespace {

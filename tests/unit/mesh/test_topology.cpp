@@ -4,25 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include "support/two_tets.h"
+
 namespace argil::mesh {
 namespace {
 
-TetMesh make_two_tets() {
-  TetMesh mesh;
-  mesh.vertices.resize(3, 5);
-  mesh.vertices << 0, 1, 0, 0, 1,  //
-      0, 0, 1, 0, 1,               //
-      0, 0, 0, 1, 1;
-  mesh.tets.resize(4, 2);
-  mesh.tets << 0, 1,  //
-      1, 2,           //
-      2, 3,           //
-      3, 4;
-  return mesh;
-}
-
 TEST(Topology, TwoTetsShareOneFace) {
-  const Topology topology = make_topology(make_two_tets());
+  const Topology topology = make_topology(test::make_two_tets());
   EXPECT_EQ(topology.boundary.cols(), 6);
   EXPECT_EQ(topology.neighbours(0, 0), 1);
   EXPECT_EQ(topology.neighbours(3, 1), 0);
@@ -30,7 +18,7 @@ TEST(Topology, TwoTetsShareOneFace) {
 }
 
 TEST(Topology, BoundaryNormalsPointOutSoThatTheDivergenceTheoremGivesTheVolume) {
-  const TetMesh mesh = make_two_tets();
+  const TetMesh mesh = test::make_two_tets();
   const Topology topology = make_topology(mesh);
   double volume = 0.0;  // ∮ x·n dA / 3
   for (Eigen::Index f = 0; f < topology.boundary.cols(); ++f) {
@@ -44,7 +32,7 @@ TEST(Topology, BoundaryNormalsPointOutSoThatTheDivergenceTheoremGivesTheVolume) 
 }
 
 TEST(Topology, VertexListsNameEveryTetAroundAVertexOnce) {
-  const Topology topology = make_topology(make_two_tets());
+  const Topology topology = make_topology(test::make_two_tets());
   ASSERT_EQ(topology.vertex_begin.size(), 6U);
   EXPECT_EQ(topology.vertex_begin[5], 8);
   EXPECT_EQ(topology.vertex_corners[static_cast<std::size_t>(topology.vertex_begin[4])], 4 * 1 + 3);

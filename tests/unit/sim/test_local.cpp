@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "contact/tool_shape.h"
-#include "mesh/shapes.h"
+#include "mesh/sliver.h"
+#include "shapes/shapes.h"
 #include "sim/simulation.h"
 #include "support/block_body.h"
 

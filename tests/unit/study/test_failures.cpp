@@ -8,10 +8,10 @@
 #include <string>
 
 #include "output/result_reader.h"
+#include "run/run.h"
 #include "scenario/build.h"
 #include "scenario/study_file.h"
 #include "study/measure.h"
-#include "study/run.h"
 #include "study/stability.h"
 #include "study_scene.h"
 
@@ -22,32 +22,32 @@ class Failures : public Study {
  protected:
   /// Runs a map and gives the scenario that it keeps of `outcome`.
   std::string keep(const std::string& study, const std::string& outcome) const {
-    EXPECT_EQ(map_stability(options(study), folder / "failures"), kDone);
+    EXPECT_EQ(map_stability(options(study), folder / "failures"), run::kDone);
     EXPECT_EQ(table().at(0).at("outcome"), outcome);
     return folder / ("failures/study_" + outcome + ".json");
   }
   /// The result of a scenario with settings.
   std::string run_file(const std::string& scenario, const std::vector<std::string>& settings, int expected,
                        const std::string& name = "again.h5") const {
-    RunOptions options;
+    run::RunOptions options;
     options.quiet = true;
     options.scenario = scenario;
     options.settings = settings;
     options.output = folder / name;
     testing::internal::CaptureStderr();
-    EXPECT_EQ(run(options), expected);
+    EXPECT_EQ(run::run(options), expected);
     testing::internal::GetCapturedStderr();
     return options.output;
   }
   RunErrors compare(const std::string& scenario, const std::string& reference,
                     std::vector<std::string> settings = {}) const {
-    const output::ResultReader result(run_file(scenario, settings, kDone));
+    const output::ResultReader result(run_file(scenario, settings, run::kDone));
     settings.push_back(reference);
-    const output::ResultReader truth(run_file(scenario, settings, kDone, "truth.h5"));
+    const output::ResultReader truth(run_file(scenario, settings, run::kDone, "truth.h5"));
     return compute_errors(result, truth);
   }
   double find_peak(const std::string& scenario, const std::vector<std::string>& settings = {}) const {
-    return compute_peak_force(output::ResultReader(run_file(scenario, settings, kDone)).read_haptic());
+    return compute_peak_force(output::ResultReader(run_file(scenario, settings, run::kDone)).read_haptic());
   }
   static std::string set(const std::string& pointer, double value) {
     return pointer + "=" + std::to_string(value);
@@ -70,11 +70,11 @@ TEST_F(Failures, ThatEndEarlyKeepWhatTheyNeedAlone) {
   EXPECT_EQ(s.params.water.porosity, base.params.water.porosity);
   EXPECT_EQ(s.body.target_tets, 100);  // the fewest that a scenario may ask for
   // It ends in its last tick.
-  const auto failure = output::ResultReader(run_file(file, {}, kRunFailed)).read_failure();
+  const auto failure = output::ResultReader(run_file(file, {}, run::kRunFailed)).read_failure();
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->quantity.find("volume ratio"), 0U) << failure->quantity;
   EXPECT_DOUBLE_EQ(s.trace.duration, 1e-3 * static_cast<double>(failure->tick + 1));
-  run_file(file, {set("/trace/duration_s", 1e-3 * static_cast<double>(failure->tick - 1))}, kDone);
+  run_file(file, {set("/trace/duration_s", 1e-3 * static_cast<double>(failure->tick - 1))}, run::kDone);
 }
 
 // Clay of half the modulus is wrong for as long as it is pressed: the motion may end when half of the largest
@@ -111,7 +111,7 @@ TEST_F(Failures, OfChatterAreShortenedToFivePeriodsOrWhereTheyAreFelt) {
   EXPECT_GE(s.trace.duration, 0.1);
   EXPECT_LT(s.trace.duration, 0.3);
   EXPECT_FALSE(s.params.solid.implicit_contact);  // or it would not chatter
-  const output::ResultReader result(run_file(file, {}, kDone));
+  const output::ResultReader result(run_file(file, {}, run::kDone));
   EXPECT_GT(compute_figures(result, s).chatter, 0.1);
 }
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "run/run.h"
 #include "study/outcome.h"
-#include "study/run.h"
 
 namespace argil::study {
 namespace {
@@ -28,7 +28,8 @@ TEST(Classify, GoesByTheWorstThatHappened) {
   CaseResult result;
   RunFigures figures;
   RunErrors errors;
-  EXPECT_EQ(classify(result, figures, errors, {}), Outcome::accurate);  // nothing to compare with, nor asked for
+  EXPECT_EQ(classify(result, figures, errors, {}),
+            Outcome::accurate);  // nothing to compare with, nor asked for
   OutcomeBounds bounds;
   bounds.compares = true;
   EXPECT_EQ(classify(result, figures, errors, bounds), Outcome::unknown);
@@ -45,12 +46,12 @@ TEST(Classify, GoesByTheWorstThatHappened) {
   EXPECT_EQ(classify(result, figures, errors, {}), Outcome::chatter);
   figures.energy_gain = 0.2;
   EXPECT_EQ(classify(result, figures, errors, {}), Outcome::growing_energy);
-  result.exit_code = kRunFailed;
+  result.exit_code = run::kRunFailed;
   result.reason = "tick 5, solid: volume ratio det F of a tet is -1, bound 0";
   EXPECT_EQ(classify(result, figures, errors, {}), Outcome::inverted);
   result.reason = "tick 5, solid: something new";
   EXPECT_EQ(classify(result, figures, errors, {}), Outcome::failed);
-  result.exit_code = kInputRefused;
+  result.exit_code = run::kInputRefused;
   EXPECT_EQ(classify(result, figures, errors, {}), Outcome::refused);
   result.exit_code = 128 + 9;
   EXPECT_EQ(classify(result, figures, errors, {}), Outcome::killed);

@@ -8,11 +8,11 @@
 #include <filesystem>
 #include <sstream>
 
+#include "run/run.h"
 #include "scenario/build.h"
 #include "solid/element.h"
 #include "solid/solid.h"
 #include "study/chart.h"
-#include "study/run.h"
 #include "study/stability.h"
 #include "study_scene.h"
 
@@ -59,7 +59,7 @@ TEST_F(Study, MapFindsTheExplicitLimitWithinOnePercent) {
     "x": {"name": "E [Pa]", "pointers": ["/material/youngs_modulus_Pa"], "logarithmic": true,
           "values": [1e3, 1e6]}, "bisect_to": 0.01, "limits": [{"name": "theory", "x": [7]}]})"),
                           folder / "failures"),
-            kDone);
+            run::kDone);
   int boundaries = 0;
   for (const Row& row : table()) {
     if (row.at("kind") == "limit") {
@@ -73,11 +73,11 @@ TEST_F(Study, MapFindsTheExplicitLimitWithinOnePercent) {
   }
   EXPECT_EQ(boundaries, 1);
   // What failed next to it can be run again, by itself, to the same end.
-  RunOptions again;
+  run::RunOptions again;
   again.quiet = true;
   again.scenario = folder / "failures/study_growing_energy.json";
   again.output = folder / "again.h5";
-  EXPECT_EQ(run(again), kRunFailed);
+  EXPECT_EQ(run::run(again), run::kRunFailed);
 }
 
 // Four-node tets are refused from ν = 0.45 on; before, the force is more and more another than that at 0.3.
@@ -86,7 +86,7 @@ TEST_F(Study, MapFindsBothBoundariesBetweenThreeOutcomes) {
     "x": {"name": "ν", "pointers": ["/material/poissons_ratio"], "values": [0.3, 0.7]},
     "reference": {"/material/poissons_ratio": 0.3}, "wrong_above": 0.01, "bisect_to": 0.02})"),
                           ""),
-            kDone);
+            run::kDone);
   std::vector<Row> boundaries;
   for (const Row& row : table())
     if (row.at("kind") == "boundary") boundaries.push_back(row);
@@ -102,7 +102,7 @@ TEST_F(Study, MapDoesNotTakeGravityForEnergyFromNowhere) {
     "settings": {"/body/loads/gravity_m_per_s2": [0, 0, -30]},
     "x": {"name": "E [Pa]", "pointers": ["/material/youngs_modulus_Pa"], "values": [2e4, 4e4]}})"),
                           ""),
-            kDone);
+            run::kDone);
   for (const Row& row : table()) {
     EXPECT_EQ(row.at("outcome"), "accurate");
     EXPECT_EQ(row.at("energy_gain"), "");
@@ -114,7 +114,7 @@ TEST_F(Study, MapSaysOfAPlaceThatItCannotBeCompared) {
     "x": {"name": "tick [s]", "pointers": ["/haptics/period_s"], "values": [0.001, 0.0015]},
     "reference": {"/haptics/period_s": 0.001}})"),
                           ""),
-            kRunFailed);
+            run::kRunFailed);
   ASSERT_EQ(table().size(), 2U);
   EXPECT_EQ(table()[0].at("outcome"), "accurate");
   EXPECT_EQ(table()[1].at("outcome"), "unknown");
@@ -126,7 +126,7 @@ TEST_F(Study, MapSaysTheReferencesForceBesideARunsOwn) {
     "x": {"name": "E [Pa]", "pointers": ["/material/youngs_modulus_Pa"], "values": [1e4, 2e4]},
     "reference": {"/material/youngs_modulus_Pa": 2e4}, "wrong_above": 10})"),
                           ""),
-            kDone);
+            run::kDone);
   const std::vector<Row> rows = table();
   ASSERT_EQ(rows.size(), 2U);
   for (const Row& row : rows) EXPECT_EQ(row.at("reference_peak_force_N"), rows[1].at("peak_force_N"));
@@ -145,7 +145,7 @@ const std::string kChart = R"({"about": "orders", "scenario": "scene.json",
              {"name": "ended", "settings": {"/dynamics/newton/max_iterations": 1, "/dynamics/newton/tolerance": 1e-14}}]})";
 
 TEST_F(Study, ChartHasTheOrderOfTheSchemeAndNamesWhatFailed) {
-  ASSERT_EQ(chart(options(kChart)), kDone);
+  ASSERT_EQ(chart(options(kChart)), run::kDone);
   const std::vector<Row> rows = table();
   ASSERT_EQ(rows.size(), 7U);
   const auto error = [&](std::size_t i) { return std::stod(rows[i].at("force_error")); };
@@ -164,7 +164,7 @@ TEST_F(Study, ChartHasTheOrderOfTheSchemeAndNamesWhatFailed) {
 }
 
 TEST_F(Study, ChartTakenUpAgainIsTheSame) {
-  ASSERT_EQ(chart(options(kChart)), kDone);
+  ASSERT_EQ(chart(options(kChart)), run::kDone);
   const std::string first = read_text(folder / "table.csv");
   // One run is lost, as when the study was stopped before it ended: its bits are the same, its cost is not.
   const std::string lost = table()[2].at("run");
@@ -172,7 +172,7 @@ TEST_F(Study, ChartTakenUpAgainIsTheSame) {
     ASSERT_TRUE(std::filesystem::remove(folder / ("table.runs/" + lost + suffix)));
   const auto written =
       std::filesystem::last_write_time(folder / ("table.runs/" + table()[3].at("run") + ".h5"));
-  ASSERT_EQ(chart(options(kChart)), kDone);
+  ASSERT_EQ(chart(options(kChart)), run::kDone);
   EXPECT_EQ(std::filesystem::last_write_time(folder / ("table.runs/" + table()[3].at("run") + ".h5")),
             written);
   std::istringstream a(first), b(read_text(folder / "table.csv"));
@@ -185,16 +185,16 @@ TEST_F(Study, ChartTakenUpAgainIsTheSame) {
 
 TEST_F(Study, BudgetPrintsThePatchOfTheMostAccurateRunThatFits) {
   testing::internal::CaptureStdout();
-  ASSERT_EQ(chart_budget(options(kChart), 1e6), kDone);
+  ASSERT_EQ(chart_budget(options(kChart), 1e6), run::kDone);
   const std::string patch = testing::internal::GetCapturedStdout();
   EXPECT_NE(patch.find(R"("period_s": 0.001)"), std::string::npos) << patch;
   EXPECT_NE(patch.find(R"("iteration": "newton")"), std::string::npos) << patch;
-  EXPECT_EQ(chart_budget(options(kChart), 1e-9), kRunFailed);
+  EXPECT_EQ(chart_budget(options(kChart), 1e-9), run::kRunFailed);
 }
 
 TEST_F(Study, MapNamesEachWayToEnd) {
   const auto outcome = [&](const std::string& study) {
-    EXPECT_EQ(map_stability(options(study), ""), kDone);
+    EXPECT_EQ(map_stability(options(study), ""), run::kDone);
     return table().at(0).at("outcome");
   };
   EXPECT_EQ(outcome(one_place("", "/material/poissons_ratio", "0.3")), "accurate");
@@ -225,7 +225,7 @@ TEST_F(Study, MapWithoutATruthSaysSo) {
        {std::pair(R"("/material/poissons_ratio": 0.7)", "reference: scene.json: /material/poissons_ratio"),
         std::pair(R"("/trace/device_to_world/translation_m": [1, 0, 0])", "")}) {
     EXPECT_EQ(map_stability(options(one_place("", "/material/density_kg_per_m3", "1500", reference)), ""),
-              kRunFailed);
+              run::kRunFailed);
     EXPECT_EQ(table().at(0).at("outcome"), "unknown");
     EXPECT_EQ(table().at(0).at("reason").find(reason), 0U) << table().at(0).at("reason");
   }
@@ -240,14 +240,14 @@ TEST_F(Study, RunThatWasKilledOrDamagedIsRunAgain) {
                                "' 2>/dev/null; then kill -9 $$; fi\nexec '" ARGIL_BINARY "' \"$@\"\n");
   std::filesystem::permissions(o.cases.program, std::filesystem::perms::owner_all);
   o.cases.jobs = 1;
-  EXPECT_EQ(map_stability(o, ""), kRunFailed);
+  EXPECT_EQ(map_stability(o, ""), run::kRunFailed);
   EXPECT_EQ(table().at(0).at("outcome"), "killed");
-  EXPECT_EQ(map_stability(o, ""), kDone);
+  EXPECT_EQ(map_stability(o, ""), run::kDone);
   EXPECT_EQ(table().at(0).at("outcome"), "accurate");
   const std::string whole = read_text(folder / "table.csv");
   const std::string kept = folder / ("table.runs/" + table().at(0).at("run") + ".h5");
   std::filesystem::resize_file(kept, std::filesystem::file_size(kept) / 2);
-  EXPECT_EQ(map_stability(o, ""), kDone);
+  EXPECT_EQ(map_stability(o, ""), run::kDone);
   EXPECT_EQ(read_text(folder / "table.csv"), whole);
 }
 

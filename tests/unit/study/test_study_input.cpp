@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/error.h"
+#include "run/run.h"
 #include "scenario/study_file.h"
 #include "study/chart.h"
-#include "study/run.h"
 #include "study/stability.h"
 #include "study_scene.h"
 
@@ -131,7 +131,7 @@ TEST_F(StudyInput, SetsNoElementOfAListThatIsNotThere) {
               "settings": {"/trace/device_to_world/translation_m": [0, 0, 0]}, "x": {"name": "x", "pointers": [")" +
                                   element + R"("], "values": [0]}})"),
                           ""),
-            kDone);
+            run::kDone);
 }
 
 TEST_F(StudyInput, HasItsScene) {
@@ -169,14 +169,14 @@ TEST_F(StudyInput, OfRunsThatAreAllRefusedSaysSo) {
   EXPECT_EQ(map_stability(options(R"({"about": "x", "scenario": "scene.json", "x": {"name": "x",
               "pointers": ["/material/poissons_ratio"], "values": [0.6, 0.7]}})"),
                           ""),
-            kRunFailed);
+            run::kRunFailed);
   EXPECT_NE(testing::internal::GetCapturedStderr().find("all 2 runs of "), std::string::npos);
   ASSERT_EQ(table().size(), 2U);
   EXPECT_EQ(table()[1].at("outcome"), "refused");
   EXPECT_NE(table()[1].at("reason").find("/material/poissons_ratio"), std::string::npos);
   EXPECT_EQ(chart(options(R"({"about": "x", "scenario": "scene.json", "refined": {"/haptics/period_s": 5e-4},
               "curves": [{"name": "a", "settings": {"/material/poissons_ratio": 0.7}}]})")),
-            kRunFailed);
+            run::kRunFailed);
 }
 
 }  // namespace

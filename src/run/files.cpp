@@ -1,0 +1,68 @@
+#include "run/files.h"
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/read_file.h"
+
+namespace argil::run {
+namespace {
+
+bool has_ending(const std::string& file, const char* ending) {
+  return std::filesystem::path(file).extension() == ending;
+}
+
+}  // namespace
+
+void require_input_file(const std::string& file, const std::string& place) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error))
+    throw InputError(file, place, "does not exist", "check the path");
+  if (std::filesystem::is_directory(file, error))
+    throw InputError(file, place, "is a folder", "name a file in it");
+  if (std::filesystem::is_character_file(file, error))  // may never end
+    throw InputError(file, place, "is a device", "name a file");
+}
+
+void require_other_file(const std::string& output, const std::string& input, const std::string& what,
+                        const std::string& option) {
+  std::error_code missing;  // a file that is not there is no input
+  if (std::filesystem::equivalent(output, input, missing))
+    throw InputError(output, "", "is " + what + " and would be overwritten",
+                     "give another name to " + option);
+}
+
+void require_no_input(const scenario::Scenario& s, const std::string& output, const std::string& option) {
+  for (const scenario::InputFile& input : scenario::list_input_files(s))
+    require_other_file(
+        output, input.file,
+        input.pointer.empty() ? "the scenario" : "a file that the run reads (" + input.pointer + ")", option);
+}
+
+std::string hash_file(const std::string& file) {
+  return Sha256().add(read_file(file)).hex_digest();
+}
+
+std::string name_xdmf(const std::string& result) {
+  return std::filesystem::path(result).replace_extension(".xdmf").string();
+}
+
+void check_result_name(const scenario::Scenario& s, const std::string& result, const std::string& option) {
+  if (has_ending(result, ".xdmf"))
+    throw InputError(result, "", "is the name of the XDMF that is written beside a result",
+                     "give " + option + " a name such as " +
+                         std::filesystem::path(result).replace_extension(".h5").filename().string());
+  require_no_input(s, result, option);
+  require_no_input(s, name_xdmf(result), option);
+}
+
+void check_cage_name(const std::string& surface, const std::string& cage) {
+  require_other_file(cage, surface, "the surface");
+  if (!has_ending(cage, ".msh"))
+    throw InputError(cage, "", "does not end in .msh, and a cage is written as Gmsh",
+                     "give -o a name such as " +
+                         std::filesystem::path(cage).replace_extension(".msh").filename().string());
+}
+
+}  // namespace argil::run

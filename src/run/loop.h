@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+
+#include "device/trace.h"
+#include "output/result_file.h"
+#include "run/full_model.h"
+#include "run/hand_motion.h"
+#include "scenario/scenario.h"
+#include "sim/simulation.h"
+
+namespace argil::run {
+
+/// The hand at the end of tick k, with the scenario's mode unless the trace decides.
+device::DeviceSample sample_at(const scenario::Scenario& s, const device::Trace& trace, Tick ticks);
+
+/// The scenario's mode; nothing where the trace or the device decides.
+std::optional<device::ToolMode> find_fixed_mode(const scenario::Scenario& s);
+
+/// Whole ticks in `duration` [s]; one that is a whole number of ticks up to rounding is that number.
+Tick count_ticks(const scenario::Scenario& s, double duration);
+
+/// Whole ticks of the scenario's motion.
+Tick count_ticks(const scenario::Scenario& s, const device::Trace& trace);
+
+/// Frames that a run has written when tick `tick` has ended.
+std::uint64_t count_frames(const scenario::Scenario& s, Tick tick);
+
+/// How the loop ended.
+struct LoopEnd {
+  std::optional<Failure> failure;
+  bool is_interrupted = false;  ///< by SIGINT or SIGTERM
+  double seconds = 0.0;         ///< of wall clock
+};
+
+/// Feeds the simulation the hand's motion from its present tick to `num_ticks` and appends records, frames,
+/// checkpoints and timing as they come. A signal ends it after the next physics step, with a checkpoint
+/// there. `full`, if any, goes beside.
+LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, sim::Simulation& simulation,
+                 FullModel* full, output::ResultFile& file, bool shows_progress);
+
+}  // namespace argil::run

@@ -1,0 +1,199 @@
+#include "run/run.h"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+#include "output/result_file.h"
+#include "run/files.h"
+#include "run/identity.h"
+#include "run/loop.h"
+#include "run/replay.h"
+#include "run/resume.h"
+#include "run/start.h"
+#include "scenario/build.h"
+#include "sim/simulation.h"
+
+namespace argil::run {
+namespace {
+
+int print_ready(const scenario::Scenario& s, const sim::Simulation& simulation, Tick num_ticks) {
+  std::printf("%s: %d vertices, %d tets, %d skin triangles, %lld ticks: ready to run\n", s.file.c_str(),
+              simulation.body().mesh.num_vertices(), simulation.body().mesh.num_tets(),
+              simulation.body().skin.num_triangles(), static_cast<long long>(num_ticks));
+  return kDone;
+}
+
+int end_done_before(const std::string& result, const RunOptions& options) {
+  if (options.writes_xdmf && !output::has_whole_xdmf(name_xdmf(result)))  // killed before its end, or removed
+    output::write_xdmf(result, name_xdmf(result));
+  if (!options.quiet) std::printf("%s: complete already\n", result.c_str());
+  return kDone;
+}
+
+int print_failure(const Failure& failure) {
+  std::fprintf(stderr, "argil: run failed: %s\n", to_string(failure).c_str());
+  return kRunFailed;
+}
+
+int print_end(const std::string& result, const LoopEnd& end, Tick first, Tick last,
+              const RunOptions& options) {
+  if (end.failure) return print_failure(*end.failure);
+  if (end.is_interrupted) {
+    std::fprintf(stderr, "argil: interrupted after tick %lld; %s is readable up to there; %s\n",
+                 static_cast<long long>(last), result.c_str(), options.remedy.c_str());
+    return kInterrupted;
+  }
+  if (options.quiet) return kDone;
+  std::printf("%s: %lld ticks in %.1f s (%.0f/s)", result.c_str(), static_cast<long long>(last - first),
+              end.seconds, static_cast<double>(last - first) / end.seconds);
+  if (first > 0) std::printf(", resumed after tick %lld", static_cast<long long>(first));
+  std::printf("\n");
+  return kDone;
+}
+
+/// One equilibrium: a physics record and a frame, at the time 0 of an empty motion.
+int run_static(const scenario::Scenario& s, scenario::Scene& scene, const RunOptions& options) {
+  const mesh::TriangleMesh tool = scene.tool;
+  sim::Simulation simulation(std::move(scene.body), tool, s.params, {});
+  print_notes(scene, options);
+  if (options.dry_run) return print_ready(s, simulation, 0);
+  const std::string result = name_result(s, options);
+  output::ResultFile file(result, make_header(s, simulation, scene, tool, find_identity(s)));
+  const auto start = std::chrono::steady_clock::now();
+  const StepStatus status = simulation.find_equilibrium();
+  const std::optional<Failure> failure =
+      status.is_ok() ? std::nullopt : std::optional<Failure>(status.failure());
+  file.append(simulation.physics_record());
+  file.append(simulation.make_frame());
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  file.append_timing({{"solve", seconds}, {"total", seconds}});
+  file.finish(failure);
+  if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
+  if (failure) return print_failure(*failure);
+  if (!options.quiet) {
+    const Points moved = simulation.body_state().solid.x - simulation.solid().elements().rest;
+    std::printf("%s: equilibrium in %.2f s, largest displacement %.6g m\n", result.c_str(), seconds,
+                moved.colwise().norm().maxCoeff());
+  }
+  return kDone;
+}
+
+/// A live session once more, in one thread. It ends as the session did.
+int run_replay(const scenario::Scenario& s, const output::Session& session, const std::string& note,
+               const RunOptions& options) {
+  if (options.resume)
+    throw InputError(options.trace, "", "is a live session, whose replay has no checkpoints",
+                     "leave --resume out");
+  scenario::Scene scene = scenario::build_scene(s);
+  if (!note.empty()) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
+  const mesh::TriangleMesh tool = scene.tool;
+  sim::Simulation simulation(std::move(scene.body), tool, session_params(session.head, s.params),
+                             session.head.start);
+  print_notes(scene, options);
+  const auto num_ticks = static_cast<Tick>(session.ticks.size());
+  if (options.dry_run) return print_ready(s, simulation, num_ticks);
+  const std::string result = name_result(s, options);
+  output::ResultFile file(result, make_header(s, simulation, scene, tool, find_identity(s)));
+  const auto start = std::chrono::steady_clock::now();
+  LoopEnd end;
+  end.failure = replay(session, simulation, file);
+  end.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  file.append_timing({{"total", end.seconds}});
+  file.finish(end.failure, session.is_interrupted);
+  if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
+  if (session.end_hash.empty())
+    std::fprintf(stderr, "argil: note: %s was killed: replayed up to its last tick\n", options.trace.c_str());
+  else if (session.end_hash != simulation.state_hash()) {
+    std::fprintf(stderr, "argil: the replay ended in another state than %s\n", options.trace.c_str());
+    return kDifferent;
+  }
+  return print_end(result, end, 0, num_ticks, options);
+}
+
+}  // namespace
+
+scenario::Scenario load(const RunOptions& options) {
+  std::vector<scenario::Setting> settings;
+  for (const std::string& text : options.settings) settings.push_back(scenario::parse_setting(text));
+  if (!options.trace.empty())
+    settings.push_back({"/trace/file", "\"" + std::filesystem::absolute(options.trace).string() + "\""});
+  require_input_file(options.scenario);
+  if (!options.trace.empty()) require_input_file(options.trace);
+  scenario::Scenario s = scenario::load_scenario(options.scenario, settings);
+  s.params.threads = options.threads;
+  for (const scenario::InputFile& input : scenario::list_input_files(s))
+    require_input_file(input.file, input.pointer);
+  return s;
+}
+
+std::string name_result(const scenario::Scenario& s, const RunOptions& options) {
+  return options.output.empty() ? std::filesystem::path(s.file).stem().string() + ".h5" : options.output;
+}
+
+void print_notes(const scenario::Scene& scene, const RunOptions& options) {
+  if (options.quiet) return;
+  for (const std::string& note : scene.notes) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
+}
+
+int run(const RunOptions& options) {
+  const scenario::Scenario s = load(options);
+  const std::string result = name_result(s, options);
+  check_result_name(s, result);
+  if (s.mode == scenario::Mode::equilibrium && options.resume)
+    throw InputError(s.file, "/dynamics/mode", "\"static\" has no ticks to resume", "leave --resume out");
+  std::string note;
+  if (const auto session = find_session(options.trace, s, note))
+    return run_replay(without_trace(s), *session, note, options);
+  scenario::Scene scene = scenario::build_scene(s);
+  if (!note.empty()) scene.notes.push_back(note);
+  if (s.mode == scenario::Mode::equilibrium) return run_static(s, scene, options);
+  const mesh::TriangleMesh tool = scene.tool;
+  const device::DeviceSample start = sample_at(s, scene.trace, 0);
+  std::optional<FullModel> full;
+  if (s.params.fidelity.mode == sim::FidelityMode::check) full.emplace(scene.body, tool, s.params, start);
+  sim::Simulation simulation(std::move(scene.body), tool, s.params, start);
+  const bool is_given = !options.trace.empty();
+  require_free_start(simulation, tool, is_given ? options.trace : s.file, is_given ? "" : "/trace",
+                     "start the motion outside it");
+  print_notes(scene, options);
+  if (options.dry_run) return print_ready(s, simulation, count_ticks(s, scene.trace));
+  const Identity identity = find_identity(s);
+  HandMotion hand(s, scene.trace);
+  ResumePoint from;
+  if (options.resume) from = find_resume_point(result, identity);
+  if (from.kind == ResumePoint::Kind::done) return end_done_before(result, options);
+  if (from.kind == ResumePoint::Kind::checkpoint) {
+    simulation.restore(from.state, result);
+    if (full) full->restore(from.state, result);
+    Archive archive = Archive::make_restoring(from.state, result);
+    hand.exchange_state(archive);
+    from.state.clear();
+  }
+  const Tick first = simulation.clock().tick;
+  std::optional<output::ResultFile> file;
+  if (from.kind == ResumePoint::Kind::checkpoint) {
+    file.emplace(result, first, count_frames(s, first));
+  } else {
+    output::ResultHeader header = make_header(s, simulation, scene, tool, identity);
+    header.fidelity = s.params.fidelity.mode;  // here a full run may go beside
+    file.emplace(result, header);
+  }
+  LoopEnd end;
+  try {
+    end = run_loop(s, count_ticks(s, scene.trace), hand, simulation, full ? &*full : nullptr, *file,
+                   !options.quiet);
+    file->finish(end.failure, end.is_interrupted);
+  } catch (const IoError&) {
+    std::fprintf(stderr, "argil: note: %s is readable up to its last flush; make room and %s\n",
+                 result.c_str(), options.remedy.c_str());
+    throw;
+  }
+  if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
+  return print_end(result, end, first, simulation.clock().tick, options);
+}
+
+}  // namespace argil::run

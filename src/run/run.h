@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenario/build.h"
+
+namespace argil::run {
+
+/// How `argil run` was called.
+struct RunOptions {
+  std::string scenario;
+  std::string trace;   ///< replaces /trace/file when not empty
+  std::string output;  ///< result file; empty: the scenario's name with .h5 in the working folder
+  std::vector<std::string> settings;  ///< --set texts
+  int threads = 1;
+  bool resume = false;  ///< go on from the result file's checkpoint where there is one
+  bool writes_xdmf = true;
+  bool dry_run = false;  ///< check and build everything, run and write nothing
+  bool quiet = false;
+  std::string remedy = "go on with --resume";  ///< of a run that was stopped or found no room, in its message
+};
+
+/// Exit codes of the program.
+enum ExitCode : int {
+  kDone = 0,
+  kInputRefused = 2,
+  kRunFailed = 3,
+  kIoFailed = 4,
+  kDifferent = 5,
+  kInterrupted = 130,
+};
+
+/// Loads and checks a scenario with the options' settings and trace.
+scenario::Scenario load(const RunOptions& options);
+
+/// The result file's name, given or made of the scenario's.
+std::string name_result(const scenario::Scenario& s, const RunOptions& options);
+
+/// What the user should know of a scene, on standard error.
+void print_notes(const scenario::Scene& scene, const RunOptions& options);
+
+/// Runs a scenario from start, or with `resume` from its last checkpoint, to end and writes its result file
+/// and XDMF. A resumed run leaves the same bits as one that was never killed. Returns kDone, kRunFailed or
+/// kInterrupted (the file is complete up to the last tick in each case). Throws InputError before anything is
+/// written, IoError.
+int run(const RunOptions& options);
+
+}  // namespace argil::run

@@ -1,0 +1,64 @@
+#include "run/start.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/print.h"
+#include "embed/triangle_tree.h"
+#include "mesh/order.h"
+
+namespace argil::run {
+
+output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulation& simulation,
+                                 const scenario::Scene& scene, const mesh::TriangleMesh& tool,
+                                 const Identity& identity) {
+  output::ResultHeader header;
+  header.rest_position = simulation.body().mesh.vertices;
+  header.tets = mesh::in_file_order(simulation.body().mesh, simulation.body().mesh.tets);
+  header.surface_triangles = simulation.body().topology.boundary;
+  header.skin_triangles = simulation.body().skin.triangles;
+  header.tool = tool;
+  header.haptic_period = s.params.rates.haptic_period;
+  if (s.params.fidelity.mode != sim::FidelityMode::full) header.fidelity = sim::FidelityMode::automatic;
+  std::string notes;
+  for (const std::string& note : scene.notes) notes += note + "\n";
+  header.provenance = {{"about", s.about},
+                       {"scenario", scenario::print_portable(s)},
+                       {"trace_sha256", scene.trace.sha256},
+                       {"effective_medium", scene.medium_status},
+                       {"notes", notes}};
+  for (const auto& [name, text] : identity.provenance()) header.provenance.emplace_back(name, text);
+  return header;
+}
+
+namespace {
+
+/// Deepest place of a surface's vertices in a closed surface [m]; 0 when all are outside.
+double find_depth(const Points& vertices, const mesh::TriangleMesh& surface) {
+  const embed::TriangleTree tree(surface);
+  double depth = 0.0;
+  for (Eigen::Index v = 0; v < vertices.cols(); ++v)
+    if (tree.compute_winding_number(vertices.col(v)) > 0.5)
+      depth = std::max(depth, tree.compute_distance(vertices.col(v), std::numeric_limits<double>::max()));
+  return depth;
+}
+
+}  // namespace
+
+void require_free_start(const sim::Simulation& simulation, mesh::TriangleMesh tool, const std::string& file,
+                        const std::string& place, const std::string& remedy) {
+  if (!simulation.tool_overlaps_body()) return;
+  const contact::Pose& pose = simulation.hand_state().tool;
+  tool.vertices = (pose.orientation.toRotationMatrix() * tool.vertices).colwise() + pose.position;
+  const mesh::TriangleMesh body{simulation.body().mesh.vertices, simulation.body().topology.boundary};
+  const double depth = std::max(find_depth(tool.vertices, body), find_depth(body.vertices, tool));
+  std::ostringstream text;
+  text << "the tool starts in or across the body, " << std::setprecision(3) << 1e3 * depth
+       << " mm deep, with the hand at " << print_place(pose.position) << " m";
+  throw InputError(file, place, text.str(), remedy);
+}
+
+}  // namespace argil::run

@@ -1,0 +1,202 @@
+// Surface formats: each reads a tetrahedron's surface known beforehand and refuses what it must.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "base/error.h"
+#include "base/rng.h"
+#include "mesh/quality.h"
+#include "mesh_files/readers.h"
+#include "sample_files.h"
+#include "support/temp_folder.h"
+
+namespace argil::mesh_files {
+namespace {
+
+using test::SampleFile;
+
+mesh::TriangleMesh read_text(const test::TempFolder& folder, const std::string& name,
+                             const std::string& content) {
+  return read_triangle_mesh(folder.write(name, content));
+}
+
+// Corners by place, because STL numbers vertices as they appear.
+void expect_tetrahedron(const mesh::TriangleMesh& mesh, const std::string& about) {
+  ASSERT_EQ(mesh.num_vertices(), 4) << about;
+  ASSERT_EQ(mesh.num_triangles(), 4) << about;
+  const Points x = (Points(3, 4) << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1).finished();
+  const Triangles expected = (Triangles(3, 4) << 0, 0, 0, 1, 2, 1, 3, 2, 1, 3, 2, 3).finished();
+  for (int t = 0; t < 4; ++t)
+    for (int c = 0; c < 3; ++c)
+      EXPECT_TRUE(mesh.vertices.col(mesh.triangles(c, t)) == x.col(expected(c, t)))
+          << about << " triangle " << t << " corner " << c;
+}
+
+TEST(ReadSurfaces, EveryFormatAndEncodingGivesTheSameSurface) {
+  const test::TempFolder folder;
+  for (const SampleFile& sample : test::make_surface_samples()) {
+    const mesh::TriangleMesh mesh = read_text(folder, sample.name, sample.content);
+    expect_tetrahedron(mesh, sample.name);
+    EXPECT_TRUE(mesh::compute_surface_report(mesh).is_closed()) << sample.name;
+  }
+}
+
+TEST(ReadSurfaces, ScaleMultipliesCoordinates) {
+  const test::TempFolder folder;
+  for (const SampleFile& sample : test::make_surface_samples())
+    EXPECT_EQ(read_triangle_mesh(folder.write(sample.name, sample.content), 0.01).vertices.maxCoeff(), 0.01);
+}
+
+TEST(ReadSurfaces, PolygonsAreFannedAroundTheirFirstCorner) {
+  const test::TempFolder folder;
+  const std::string points = "0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 0.5 0\n";
+  const mesh::TriangleMesh obj = read_text(folder, "p.obj", "v " + points + "f 1 2 3 4 5\n");
+  const Triangles expected = (Triangles(3, 3) << 0, 0, 0, 1, 2, 3, 2, 3, 4).finished();
+  EXPECT_TRUE(obj.triangles == expected) << obj.triangles;
+  const mesh::TriangleMesh ply =
+      read_text(folder, "p.ply",
+                "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                "property float z\nelement face 1\nproperty list int int vertex_indices\n"
+                "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 3 2 1 0\n");
+  EXPECT_TRUE(ply.triangles == (Triangles(3, 2) << 3, 3, 2, 1, 1, 0).finished()) << ply.triangles;
+}
+
+TEST(ReadSurfaces, AnObjFaceMayStandBeforeItsVertices) {
+  const test::TempFolder folder;
+  EXPECT_EQ(read_text(folder, "p.obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").num_triangles(), 1);
+}
+
+TEST(ReadSurfaces, StlMergesEqualCornersOnly) {
+  const test::TempFolder folder;
+  const std::string facet = "facet normal 0 0 1\nouter loop\n";
+  const std::string end = "endloop\nendfacet\n";
+  const auto read = [&](const std::string& third) {
+    return read_text(folder, "p.stl",
+                     "solid\n" + facet + "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n" + end + facet +
+                         "vertex 1 0 0\nvertex 1 1 0\nvertex " + third + "\n" + end + "endsolid\n");
+  };
+  EXPECT_EQ(read("-0 1 -0.0").num_vertices(), 4);               // −0 is 0
+  EXPECT_EQ(read("1e-300 1 0").num_vertices(), 5);              // near is not equal
+  EXPECT_EQ(read("0 1.0000000000000002 0").num_vertices(), 5);  // one unit in the last place
+}
+
+TEST(ReadSurfaces, SeveralSolidsOfAnStlAreOneSurface) {
+  const test::TempFolder folder;
+  const std::string content = test::make_surface_samples()[1].content;
+  const mesh::TriangleMesh mesh = read_text(folder, "two.stl", content + content);
+  EXPECT_EQ(mesh.num_triangles(), 8);
+  EXPECT_EQ(mesh.num_vertices(), 4);
+}
+
+struct Refusal {
+  const char* name;
+  std::string content;
+  const char* words;
+};
+
+TEST(RefuseSurfaces, EveryFormatSaysWhere) {
+  const std::string v3 = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n";
+  const std::string ply_face = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string ply_z = ply + "property float z\n" + ply_face + "0 0 0\n1 0 0\n0 1 0\n";
+  const std::vector<Refusal> refusals = {
+      {"a.obj", v3 + "f 1 2\n", "a.obj: line 4: a face of 2 vertices; a face has at least 3"},
+      {"a.obj", v3 + "f 1 2 4\n", "line 4: a face names vertex 4; vertices run from 1 to 3"},
+      {"a.obj", v3 + "f 1 2 0\n", "line 4: a face names vertex 0; OBJ counts vertices from 1"},
+      {"a.obj", v3 + "f 1 2 -4\n", "line 4: a face names vertex -4 of the 3 so far"},
+      {"a.obj", v3 + "f 1 2 x/1\n", "line 4: a face's vertex number is \"x\""},
+      {"a.obj", v3 + "f 1 2 /1\n", "line 4: a face's vertex number is \"\""},
+      {"a.obj", v3 + "v 0 0\nf 1 2 3\n", "line 4: a vertex of 2 coordinates"},
+      {"a.obj", v3 + "v 0 0 nan\nf 1 2 3\n", "line 4: a vertex coordinate is \"nan\""},
+      {"a.obj", v3, "holds no faces"},
+      {"a.stl", "solid\nendsolid\n", "holds no faces"},
+      {"a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 inf\n",
+       "line 4: a corner's coordinate is \"inf\""},
+      {"a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\n",
+       "line 5: \"endloop\" where vertex was expected"},
+      {"a.stl", "solid\nhello\n", "line 2: \"hello\" where facet or endsolid was expected"},
+      {"a.stl", "solid\n", "the file ends where endsolid was expected"},
+      {"a.stl", test::make_stl_binary() + "x", "4 triangles take 200 bytes, but 201 follow"},
+      {"a.stl", std::string(80, ' ') + "\xff\xff\xff\xff",
+       "the number of triangles is 4294967295, more than"},
+      {"a.stl", "short", "the file ends where the header was expected"},
+      {"a.ply", "PLY\n", "line 1: does not begin with \"ply\""},
+      {"a.ply", "ply\nformat text 1.0\n", "line 2: format \"text\""},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 99999\n",
+       "line 3: the number of elements is 99999, more than"},
+      {"a.ply", "ply\nformat ascii 1.0\nproperty float x\n", "line 3: a property before any element"},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty real x\n",
+       "line 4: property type \"real\""},
+      {"a.ply", ply + ply_face + "0 0\n1 0\n0 1\n3 0 1 2\n", "element vertex has not the properties x, y, z"},
+      {"a.ply", ply_z + "3 0 1 3\n", "line 13: a face names vertex 3; vertices run from 0 to 2"},
+      {"a.ply", ply_z + "3 0 1 -1\n", "line 13: a face names vertex -1"},
+      {"a.ply", ply_z + "2 0 1\n", "line 13: a face of 2 vertices"},
+      {"a.ply", ply_z + "1000 0 1\n", "line 13: a list's length is 1000, more than"},
+      {"a.ply", ply_z + "3 0 1.5 2\n", "line 13: a face's vertex number is not a whole number"},
+      {"a.ply", ply_z + "3 0 1\n", "line 13: the file ends where a face's vertex number was expected"},
+      {"a.ply", "ply\nelement vertex 0\nend_header\n", "the header has no format"},
+      {"a.off", "OFF\n", "ending \".off\" is no known surface format; use .obj, .stl or .ply"},
+  };
+  const test::TempFolder folder;
+  for (const Refusal& refusal : refusals) {
+    SCOPED_TRACE(refusal.content);
+    ARGIL_EXPECT_THROW_WITH(read_text(folder, refusal.name, refusal.content), InputError, refusal.words);
+  }
+  ARGIL_EXPECT_THROW_WITH(read_triangle_mesh(folder / "none.obj"), IoError, "cannot be read: No such file");
+}
+
+TEST(RefuseSurfaces, BinaryNumbersThatAreNotFinite) {
+  const test::TempFolder folder;
+  for (const bool is_big : {false, true}) {
+    std::string one;
+    std::string nan;
+    test::append_bytes(one, 1.0F, is_big);
+    test::append_bytes(nan, std::numeric_limits<float>::quiet_NaN(), is_big);
+    std::string ply = test::make_ply_binary(is_big);
+    ply.replace(ply.find(one), 4, nan);
+    ARGIL_EXPECT_THROW_WITH(read_text(folder, "a.ply", ply), InputError, "a vertex property is not finite");
+    if (is_big) continue;
+    std::string stl = test::make_stl_binary();
+    stl.replace(stl.find(one), 4, nan);
+    ARGIL_EXPECT_THROW_WITH(read_text(folder, "a.stl", stl), InputError,
+                            "a corner's coordinate is not finite");
+  }
+}
+
+TEST(FuzzSurfaces, AFileCutAnywhereIsRefusedOrShorter) {
+  const test::TempFolder folder;
+  for (const SampleFile& whole : test::make_surface_samples())
+    for (std::size_t length = 0; length < whole.content.size(); ++length) {
+      try {
+        const mesh::TriangleMesh mesh = read_text(folder, whole.name, whole.content.substr(0, length));
+        // Only OBJ has no end and no count.
+        EXPECT_TRUE(whole.name == "text.obj" || mesh.num_triangles() == 4)
+            << whole.name << " cut to " << length;
+      } catch (const InputError&) {
+      }
+    }
+}
+
+TEST(FuzzSurfaces, DamagedBytesNeverGiveASurfaceOutOfRange) {
+  const test::TempFolder folder;
+  Rng rng(20240801, "damaged surfaces");
+  constexpr int kTrials = 150;
+  const std::string bytes = "0123456789.-+eE/ \n\\#\xff\x7f" + std::string(1, '\0');
+  for (const SampleFile& whole : test::make_surface_samples())
+    for (int trial = 0; trial < kTrials; ++trial) {
+      std::string content = whole.content;
+      const auto hits = 1 + rng.next_bits() % 4;
+      for (std::uint64_t hit = 0; hit < hits; ++hit)
+        content[rng.next_bits() % content.size()] = bytes[rng.next_bits() % bytes.size()];
+      try {
+        const mesh::TriangleMesh mesh = read_text(folder, whole.name, content);
+        ASSERT_TRUE(mesh.vertices.allFinite()) << whole.name << " trial " << trial;
+        ASSERT_GE(mesh.triangles.minCoeff(), 0);
+        ASSERT_LT(mesh.triangles.maxCoeff(), mesh.num_vertices());
+      } catch (const InputError&) {
+      }
+    }
+}
+
+}  // namespace
+}  // namespace argil::mesh_files
