@@ -115,7 +115,7 @@ void Economy::watch_strain(const BodyState& state) {
     for (auto p = static_cast<int>(begin); p < static_cast<int>(end); ++p) {
       const Vec6 strain = m_solid.strain().col(p);
       const Vec6 elastic = strain - state.solid.plastic_strain.col(p);
-      sum += m_solid.material(m_solid.elements().tet_of_point(p)).mu * m_solid.elements().weight(p) *
+      sum += m_solid.material(m_solid.elements().tet_of_point(p)).mu * m_solid.weight()(p) *
              elastic.squaredNorm() * (by_strain ? strain.norm() : 1.0);
     }
     return sum;
