@@ -168,7 +168,7 @@ void check_extent(Scenario& s) {
   // Whether a contact sticks or slides may hang on less than what a region leaves out.
   if (!is_asked_for && s.params.contact.friction > 0.0) p.extent = solid::Extent::whole;
   using linear::SolverKind;
-  require(p.element == solid::ElementKind::p1 && p.model != solid::StrainModel::neo_hookean &&
+  require(p.element == solid::ElementKind::p1 && find_law(p.model).is_quadratic &&
               !is_anisotropic(s.params.moisture),
           "is for p1 elements of the isotropic linear and corotational laws",
           "change /dynamics or /material");
@@ -192,7 +192,7 @@ void check_solid(Scenario& s) {
   const bool is_second_order =
       p.integrator == solid::Integrator::bdf2 || p.integrator == solid::Integrator::newmark;
   if (s.mode == Mode::dynamic && is_second_order && p.iteration == solid::Iteration::one &&
-      p.model != solid::StrainModel::linear)
+      !find_law(p.model).is_linear)
     s.warnings.push_back(
         s.file +
         ": /dynamics/iteration: one linearised solve with bdf2 or newmark gains energy where "
@@ -206,11 +206,10 @@ void check_solid(Scenario& s) {
       p.iteration == solid::Iteration::newton)
     s.warnings.push_back(
         s.file + ": /dynamics/iteration has no effect: symplectic_euler is explicit and solves nothing");
-  const bool needs_isotropy =
-      p.model == solid::StrainModel::neo_hookean || p.element == solid::ElementKind::p1_nodal;
+  const bool takes_full_stiffness = find_law(p.model).takes_full_stiffness;
+  const bool needs_isotropy = !takes_full_stiffness || p.element == solid::ElementKind::p1_nodal;
   if (needs_isotropy && is_anisotropic(s.params.moisture))
-    throw InputError(s.file,
-                     p.model == solid::StrainModel::neo_hookean ? "/dynamics/model" : "/dynamics/element",
+    throw InputError(s.file, takes_full_stiffness ? "/dynamics/element" : "/dynamics/model",
                      "takes isotropic stiffness only, but the pores are aligned spheroids",
                      "use the corotational or linear model with p1 or p2, or orientation random");
   if (p.element == solid::ElementKind::p1_nodal && s.params.plasticity.enabled &&
@@ -251,10 +250,11 @@ void check_plasticity(Scenario& s) {
                      "shorten the step or lower creep_per_s, or take rate");
   // F_p = 1 + ε_p must stay a stretch: no eigenvalue of ε_p may reach −1.
   const double most = law.norm == material::StrainNorm::frobenius ? 1.0 : std::sqrt(0.5);
-  if (s.params.solid.model == solid::StrainModel::neo_hookean && !(law.max < most))
+  const solid::ElasticLaw& elastic = find_law(s.params.solid.model);
+  if (elastic.plastic_split == solid::PlasticSplit::multiplicative && !(law.max < most))
     throw InputError(s.file, "/material/plasticity/max",
-                     Json(law.max).dump() + " is outside [0, " + Json(most).dump() +
-                         ") for neo_hookean, whose plastic stretch would lose a dimension",
+                     Json(law.max).dump() + " is outside [0, " + Json(most).dump() + ") for " + elastic.name +
+                         ", whose plastic stretch would lose a dimension",
                      "lower it, or use corotational");
 }
 

@@ -46,7 +46,8 @@ BodySide::BodySide(Body body, const Params& params)
   if (!m_moisture.is_isotropic() && keeps_volume)
     m_shape_stiffness.resize(static_cast<std::size_t>(m_body.mesh.num_tets()));
   m_is_flow_driven =
-      keeps_volume && (!m_moisture.is_isotropic() || params.solid.model == solid::StrainModel::neo_hookean);
+      keeps_volume && (!m_moisture.is_isotropic() ||
+                       find_law(params.solid.model).plastic_split != solid::PlasticSplit::additive);
   m_is_moved = std::any_of(m_body.supports.begin(), m_body.supports.end(),
                            [](const solid::Support& s) { return s.displacement.norm() > 0.0; });
   StepStatus rest = m_solid.update_kinematics(m_state.solid.x, 0);
@@ -192,11 +193,12 @@ double BodySide::flow_at_points(std::ptrdiff_t begin, std::ptrdiff_t end, double
   return released;
 }
 
-/// Returns what flow dissipates [J]: at fixed strain, the elastic energy that it releases. The neo-Hookean
-/// law bends within a long step of flow: there the step ends by halves where it releases energy.
+/// Returns what flow dissipates [J]: at fixed strain, the elastic energy that it releases. Energy is no
+/// quadratic function of ε_p in a multiplicative split: there a long step of flow is halved until it releases
+/// energy.
 double BodySide::flow_at_point(int point, double step_s) {
   constexpr int kHalvings = 10;
-  const bool is_bent = m_params.solid.model == solid::StrainModel::neo_hookean;
+  const bool is_bent = find_law(m_params.solid.model).plastic_split != solid::PlasticSplit::additive;
   const Vec6 before = m_state.solid.plastic_strain.col(point);
   Vec6 after = compute_flow(point, step_s);
   if ((after.array() == before.array()).all()) return 0.0;

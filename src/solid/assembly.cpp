@@ -34,7 +34,7 @@ bool Solid::has_isotropic_tets() const {
 
 /// And of a law that is quadratic in the strain: whose forces and energies do.
 bool Solid::has_plain_tets() const {
-  return has_isotropic_tets() && m_params.model != StrainModel::neo_hookean;
+  return has_isotropic_tets() && find_law(m_params.model).is_quadratic;
 }
 
 ForceArrays Solid::make_force_arrays(const TensorField& plastic_strain, double* corner_force) const {
@@ -46,7 +46,7 @@ ForceArrays Solid::make_force_arrays(const TensorField& plastic_strain, double* 
           m_lambda.data(),
           m_mu.data(),
           m_nodal ? m_nodal_pressure.data() : nullptr,
-          m_params.model == StrainModel::linear,
+          find_law(m_params.model).is_linear,
           corner_force};
 }
 

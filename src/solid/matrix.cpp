@@ -33,9 +33,9 @@ Mat3 compute_anisotropic_block(const Vec3& gi, const Vec3& gj, const Mat3& R, co
 
 /// Does the matrix need ∂P/∂F? The one-step linear and corotational models keep their rotation instead.
 bool Solid::needs_tangents() const {
-  if (m_params.model == StrainModel::neo_hookean) return true;
-  return m_params.model == StrainModel::corotational &&
-         (m_is_static || m_params.iteration == Iteration::newton);
+  const ElasticLaw& law = find_law(m_params.model);
+  if (!law.is_quadratic) return true;
+  return !law.is_linear && (m_is_static || m_params.iteration == Iteration::newton);
 }
 
 Solid::MatrixShares Solid::shares() const {
@@ -72,7 +72,7 @@ bool Solid::keeps_nodal_factors() const {
   using linear::SolverKind;
   const SolverKind kind = m_params.solver.kind;
   return (kind == SolverKind::pcg || kind == SolverKind::pcg_jacobi) &&
-         m_params.iteration == Iteration::one && m_params.model != StrainModel::neo_hookean;
+         m_params.iteration == Iteration::one && find_law(m_params.model).is_quadratic;
 }
 
 /// From now on the matrix holds it after all: where a factor is needed, or more exactness than floats have.

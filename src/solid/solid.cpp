@@ -162,7 +162,7 @@ void Solid::set_material(int tet, const TetMaterial& material) {
 }
 
 void Solid::set_anisotropic_stiffness(int tet, const Mat6& C) {
-  ARGIL_ASSERT(m_params.model != StrainModel::neo_hookean && !m_nodal);
+  ARGIL_ASSERT(find_law(m_params.model).takes_full_stiffness && !m_nodal);
   if (m_stiffness.empty()) {
     m_stiffness.resize(m_material.size());
     for (std::size_t t = 0; t < m_material.size(); ++t)
@@ -252,7 +252,7 @@ StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frames) {
                       {batches, keeps_frames, frame_tolerance(), m_is_tet_changed, m_is_batch_new});
   const double least = m_kinematics.min_volume_ratio();
   // Strain of the linear model has no inside to turn out; in statics its solution is what was asked for.
-  const bool may_invert = m_is_static && m_params.model == StrainModel::linear;
+  const bool may_invert = m_is_static && find_law(m_params.model).is_linear;
   if (std::isfinite(least) && (may_invert || least > m_params.min_volume_ratio)) return StepStatus::ok();
   const int worst = m_kinematics.find_worst_point();
   return StepStatus::failed({tick, "solid", m_elements.number_of_point(worst), "volume ratio det F of a tet",
@@ -261,12 +261,12 @@ StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frames) {
 
 void Solid::compute_volume_changes(const TensorField& plastic_strain, Field& change) const {
   change.resize(m_elements.num_tets());
+  const bool is_quadratic = find_law(m_params.model).is_quadratic;  // whose volume change is tr ε_e
   m_rows.each(change.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t t = begin; t < end; ++t)
-      change(t) = m_params.model == StrainModel::neo_hookean
-                      ? compute_volume_change(m_params.model, m_kinematics.at(static_cast<int>(t)),
-                                              plastic_strain.col(t))
-                      : (m_kinematics.strain().col(t) - plastic_strain.col(t)).head<3>().sum();
+      change(t) = is_quadratic ? (m_kinematics.strain().col(t) - plastic_strain.col(t)).head<3>().sum()
+                               : compute_volume_change(m_params.model, m_kinematics.at(static_cast<int>(t)),
+                                                       plastic_strain.col(t));
   });
 }
 

@@ -216,8 +216,8 @@ void Solid::set_residual_scale(const StepLoads& loads) {
   // Of the energy: force times what rounding moves each corner.
   const auto corners = static_cast<double>(m_elements.nodes.size());
   m_potential_rounding = kRounding * m_x.cwiseAbs().maxCoeff() * std::sqrt(corners * m_corner_scale);
-  if (m_params.model != StrainModel::neo_hookean) return;
-  // Whose energy is what is left of terms of the size of its moduli.
+  if (!find_law(m_params.model).has_cancelling_energy) return;
+  // The law's energy is what is left of terms of the size of its moduli.
   m_potential_rounding += kRounding * ordered_sum(m_elements.num_points(), [&](std::ptrdiff_t p) {
                             const auto tet =
                                 static_cast<std::size_t>(m_elements.tet_of_point(static_cast<int>(p)));
