@@ -242,10 +242,14 @@ Json probe_element(Case& c) {
       !(Eigen::SelfAdjointEigenSolver<Mat3>(from_mandel(plastic)).eigenvalues()(0) > -1.0))
     c.refuse_range("plastic_strain",
                    std::string("strains that leave a stretch, eigenvalues above -1, for ") + law.name);
+  if (law.plastic_split == solid::PlasticSplit::none && !plastic.isZero(0.0))
+    c.refuse_range("plastic_strain", std::string("zero, the only one of ") + law.name);
   const solid::TetGeometry tet = solid::make_tet_geometry(rest);
   if (!(tet.volume > 0.0)) c.refuse_range("rest", "tets of positive volume");
   const solid::PointMotion motion =
       solid::make_motion(model, solid::compute_deformation_gradient(deformed, tet.gradient));
+  if (!law.bears_inversion && !(motion.F.determinant() > 0.0))
+    c.refuse_range("deformed", std::string("tets of positive volume, all that ") + law.name + " bears");
   const double E = e.youngs_modulus;
   const double nu = e.poissons_ratio;
   const solid::Elasticity elasticity{E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))};

@@ -218,6 +218,16 @@ void check_solid(Scenario& s) {
                      "set /material/plasticity/deviatoric to true, or use p1 or p2");
 }
 
+/// A law that does not bear inversion has no forces at det F ≤ 0, where a step must not go on.
+void check_inversion(const Scenario& s) {
+  const solid::ElasticLaw& law = find_law(s.params.solid.model);
+  if (!law.bears_inversion && !(s.params.solid.min_volume_ratio >= 0.0))
+    throw InputError(s.file, "/dynamics/min_volume_ratio",
+                     Json(s.params.solid.min_volume_ratio).dump() + " is outside [0, 1] for " + law.name +
+                         ", which has no stress where a tet is inverted",
+                     "give 0 or more");
+}
+
 void require_normal(const Scenario& s, const solid::Region& region, const std::string& pointer) {
   const bool has_normal =
       region.kind == solid::Region::Kind::half_space || region.kind == solid::Region::Kind::plane;
@@ -232,9 +242,19 @@ void check_regions(const Scenario& s) {
     require_normal(s, s.body.loads.pressure[i].region, "/body/loads/pressure/" + std::to_string(i));
 }
 
+/// A law of which no plastic flow is known takes none; an equilibrium is elastic in any case.
+void check_flow_of_model(const Scenario& s) {
+  const solid::ElasticLaw& law = find_law(s.params.solid.model);
+  if (law.plastic_split == solid::PlasticSplit::none && s.mode == Mode::dynamic)
+    throw InputError(s.file, "/material/plasticity/enabled",
+                     std::string("true, but ") + law.name + " is an elastic law without plastic flow",
+                     "set it to false, or /dynamics/model to neo_hookean or corotational");
+}
+
 void check_plasticity(Scenario& s) {
   const material::Plasticity& law = s.params.plasticity;
   if (!law.enabled) return;
+  check_flow_of_model(s);
   const std::string place = "/material/plasticity/form";
   if (law.form == material::FlowForm::j2 && !(law.deviatoric && law.norm == material::StrainNorm::frobenius))
     throw InputError(s.file, place, "j2 is a law of the deviator's Frobenius norm",
@@ -262,6 +282,7 @@ void check_combinations(Scenario& s) {
   check_regions(s);
   check_plasticity(s);
   check_solid(s);
+  check_inversion(s);
   check_rates(s);
   check_between_frames(s);
   check_extent(s);

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "base/check.h"
 #include "solid/polar.h"
 
 namespace argil::solid {
@@ -54,7 +55,9 @@ Mat9 make_positive(const Mat9& A) {
 
 Vec6 compute_flow_drive(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
                         const Elasticity& e, double shape_stiffness) {
-  return find_law(model).flow_drive(motion, plastic_strain, e, shape_stiffness);
+  const ElasticLaw& law = find_law(model);
+  ARGIL_ASSERT(law.flow_drive, law.name);
+  return law.flow_drive(motion, plastic_strain, e, shape_stiffness);
 }
 
 double compute_volume_change(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain) {

@@ -29,6 +29,7 @@ struct PointMotion {
 enum class PlasticSplit {
   additive,        ///< ε_e = ε − ε_p
   multiplicative,  ///< Fₑ = F F_p⁻¹ with F_p = 1 + ε_p, scaled; no eigenvalue of ε_p may reach −1
+  none,            ///< the law has no plastic flow: ε_p = 0, and no flow_drive
 };
 
 /// An elastic law at a point: its traits, by which the body chooses how to work with it, and its functions.
@@ -49,7 +50,8 @@ struct ElasticLaw {
   /// at a time (tet_lanes.h), and the matrix of a one-step solve keeps its rotation. Any other law keeps F
   /// and takes ∂P/∂F.
   bool is_quadratic;
-  bool takes_full_stiffness;   ///< C (6×6) may take the place of λ and μ
+  bool takes_full_stiffness;  ///< C (6×6) may take the place of λ and μ
+  bool bears_inversion;  ///< W is finite where det F ≤ 0; else it is infinite there, P and ∂P/∂F are NaN
   bool has_cancelling_energy;  ///< W near rest is what is left of terms of the size of the moduli
   PlasticSplit plastic_split;
 
@@ -62,15 +64,16 @@ struct ElasticLaw {
   Mat3 (*volume_gradient)(const PointMotion& motion, const Vec6& plastic_strain);
 };
 
-extern const ElasticLaw kCorotationalLaw, kLinearLaw, kNeoHookeanLaw;
+extern const ElasticLaw kCorotationalLaw, kLinearLaw, kNeoHookeanLaw, kHenckyLaw;
 
 /// The laws; kElasticLaws is in the same order.
 enum class StrainModel {
   corotational,  ///< small strain in the frame turned by the polar decomposition
   linear,        ///< the paper's Cauchy strain
   neo_hookean,   ///< stable neo-Hookean law, isotropic: the reference for large strain [Smith2018]
+  hencky,        ///< large strain, isotropic, linear in the logarithmic strain [Hencky1928]
 };
-inline constexpr std::array kElasticLaws{&kCorotationalLaw, &kLinearLaw, &kNeoHookeanLaw};
+inline constexpr std::array kElasticLaws{&kCorotationalLaw, &kLinearLaw, &kNeoHookeanLaw, &kHenckyLaw};
 
 inline const ElasticLaw& find_law(StrainModel model) {
   return *kElasticLaws[static_cast<std::size_t>(model)];
@@ -109,7 +112,7 @@ Mat9 make_positive(const Mat9& tangent);
 Vec6 compute_flow_drive(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
                         const Elasticity& e, double shape_stiffness);
 
-/// Relative volume change θ as the law measures it, tr ε_e or det Fₑ − 1, and its derivative ∂θ/∂F.
+/// Relative volume change θ as the law measures it, tr ε_e, det Fₑ − 1 or ln det F, and its derivative ∂θ/∂F.
 double compute_volume_change(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain);
 Mat3 compute_volume_gradient(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain);
 

@@ -71,6 +71,7 @@ constexpr ElasticLaw kCorotationalLaw{
     .is_linear = false,
     .is_quadratic = true,
     .takes_full_stiffness = true,
+    .bears_inversion = true,
     .has_cancelling_energy = false,
     .plastic_split = PlasticSplit::additive,
     .energy_density = compute_quadratic_energy,

@@ -35,6 +35,7 @@ constexpr ElasticLaw kLinearLaw{
     .is_linear = true,
     .is_quadratic = true,
     .takes_full_stiffness = true,
+    .bears_inversion = true,
     .has_cancelling_energy = false,
     .plastic_split = PlasticSplit::additive,
     .energy_density = compute_quadratic_energy,

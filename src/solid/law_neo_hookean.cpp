@@ -104,6 +104,7 @@ constexpr ElasticLaw kNeoHookeanLaw{
     .is_linear = false,
     .is_quadratic = false,
     .takes_full_stiffness = false,
+    .bears_inversion = true,
     .has_cancelling_energy = true,
     .plastic_split = PlasticSplit::multiplicative,
     .energy_density = compute_neo_hookean_energy,

@@ -16,6 +16,7 @@ TEST_P(Gradient, ForceIsTheDerivativeOfTheEnergy) {
   const auto [model, element, is_anisotropic, is_plastic, is_swollen] = GetParam();
   if (is_anisotropic && (!find_law(model).takes_full_stiffness || element == ElementKind::p1_nodal))
     GTEST_SKIP() << "isotropic only";
+  if (is_plastic && find_law(model).plastic_split == PlasticSplit::none) GTEST_SKIP() << "elastic only";
   SolidParams params;
   params.model = model;
   params.element = element;

@@ -119,11 +119,17 @@ double find_residual_near(SolidParams params, History history, double distance) 
   return status.is_ok() ? 0.0 : status.failure().value;
 }
 
+/// Hencky's law has no equilibrium above a pull of E/e over the rest area, where a bar necks; the 25 nodes of
+/// a p2 bar's end pull by 0.45 E at a load of 6.
+double find_bearable_load(const SolidParams& params) {
+  return params.model == StrainModel::hencky ? 3.0 : 6.0;
+}
+
 /// Relative residuals before each of Newton's steps: what is reported when it may take no more.
 std::vector<double> find_residuals(SolidParams params, bool is_static) {
   std::vector<double> residuals;
   for (params.newton_max_iterations = 0; params.newton_max_iterations < 30; ++params.newton_max_iterations) {
-    Scene scene = make_bar(params, 6.0);
+    Scene scene = make_bar(params, find_bearable_load(params));
     // Statics would go on in shares of the load; one long step of a light body is the same task without.
     const StepStatus status = is_static ? scene.step(1e4) : scene.step(0.05);
     if (status.is_ok()) break;
@@ -162,6 +168,8 @@ TEST(Newton, ConvergesQuadraticallyWithPlasticStrainAndAnisotropicStiffness) {
         if (history == History::anisotropic &&
             (!find_law(model).takes_full_stiffness || element == ElementKind::p1_nodal))
           continue;  // isotropic only
+        if (history == History::plastic && find_law(model).plastic_split == PlasticSplit::none)
+          continue;  // elastic only
         SCOPED_TRACE(testing::Message()
                      << static_cast<int>(model) << static_cast<int>(element) << static_cast<int>(history));
         SolidParams params;
