@@ -9,8 +9,9 @@ namespace argil::sim {
 
 PlasticFlow::PlasticFlow(const Params& params, const BodyMaterials& materials, solid::Solid& solid)
     : m_params(params), m_materials(materials), m_solid(solid) {
+  m_has_additive_split = find_law(params.solid.model).plastic_split == solid::PlasticSplit::additive;
   m_is_driven = params.plasticity.enabled && params.plasticity.deviatoric &&
-                (!materials.is_isotropic() || params.solid.model == solid::StrainModel::neo_hookean);
+                (!materials.is_isotropic() || !m_has_additive_split);
   m_is_flowing.resize(static_cast<std::size_t>(solid.elements().num_points() / kLanes + 1), 0);
 }
 
@@ -35,17 +36,17 @@ double PlasticFlow::apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, Te
   return dissipated;
 }
 
-/// Returns what flow dissipates [J]: at fixed strain, the elastic energy that it releases. The neo-Hookean
-/// law bends within a long step of flow: there the step ends by halves where it releases energy.
+/// Returns what flow dissipates [J]: at fixed strain, the elastic energy that it releases. Energy is no
+/// quadratic function of ε_p in a multiplicative split: there a long step of flow is halved until it releases
+/// energy.
 double PlasticFlow::apply_to_point(int point, TensorField& plastic_strain) const {
   constexpr int kHalvings = 10;
-  const bool is_bent = m_params.solid.model == solid::StrainModel::neo_hookean;
   const Vec6 before = plastic_strain.col(point);
   Vec6 after = compute_flow(point, before);
   if ((after.array() == before.array()).all()) return 0.0;
   const double energy = m_solid.compute_elastic_energy(point, before);
   double released = energy - m_solid.compute_elastic_energy(point, after);
-  for (int k = 0; is_bent && released < 0.0 && k < kHalvings; ++k) {
+  for (int k = 0; !m_has_additive_split && released < 0.0 && k < kHalvings; ++k) {
     after = k + 1 < kHalvings ? Vec6(0.5 * (before + after)) : before;
     released = energy - m_solid.compute_elastic_energy(point, after);
   }

@@ -30,6 +30,7 @@ class PlasticFlow {
   const Params& m_params;
   const BodyMaterials& m_materials;
   solid::Solid& m_solid;
+  bool m_has_additive_split;
   bool m_is_driven;  // by the stress, not the strain
   bool m_is_anywhere = false;
   std::vector<char> m_is_flowing;

@@ -28,7 +28,7 @@ Kinematics::Kinematics(const Elements& elements, StrainModel model, int threads)
     : m_model(model), m_threads(threads) {
   const Eigen::Index num_points = elements.num_points();
   const bool is_linear_tet = elements.nodes_per_tet == 4;
-  if (!is_linear_tet || model == StrainModel::neo_hookean) m_deformation.resize(3, 3 * num_points);
+  if (!is_linear_tet || !find_law(model).is_quadratic) m_deformation.resize(3, 3 * num_points);
   m_rotation.resize(3, 3 * num_points);
   m_strain.setZero(6, num_points);
   m_volume_ratio.setOnes(num_points);
@@ -55,7 +55,7 @@ void Kinematics::set_tets(const Elements& elements, const Eigen::Matrix3Xd& grad
   const TetArrays tets{x.data(),
                        elements.nodes.data(),
                        gradient.data(),
-                       m_model == StrainModel::linear,
+                       find_law(m_model).is_linear,
                        keeps_deformation() ? m_deformation.data() : nullptr,
                        m_rotation.data(),
                        how.keeps_frames ? nullptr : m_turned_gradient.data(),

@@ -36,7 +36,7 @@ void Materials::set_moduli(int tet, const TetMaterial& material) {
 }
 
 void Materials::set_stiffness(int tet, const Mat6& C) {
-  ARGIL_ASSERT(m_model.params.model != StrainModel::neo_hookean && !m_nodal);
+  ARGIL_ASSERT(find_law(m_model.params.model).takes_full_stiffness && !m_nodal);
   if (m_C.empty())
     for (Eigen::Index t = 0; t < m_lambda.size(); ++t)
       m_C.push_back(make_isotropic_stiffness(m_lambda(t), m_mu(t)));

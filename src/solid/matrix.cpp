@@ -230,9 +230,9 @@ void mask_rows(const Model& model, linear::BlockMatrix& matrix) {
 
 bool needs_tangents(const Body& body) {
   const SolidParams& params = body.model.params;
-  if (params.model == StrainModel::neo_hookean) return true;
-  return params.model == StrainModel::corotational &&
-         (body.prediction.is_static || params.iteration == Iteration::newton);
+  const ElasticLaw& law = find_law(params.model);
+  if (!law.is_quadratic) return true;
+  return !law.is_linear && (body.prediction.is_static || params.iteration == Iteration::newton);
 }
 
 MatrixShares compute_shares(const Body& body) {

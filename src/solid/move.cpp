@@ -15,7 +15,7 @@ StepStatus update_kinematics(Body& body, const Part& part, const Points& x, cons
                      body.energies.is_batch_new});
   const double least = kinematics.min_volume_ratio();
   // Strain of the linear model has no inside to turn out; in statics its solution is what was asked for.
-  const bool may_invert = body.prediction.is_static && params.model == StrainModel::linear;
+  const bool may_invert = body.prediction.is_static && find_law(params.model).is_linear;
   if (std::isfinite(least) && (may_invert || least > params.min_volume_ratio)) return StepStatus::ok();
   const int worst = kinematics.find_worst_point();
   return StepStatus::failed({tick, "solid", body.model.elements.number_of_point(worst),

@@ -78,8 +78,8 @@ void set_residual_scale(Body& body, const StepLoads& loads) {
   const auto corners = static_cast<double>(model.elements.nodes.size());
   newton.potential_rounding =
       kRounding * body.trial.x.cwiseAbs().maxCoeff() * std::sqrt(corners * newton.corner_scale);
-  if (model.params.model != StrainModel::neo_hookean) return;
-  // Whose energy is what is left of terms of the size of its moduli.
+  if (!find_law(model.params.model).has_cancelling_energy) return;
+  // The law's energy is what is left of terms of the size of its moduli.
   newton.potential_rounding += kRounding * ordered_sum(model.elements.num_points(), [&](std::ptrdiff_t p) {
                                  const TetMaterial material =
                                      body.materials.of(model.elements.tet_of_point(static_cast<int>(p)));

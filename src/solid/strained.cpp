@@ -19,24 +19,24 @@ bool has_isotropic_tets(const Model& model, const Materials& materials) {
 }
 
 bool has_plain_tets(const Model& model, const Materials& materials) {
-  return has_isotropic_tets(model, materials) && model.params.model != StrainModel::neo_hookean;
+  return has_isotropic_tets(model, materials) && find_law(model.params.model).is_quadratic;
 }
 
 ForceArrays make_force_arrays(const Strained& body, double* corner_force) {
-  return {body.materials.gradient().data(),  body.kinematics.rotation().data(),
-          body.kinematics.strain().data(),   body.plastic_strain.data(),
-          body.materials.weight().data(),    body.materials.own_lambda().data(),
-          body.materials.mu().data(),        body.materials.nodal() ? body.volume.pressure.data() : nullptr,
-          body.law() == StrainModel::linear, corner_force};
+  return {body.materials.gradient().data(), body.kinematics.rotation().data(),
+          body.kinematics.strain().data(),  body.plastic_strain.data(),
+          body.materials.weight().data(),   body.materials.own_lambda().data(),
+          body.materials.mu().data(),       body.materials.nodal() ? body.volume.pressure.data() : nullptr,
+          find_law(body.law()).is_linear,   corner_force};
 }
 
 void compute_volume_changes(const Strained& body, Field& change) {
   change.resize(body.model.elements.num_tets());
+  const bool is_quadratic = find_law(body.law()).is_quadratic;  // whose volume change is tr ε_e
   parallel_for(change.size(), body.model.threads, [&](std::ptrdiff_t t) {
-    change(t) = body.law() == StrainModel::neo_hookean
-                    ? compute_volume_change(body.law(), body.kinematics.at(static_cast<int>(t)),
-                                            body.plastic_strain.col(t))
-                    : (body.kinematics.strain().col(t) - body.plastic_strain.col(t)).head<3>().sum();
+    change(t) = is_quadratic ? (body.kinematics.strain().col(t) - body.plastic_strain.col(t)).head<3>().sum()
+                             : compute_volume_change(body.law(), body.kinematics.at(static_cast<int>(t)),
+                                                     body.plastic_strain.col(t));
   });
 }
 

@@ -12,7 +12,7 @@ bool keeps_nodal_factors(const SolidParams& params) {
   using linear::SolverKind;
   const SolverKind kind = params.solver.kind;
   return (kind == SolverKind::pcg || kind == SolverKind::pcg_jacobi) && params.iteration == Iteration::one &&
-         params.model != StrainModel::neo_hookean;
+         find_law(params.model).is_quadratic;
 }
 
 /// Rows that share a block with each row, itself included, increasing.

@@ -9,6 +9,7 @@
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
 #include "support/block_mesh.h"
+#include "support/laws.h"
 
 namespace argil::sim {
 namespace {
@@ -196,8 +197,7 @@ TEST(YoungsModulus, OfAMeshReplacesTheMaterialsWhateverThatWas) {
 
 TEST(Swelling, MakesAFreeBarGrowAlikeInAllDirectionsWithoutStress) {
   // Rest volume times 1 + 0.3·S: every length times the cube root, for every law and element.
-  for (const solid::StrainModel model :
-       {solid::StrainModel::linear, solid::StrainModel::corotational, solid::StrainModel::neo_hookean})
+  for (const solid::StrainModel model : test::every_model())
     for (const solid::ElementKind element :
          {solid::ElementKind::p1, solid::ElementKind::p1_nodal, solid::ElementKind::p2}) {
       Params params = make_params();
