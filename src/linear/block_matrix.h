@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/ordered_runs.h"
+#include "base/ordered_loops.h"
 #include "base/types.h"
 
 namespace argil::linear {

@@ -68,15 +68,16 @@ ARGIL_EVERY_PROCESSOR void combine(const float (&a)[kKept], const float* const (
 }  // namespace
 
 void LastChanges::prepare(std::ptrdiff_t num_rows) {
-  for (auto* vectors : {&m_d, &m_product})
+  for (auto* vectors : {&m_d, &m_product, &m_committed_d})
     for (std::vector<float>& vector : *vectors) vector.resize(4 * static_cast<std::size_t>(num_rows));
+  m_changed_runs.resize(static_cast<std::size_t>(OrderedRuns::count_all_runs(num_rows)));
   m_products.reserve(static_cast<std::size_t>(OrderedRuns::count_all_runs(num_rows)));
 }
 
 LastChanges::Start LastChanges::begin(const ShortRows& matrix, Operator& whole, const OrderedRuns& runs,
                                       std::ptrdiff_t num_rows, float* x, float* r) {
-  if (m_rest > 0) {
-    --m_rest;
+  if (m_use.rest > 0) {
+    --m_use.rest;
     return {};
   }
   const float* const d[kKept] = {m_d[0].data(), m_d[1].data(), m_d[2].data()};
@@ -109,17 +110,18 @@ void LastChanges::judge(const Start& start, double energy) {
   constexpr int kLongestRest = 16;
   if (start.products == 0) return;
   const bool is_useful = start.energy >= kUseful * energy;
-  m_rest = is_useful ? 0 : m_next_rest;
-  m_next_rest = is_useful ? 1 : std::min(2 * m_next_rest, kLongestRest);
+  m_use.rest = is_useful ? 0 : m_use.next_rest;
+  m_use.next_rest = is_useful ? 1 : std::min(2 * m_use.next_rest, kLongestRest);
 }
 
 void LastChanges::keep(const OrderedRuns& runs, std::ptrdiff_t num_rows, const float* x, double scale) {
   constexpr double kLargest = 1e6;  // beside which the new change is lost in rounding
-  const double ratio = m_scale / scale;
+  const double ratio = m_use.scale / scale;
   const float old = ratio < kLargest ? static_cast<float>(ratio) : 0.0F;
-  m_scale = scale;
+  m_use.scale = scale;
   float* const d[kKept] = {m_d[0].data(), m_d[1].data(), m_d[2].data()};
   runs.each(num_rows, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    remember(begin, end);
     for (std::ptrdiff_t i = 4 * begin; i < 4 * end; ++i) {
       const float growth = x[i] - old * d[0][i];
       d[2][i] = growth - old * d[1][i];
@@ -130,14 +132,43 @@ void LastChanges::keep(const OrderedRuns& runs, std::ptrdiff_t num_rows, const f
 }
 
 void LastChanges::clear(std::ptrdiff_t begin, std::ptrdiff_t end) {
+  constexpr std::ptrdiff_t length = OrderedRuns::kLength;
+  for (std::ptrdiff_t first = begin; first < end; first += length)
+    remember(first, std::min(first + length, end));
   for (std::vector<float>& d : m_d) std::fill(d.begin() + 4 * begin, d.begin() + 4 * end, 0.0F);
+}
+
+/// Keeps what the rows of one run were at the last commit, when they first change.
+void LastChanges::remember(std::ptrdiff_t begin, std::ptrdiff_t end) {
+  if (!m_changed_runs.set(static_cast<std::size_t>(begin / OrderedRuns::kLength))) return;
+  for (int k = 0; k < kKept; ++k)
+    std::copy(m_d[k].begin() + 4 * begin, m_d[k].begin() + 4 * end, m_committed_d[k].begin() + 4 * begin);
+}
+
+void LastChanges::commit() {
+  m_committed_use = m_use;
+  m_changed_runs.clear();
+}
+
+void LastChanges::roll_back() {
+  m_use = m_committed_use;
+  constexpr std::size_t length = 4 * OrderedRuns::kLength;
+  for (std::size_t run = 0; run < m_changed_runs.size(); ++run) {
+    if (!m_changed_runs.is_set(run)) continue;
+    for (int k = 0; k < kKept; ++k) {
+      const std::size_t begin = length * run;
+      const std::size_t count = std::min(length, m_d[k].size() - begin);
+      std::copy_n(m_committed_d[k].data() + begin, count, m_d[k].data() + begin);
+    }
+  }
+  m_changed_runs.clear();
 }
 
 void LastChanges::exchange_state(Archive& archive, const std::string& prefix) {
   for (int k = 0; k < kKept; ++k) archive.list(prefix + "last_change_" + std::to_string(k), m_d[k]);
-  archive.number(prefix + "last_scale", m_scale);
-  archive.number(prefix + "rest", m_rest);
-  archive.number(prefix + "next_rest", m_next_rest);
+  archive.number(prefix + "last_scale", m_use.scale);
+  archive.number(prefix + "rest", m_use.rest);
+  archive.number(prefix + "next_rest", m_use.next_rest);
 }
 
 }  // namespace argil::linear

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "base/archive.h"
-#include "base/ordered_runs.h"
+#include "base/change_marks.h"
+#include "base/ordered_loops.h"
 #include "linear/operator.h"
 #include "linear/short_rows.h"
 
@@ -36,6 +37,10 @@ class LastChanges {
   void clear(std::ptrdiff_t begin, std::ptrdiff_t end);
   void exchange_state(Archive& archive, const std::string& prefix);
 
+  /// Solves since the last commit count from now on; or they never were.
+  void commit();
+  void roll_back();
+
   /// Of changes and what they are multiplied to with one another, i ≥ k, and of changes with r.
   struct Products {
     double dy[kKept][kKept] = {};  ///< [k][i]: dᵢ·A dₖ
@@ -45,13 +50,20 @@ class LastChanges {
  private:
   // The last change d₀, how much more that was than the one before, d₁, and how much more d₁ grew, d₂: alike
   // changes have small differences, which stay apart where the changes themselves would not. Four a row, in
-  // units of m_scale.
+  // units of m_use.scale.
   std::vector<float> m_d[kKept];
-  double m_scale = 0.0;
   std::vector<float> m_product[kKept];  // A dₖ
   std::vector<Products> m_products;     // of each run
-  int m_rest = 0;                       // solves to come that do without
-  int m_next_rest = 1;                  // after the next one that they were of little use to
+  struct Use {
+    double scale = 0.0;
+    int rest = 0;       // solves to come that do without
+    int next_rest = 1;  // after the next one that they were of little use to
+  };
+  void remember(std::ptrdiff_t begin, std::ptrdiff_t end);
+
+  Use m_use, m_committed_use;
+  std::vector<float> m_committed_d[kKept];  // of runs that have changed since the last commit
+  ChangeMarks m_changed_runs;
 };
 
 }  // namespace argil::linear

@@ -36,13 +36,13 @@ void ShortBlocks::prepare(const BlockMatrix& pattern) {
   for (int row = 0; row < pattern.num_rows(); ++row) arrange_row(pattern, row);
 }
 
-void ShortBlocks::visit(const std::vector<int>* runs) {
-  m_visited = runs;
+void ShortBlocks::restrict_to(const std::vector<int>* runs) {
+  m_list = runs;
   m_is_arranged = false;
 }
 
 void ShortBlocks::arrange(const BlockMatrix& pattern) {
-  m_order.arrange(pattern, m_visited);
+  m_order.arrange(pattern, m_list);
   for (const int moved : m_order.moved()) {
     const auto row = static_cast<std::size_t>(moved);
     for (int b = pattern.row_begin[row]; b < pattern.row_begin[row + 1]; ++b)

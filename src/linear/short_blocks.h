@@ -16,7 +16,7 @@ class ShortBlocks {
   /// Takes the memory for matrices of this pattern; the functions below do the same.
   void prepare(const BlockMatrix& pattern);
   /// From now on sweeps go over the rows of these runs; null: all. The list must outlive the updates.
-  void visit(const std::vector<int>* runs);
+  void restrict_to(const std::vector<int>* runs);
   /// Takes the rows that have changed since the last update; the inverses hold what `whole` does not store,
   /// too.
   void update(const BlockMatrix& matrix, Operator& whole, const OrderedRuns& runs);
@@ -31,7 +31,7 @@ class ShortBlocks {
 
   const BlockMatrix* m_pattern = nullptr;
   int m_num_blocks = 0;
-  const std::vector<int>* m_visited = nullptr;
+  const std::vector<int>* m_list = nullptr;
   SweepOrder m_order;
   bool m_is_arranged = false;
   bool m_had_unstored = false;

@@ -16,7 +16,7 @@ SolveReport ShortIteration::solve(const BlockMatrix& matrix, Operator& whole, co
   prepare(matrix);
   if (m_is_changed) {
     clear_left_rows();
-    m_blocks.visit(m_visited);
+    m_blocks.restrict_to(m_list);
   }
   m_is_changed = false;
   m_sums.resize(static_cast<std::size_t>(m_runs.count_runs(num_rows)));
@@ -83,6 +83,11 @@ void ShortIteration::exchange_state(Archive& archive, const std::string& prefix)
   if (archive.is_restoring()) m_is_changed = m_has_solved_all = true;
 }
 
+void ShortIteration::roll_back() {
+  m_last.roll_back();
+  m_is_changed = m_has_solved_all = true;
+}
+
 void ShortIteration::prepare(const BlockMatrix& pattern) {
   const auto num_rows = static_cast<std::size_t>(pattern.num_rows());
   for (std::vector<float>* vector : {&m_r, &m_t, &m_s, &m_p, &m_rho, &m_x}) vector->resize(4 * num_rows);
@@ -95,13 +100,13 @@ void ShortIteration::prepare(const BlockMatrix& pattern) {
   m_blocks.prepare(pattern);
 }
 
-void ShortIteration::visit(const std::vector<int>* runs) {
-  m_runs.visit(runs);
-  m_visited = runs;
+void ShortIteration::restrict_to(const std::vector<int>* runs) {
+  m_runs.restrict_to(runs);
+  m_list = runs;
   m_is_changed = true;
 }
 
-/// Rows beside those that are visited are read: what the last solve left there goes.
+/// Rows beside those that are listed are read: what the last solve left there goes.
 void ShortIteration::clear_left_rows() {
   constexpr std::ptrdiff_t length = OrderedRuns::kLength;
   const auto size = static_cast<std::ptrdiff_t>(m_t.size() / 4);
@@ -112,16 +117,16 @@ void ShortIteration::clear_left_rows() {
       std::fill(vector->begin() + 4 * begin, vector->begin() + 4 * end, 0.0F);
     m_last.clear(begin, end);
   };
-  const auto is_visited = [&](int run) {
-    return !m_visited || std::binary_search(m_visited->begin(), m_visited->end(), run);
+  const auto is_listed = [&](int run) {
+    return !m_list || std::binary_search(m_list->begin(), m_list->end(), run);
   };
   for (const int run : m_solved)
-    if (!is_visited(run)) clear(run);
-  for (int run = 0; m_has_solved_all && m_visited && run * length < size; ++run)
-    if (!is_visited(run)) clear(run);
-  m_has_solved_all = m_visited == nullptr;
+    if (!is_listed(run)) clear(run);
+  for (int run = 0; m_has_solved_all && m_list && run * length < size; ++run)
+    if (!is_listed(run)) clear(run);
+  m_has_solved_all = m_list == nullptr;
   m_solved.clear();
-  if (m_visited) m_solved = *m_visited;
+  if (m_list) m_solved = *m_list;
 }
 
 /// A x = r / `first`, which has the norm 1, until what is left of it is below `goal`.

@@ -30,9 +30,12 @@ class ShortIteration {
   /// Takes the memory for matrices of this pattern; solve does the same.
   void prepare(const BlockMatrix& pattern);
   /// From now on rows of these runs alone, as if there were no others. Null: all.
-  void visit(const std::vector<int>* runs);
+  void restrict_to(const std::vector<int>* runs);
   /// What the next solve takes from the last one.
   void exchange_state(Archive& archive, const std::string& prefix);
+  /// Solves since the last commit count from now on; or they never were.
+  void commit() { m_last.commit(); }
+  void roll_back();
 
  private:
   void clear_left_rows();
@@ -49,7 +52,7 @@ class ShortIteration {
 
   int m_threads;
   OrderedRuns m_runs;
-  const std::vector<int>* m_visited = nullptr;
+  const std::vector<int>* m_list = nullptr;
   std::vector<int> m_solved;      // runs of the last solve
   bool m_has_solved_all = false;  // or may have
   bool m_is_changed = true;

@@ -27,37 +27,22 @@ double compute_relative_residual(Operator& product, const Points& b, const Point
   return (b - work).norm() / b_norm;
 }
 
-/// A factor of the very matrix: renewed when any number in it changed.
-class DirectSolver final : public Solver {
+/// A factor and the values that it stands for.
+class KnownFactor {
  public:
-  explicit DirectSolver(FactorKind kind) : m_kind(kind) {}
+  explicit KnownFactor(FactorKind kind = FactorKind::simplicial) : m_kind(kind) {}
 
-  SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) override {
-    if (!m_factor) m_factor.emplace(matrix, m_kind);
-    const bool is_same =
-        m_factorised.size() == matrix.values.size() && (m_factorised.array() == matrix.values.array()).all();
-    if (!is_same) {
-      ++m_cost.factorisations;
-      if (!factorise(matrix)) return {false, 0, kNotPositive};
-    }
-    m_factor->solve(b, x);
-    ++m_cost.solves;
-    m_cost.multiplications += 2.0 * m_factor->num_entries();
-    const double residual = compute_relative_residual(product, b, x, m_work);
-    return {residual <= kUsable, 0, residual};  // a NaN is not
+  bool exists() const { return m_factorised.cols() > 0; }
+  bool is_of(const BlockMatrix& matrix) const {
+    return m_factorised.size() == matrix.values.size() &&
+           (m_factorised.array() == matrix.values.array()).all();
   }
-
-  void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
-    Solver::exchange_state(archive, prefix, pattern);
-    if (!exchange_factor(archive, prefix, m_factorised)) return;
-    if (!m_factor) m_factor.emplace(pattern, m_kind);
-    BlockMatrix matrix = pattern;
-    matrix.values = m_factorised;
-    factorise(matrix);
-  }
-
- private:
+  CholeskyFactor& factor() { return *m_factor; }
+  /// False when the matrix is not positive definite; then there is none.
   bool factorise(const BlockMatrix& matrix) {
+    if (!m_factor) m_factor.emplace(matrix, m_kind);
+    if (!m_has_changed) m_committed.swap(m_factorised);
+    m_has_changed = true;
     const bool is_positive = m_factor->factorise(matrix);
     if (is_positive)
       m_factorised = matrix.values;
@@ -65,10 +50,67 @@ class DirectSolver final : public Solver {
       m_factorised.resize(3, 0);
     return is_positive;
   }
+  void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) {
+    archive.any_size(prefix + "factorised", m_factorised);
+    if (archive.is_restoring()) make_anew(pattern);
+  }
+  void commit() { m_has_changed = false; }
+  void roll_back(const BlockMatrix& pattern) {
+    if (!m_has_changed) return;
+    m_committed.swap(m_factorised);
+    make_anew(pattern);
+    m_has_changed = false;
+  }
+
+ private:
+  /// From the values that it stands for: the same bits.
+  void make_anew(const BlockMatrix& pattern) {
+    if (!exists()) return;
+    BlockMatrix matrix = pattern;
+    matrix.values = m_factorised;
+    if (!m_factor) m_factor.emplace(pattern, m_kind);
+    if (!m_factor->factorise(matrix)) m_factorised.resize(3, 0);
+  }
 
   FactorKind m_kind;
   std::optional<CholeskyFactor> m_factor;
-  Eigen::Matrix3Xd m_factorised;  // values that the factor stands for
+  Eigen::Matrix3Xd m_factorised;  // none without a factor
+  Eigen::Matrix3Xd m_committed;   // at the last commit, where that has changed
+  bool m_has_changed = false;
+};
+
+/// A factor of the very matrix: renewed when any number in it changed.
+class DirectSolver final : public Solver {
+ public:
+  explicit DirectSolver(FactorKind kind) : m_known(kind) {}
+
+  SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) override {
+    if (!m_known.is_of(matrix)) {
+      ++m_cost.factorisations;
+      if (!m_known.factorise(matrix)) return {false, 0, kNotPositive};
+    }
+    m_known.factor().solve(b, x);
+    ++m_cost.solves;
+    m_cost.multiplications += 2.0 * m_known.factor().num_entries();
+    const double residual = compute_relative_residual(product, b, x, m_work);
+    return {residual <= kUsable, 0, residual};  // a NaN is not
+  }
+
+  void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
+    Solver::exchange_state(archive, prefix, pattern);
+    m_known.exchange_state(archive, prefix, pattern);
+  }
+  void commit() override {
+    Solver::commit();
+    m_known.commit();
+  }
+  void roll_back(const BlockMatrix& pattern) override {
+    Solver::roll_back(pattern);
+    m_known.roll_back(pattern);
+  }
+
+ private:
+  KnownFactor m_known;
   Points m_work;
 };
 
@@ -99,13 +141,15 @@ class JacobiIteration {
   }
   /// Does it round the matrix to floats?
   bool is_short() const { return m_is_short; }
-  bool visit(const std::vector<int>* runs) {
-    if (m_is_short) m_short.visit(runs);
+  bool restrict_to(const std::vector<int>* runs) {
+    if (m_is_short) m_short.restrict_to(runs);
     return m_is_short;
   }
   void exchange_state(Archive& archive, const std::string& prefix) {
     if (m_is_short) m_short.exchange_state(archive, prefix);
   }
+  void commit() { m_short.commit(); }
+  void roll_back() { m_short.roll_back(); }
 
  private:
   double m_tolerance;
@@ -127,10 +171,18 @@ class JacobiSolver final : public Solver {
     return report;
   }
   void prepare(const BlockMatrix& pattern) override { m_iteration.prepare(pattern); }
-  bool visit(const std::vector<int>* runs) override { return m_iteration.visit(runs); }
+  bool restrict_to(const std::vector<int>* runs) override { return m_iteration.restrict_to(runs); }
   void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
     Solver::exchange_state(archive, prefix, pattern);
     m_iteration.exchange_state(archive, prefix);
+  }
+  void commit() override {
+    Solver::commit();
+    m_iteration.commit();
+  }
+  void roll_back(const BlockMatrix& pattern) override {
+    Solver::roll_back(pattern);
+    m_iteration.roll_back();
   }
 
  private:
@@ -145,16 +197,15 @@ class JacobiSolver final : public Solver {
 class KeptFactorSolver final : public Solver {
  public:
   KeptFactorSolver(const SolverParams& params, int threads)
-      : m_params(params),
-        m_rows(threads),
-        m_jacobi(params, threads),
-        m_iteration(threads),
-        m_has_factor(params.kind == SolverKind::pcg_cholesky) {}
+      : m_params(params), m_rows(threads), m_jacobi(params, threads), m_iteration(threads) {
+    m_use.has_factor = params.kind == SolverKind::pcg_cholesky;
+    m_committed_use = m_use;
+  }
 
   SolveReport solve(const BlockMatrix& matrix, Operator& product, const Points& b, Points& x) override {
     if (!m_is_part) m_guess = x;
     ++m_cost.solves;
-    if (!m_has_factor) {
+    if (!m_use.has_factor) {
       const int max_iterations = m_is_part ? m_params.max_iterations : m_params.jacobi_iterations;
       const SolveReport report = m_jacobi.solve(matrix, product, b, max_iterations, m_goal, x);
       m_cost.iterations += report.iterations;
@@ -165,12 +216,12 @@ class KeptFactorSolver final : public Solver {
       if (report.converged || m_is_part || is_indefinite || is_no_number) return report;
       if (product.has_unstored())
         return {false, report.iterations, report.relative_residual, report.first, true};
-      m_has_factor = true;
+      m_use.has_factor = true;
       x = m_guess;
     }
-    const bool is_slow = m_last_iterations > m_params.refactor_iterations;
-    if ((!m_is_valid || is_slow) && !factorise(matrix)) return {false, 0, kNotPositive};
-    const bool was_fresh = m_is_fresh;
+    const bool is_slow = m_use.last_iterations > m_params.refactor_iterations;
+    if ((!m_known.exists() || is_slow) && !factorise(matrix)) return {false, 0, kNotPositive};
+    const bool was_fresh = m_use.is_fresh;
     SolveReport report = iterate(product, b, x);
     if (!report.converged && !was_fresh) {
       if (!factorise(matrix)) return {false, 0, kNotPositive};
@@ -178,72 +229,71 @@ class KeptFactorSolver final : public Solver {
       report = iterate(product, b, x);
     }
     m_cost.multiplications +=
-        (report.iterations + 1.0) * (count_entries(matrix) + 2.0 * m_factor->num_entries());
+        (report.iterations + 1.0) * (count_entries(matrix) + 2.0 * m_known.factor().num_entries());
     m_cost.iterations += report.iterations;
     return report;
   }
 
   void prepare(const BlockMatrix& pattern) override {
     m_guess.resize(3, pattern.num_rows());
-    if (!m_has_factor) m_jacobi.prepare(pattern);
+    if (!m_use.has_factor) m_jacobi.prepare(pattern);
   }
 
-  bool visit(const std::vector<int>* runs) override {
-    const bool can_visit = m_jacobi.visit(runs);
-    m_is_part = runs != nullptr && !m_has_factor && can_visit;
+  bool restrict_to(const std::vector<int>* runs) override {
+    const bool is_restricted = m_jacobi.restrict_to(runs);
+    m_is_part = runs != nullptr && !m_use.has_factor && is_restricted;
     return m_is_part;
   }
 
   void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
     Solver::exchange_state(archive, prefix, pattern);
-    archive.number(prefix + "has_factor", m_has_factor);
-    if (!m_has_factor) m_jacobi.exchange_state(archive, prefix);
-    archive.number(prefix + "last_iterations", m_last_iterations);
-    bool is_fresh = m_is_fresh;
-    archive.number(prefix + "is_fresh", is_fresh);
-    if (archive.is_restoring()) m_is_valid = false;
-    if (exchange_factor(archive, prefix, m_factorised)) {
-      BlockMatrix matrix = pattern;
-      matrix.values = m_factorised;
-      factorise(matrix);
-      --m_cost.factorisations;  // was counted when it was first done
-    }
-    m_is_fresh = is_fresh;
+    archive.number(prefix + "has_factor", m_use.has_factor);
+    if (!m_use.has_factor) m_jacobi.exchange_state(archive, prefix);
+    archive.number(prefix + "last_iterations", m_use.last_iterations);
+    archive.number(prefix + "is_fresh", m_use.is_fresh);
+    m_known.exchange_state(archive, prefix, pattern);
+  }
+  void commit() override {
+    Solver::commit();
+    m_jacobi.commit();
+    m_known.commit();
+    m_committed_use = m_use;
+  }
+  void roll_back(const BlockMatrix& pattern) override {
+    Solver::roll_back(pattern);
+    m_jacobi.roll_back();
+    m_known.roll_back(pattern);
+    m_use = m_committed_use;
   }
 
  private:
   bool factorise(const BlockMatrix& matrix) {
-    if (!m_factor) m_factor.emplace(matrix);
     ++m_cost.factorisations;
-    m_is_valid = m_factor->factorise(matrix);
-    m_is_fresh = true;
-    if (m_is_valid)
-      m_factorised = matrix.values;
-    else
-      m_factorised.resize(3, 0);
-    return m_is_valid;
+    m_use.is_fresh = true;
+    return m_known.factorise(matrix);
   }
   SolveReport iterate(Operator& product, const Points& b, Points& x) {
-    StaleCholesky kept(*m_factor, m_rows);
+    StaleCholesky kept(m_known.factor(), m_rows);
     const SolveReport report =
         m_iteration.solve(product, kept, b, m_params.tolerance, m_params.max_iterations, x, m_goal);
-    m_last_iterations = report.iterations;
-    m_is_fresh = false;
+    m_use.last_iterations = report.iterations;
+    m_use.is_fresh = false;
     return report;
   }
 
   SolverParams m_params;
   OrderedRuns m_rows;
   JacobiIteration m_jacobi;
-  std::optional<CholeskyFactor> m_factor;
-  Eigen::Matrix3Xd m_factorised;  // values that the factor stands for, for a checkpoint
+  KnownFactor m_known;
   ConjugateGradients m_iteration;
   Points m_guess;
-  bool m_has_factor;       // or does without as yet
   bool m_is_part = false;  // of the system is solved; a factor is of the whole
-  bool m_is_valid = false;
-  bool m_is_fresh = false;
-  int m_last_iterations = 0;
+  struct Use {
+    bool has_factor = false;  // or does without as yet
+    bool is_fresh = false;    // the factor: no solve has gone by it
+    int last_iterations = 0;
+  };
+  Use m_use, m_committed_use;
 };
 
 }  // namespace
@@ -253,11 +303,6 @@ void Solver::exchange_state(Archive& archive, const std::string& prefix, const B
   archive.number(prefix + "iterations", m_cost.iterations);
   archive.number(prefix + "factorisations", m_cost.factorisations);
   archive.number(prefix + "multiplications", m_cost.multiplications);
-}
-
-bool Solver::exchange_factor(Archive& archive, const std::string& prefix, Eigen::Matrix3Xd& factorised) {
-  archive.any_size(prefix + "factorised", factorised);
-  return archive.is_restoring() && factorised.cols() > 0;
 }
 
 std::unique_ptr<Solver> make_solver(const SolverParams& params, int threads) {

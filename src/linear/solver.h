@@ -11,10 +11,10 @@
 namespace argil::linear {
 
 enum class SolverKind {
-  pcg,              ///< pcg_jacobi while it takes few iterations, pcg_cholesky from the first long solve on
-  pcg_cholesky,     ///< conjugate gradients preconditioned by a kept simplicial factor
-  pcg_jacobi,       ///< conjugate gradients preconditioned by the 3×3 diagonal blocks, from kRoomForFloats
-                    ///< up by block Gauss–Seidel
+  pcg,           ///< pcg_jacobi while it takes few iterations, pcg_cholesky from the first long solve on
+  pcg_cholesky,  ///< conjugate gradients preconditioned by a kept simplicial factor
+  pcg_jacobi,  ///< conjugate gradients preconditioned by the 3×3 diagonal blocks, from kRoomForFloats up by
+               ///< block Gauss–Seidel
   pcg_matrix_free,  ///< the same; the matrix holds its diagonal blocks only and the operator multiplies
   cholesky,         ///< simplicial LDLᵀ, renewed whenever the matrix changed: the bit-exact reference
   supernodal,       ///< supernodal LLᵀ by BLAS, renewed likewise
@@ -57,10 +57,10 @@ class Solver {
   /// Takes the memory that solves with matrices of this pattern want.
   virtual void prepare(const BlockMatrix& /*pattern*/) {}
 
-  /// From now on the system of these runs of rows alone (base/ordered_runs.h; the list must outlive the
+  /// From now on the system of these runs of rows alone (base/ordered_loops.h; the list must outlive the
   /// solves), as if there were no others: x stays as it is outside. Null: all. False when this kind solves
   /// whole systems only.
-  virtual bool visit(const std::vector<int>* /*runs*/) { return false; }
+  virtual bool restrict_to(const std::vector<int>* /*runs*/) { return false; }
 
   /// From now on an iteration may also stop where the norm of its residual is at most `goal` [of b], however
   /// little that is beside the first guess's. 0: never for that.
@@ -72,12 +72,17 @@ class Solver {
   /// matrix with the pattern of those to come.
   virtual void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern);
 
+  /// Solves since the last commit count from now on; or they never were, and the next one begins with what
+  /// the first of them began with.
+  virtual void commit() { m_committed_cost = m_cost; }
+  virtual void roll_back(const BlockMatrix& /*pattern*/) { m_cost = m_committed_cost; }
+
  protected:
-  /// Of solvers that keep a factor: the values that it stands for, none without one. True when `factorised`
-  /// was restored and is to be factorised again.
-  bool exchange_factor(Archive& archive, const std::string& prefix, Eigen::Matrix3Xd& factorised);
   SolverCost m_cost;
   double m_goal = 0.0;
+
+ private:
+  SolverCost m_committed_cost;
 };
 
 /// Bits do not depend on `threads`.

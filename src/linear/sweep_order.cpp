@@ -13,21 +13,21 @@ void SweepOrder::prepare(const BlockMatrix& pattern) {
   m_last.reserve(num_rows);
   m_moved.reserve(2 * num_rows);
   m_is_last.assign(num_rows, 0);
-  m_is_visited.assign(num_rows, 0);
+  m_is_listed.assign(num_rows, 0);
 }
 
 void SweepOrder::arrange(const BlockMatrix& pattern, const std::vector<int>* runs) {
   constexpr std::ptrdiff_t kFewest = 512;  // rows whose sweeps two threads share
-  for (const int row : m_rows) m_is_visited.data()[row] = 0;
+  for (const int row : m_rows) m_is_listed.data()[row] = 0;
   m_rows.clear();
   m_moved = m_last;
   m_last.clear();
-  OrderedRuns visited(1);
-  visited.visit(runs);
-  visited.each(pattern.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  OrderedRuns listed(1);
+  listed.restrict_to(runs);
+  listed.each(pattern.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row) {
       m_rows.push_back(static_cast<int>(row));
-      m_is_visited.data()[row] = 1;
+      m_is_listed.data()[row] = 1;
     }
   });
   const auto num_rows = static_cast<std::ptrdiff_t>(m_rows.size());
@@ -59,7 +59,7 @@ void SweepOrder::find_last(const BlockMatrix& pattern, std::ptrdiff_t half) {
   for (auto at = m_rows.begin() + half; at != m_rows.end(); ++at) {
     const int* column = pattern.column.data() + pattern.row_begin.data()[*at];
     for (; *column < boundary; ++column)
-      if (m_is_visited.data()[*column] != 0) {
+      if (m_is_listed.data()[*column] != 0) {
         m_last.push_back(*at);
         break;
       }

@@ -13,8 +13,9 @@ class SweepOrder {
  public:
   /// Takes the memory for matrices of this pattern.
   void prepare(const BlockMatrix& pattern);
-  /// Of the rows of these runs (base/ordered_runs.h) alone; null: of all. moved() then has the rows that come
-  /// first or last where they did not before; in the order of numbers, which prepare leaves, none is last.
+  /// Of the rows of these runs (base/ordered_loops.h) alone; null: of all. moved() then has the rows that
+  /// come first or last where they did not before; in the order of numbers, which prepare leaves, none is
+  /// last.
   void arrange(const BlockMatrix& pattern, const std::vector<int>* runs);
   const std::vector<int>& moved() const { return m_moved; }
 
@@ -37,7 +38,7 @@ class SweepOrder {
   std::vector<int> m_rows;  // by place
   int m_begin[kGroups + 2] = {};
   std::vector<int> m_last, m_moved;
-  std::vector<std::uint8_t> m_is_last, m_is_visited;  // of each row
+  std::vector<std::uint8_t> m_is_last, m_is_listed;  // of each row
 };
 
 }  // namespace argil::linear

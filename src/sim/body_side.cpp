@@ -42,11 +42,13 @@ BodySide::BodySide(Body body, const Params& params)
   }
   if (m_state.is_at_rest) m_solid.sleep_all();
   m_solid.make_ready(m_state.solid, m_force.total());
+  m_solid.commit(m_state.solid);
   commit();
 }
 
 StepStatus BodySide::find_equilibrium() {
   ARGIL_TRY(m_solid.find_equilibrium(m_state.solid, {m_force.loads()}));
+  m_solid.commit(m_state.solid);
   commit();
   return StepStatus::ok();
 }
@@ -74,6 +76,9 @@ void BodySide::begin_step(const ContactLoad& load, StepResult& result) {
 }
 
 void BodySide::commit() {
+  const bool falls_asleep = m_state.is_at_rest && !m_committed.is_at_rest;
+  if (m_has_begun_solid || m_has_moved_water || falls_asleep)
+    m_solid.commit(m_state.solid, m_flow.is_flowing());
   m_committed = m_state;
   if (m_has_moved_water) m_water.commit();
   m_materials.commit();
@@ -86,11 +91,7 @@ void BodySide::roll_back() {
   if (m_has_moved_water) m_water.roll_back();
   m_materials.roll_back();
   m_economy.roll_back();
-  if (m_has_begun_solid) {
-    m_state.solid.x = m_solid.x_start();
-    m_state.solid.v = m_solid.v_start();
-  }
-  const StepStatus status = m_solid.restore_kinematics(m_state.solid.x, tick());
+  const StepStatus status = m_solid.roll_back(m_state.solid, tick());
   ARGIL_ASSERT(status.is_ok());
   m_has_moved_water = m_has_begun_solid = false;
 }

@@ -73,10 +73,10 @@ void ContactSurface::find_positions(const Points& x, Points& out) const {
 
 bool ContactSurface::find_moved(const OrderedItems& nodes, const Points& x, std::vector<int>& vertices,
                                 Points& places) const {
-  const std::vector<int>* visited = nodes.visited();
-  if (!visited || m_is_corner.empty()) return false;
+  const std::vector<int>* listed = nodes.list();
+  if (!listed || m_is_corner.empty()) return false;
   vertices.clear();
-  std::copy_if(visited->begin(), visited->end(), std::back_inserter(vertices),
+  std::copy_if(listed->begin(), listed->end(), std::back_inserter(vertices),
                [this](int node) { return m_is_corner[static_cast<std::size_t>(node)] != 0; });
   for (std::size_t i = 0; i < vertices.size(); ++i)
     places.col(static_cast<Eigen::Index>(i)) = x.col(vertices[i]);

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "base/archive.h"
-#include "base/ordered_items.h"
+#include "base/ordered_loops.h"
 #include "base/types.h"
 
 namespace argil::sim {

@@ -65,6 +65,7 @@ void BodySide::serialize(Archive& archive) {
   if (!archive.is_restoring()) return;
   const StepStatus status = m_solid.restore_kinematics(m_state.solid.x, m_state.hand.ticks);
   ARGIL_ASSERT(status.is_ok());
+  m_solid.commit(m_state.solid);
   commit();
 }
 

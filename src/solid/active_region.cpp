@@ -38,22 +38,23 @@ void ActiveRegion::make() {
       std::make_unique<ActiveSet>(m_body.model.elements, m_body.model.node_of_row, m_body.model.row_of_node);
   m_pulls.reserve(m_active->awake().size());
   m_run_speed.reserve(m_active->awake().size());
+  m_committed_load.reserve(static_cast<std::size_t>(m_body.model.elements.num_nodes()));
   restrict_stages();
 }
 
 void ActiveRegion::drop() {
-  m_active.reset();
+  m_left = std::move(m_active);
   restrict_stages();
-  m_held_back = 0.0;
+  m_past.held_back = 0.0;
 }
 
 /// Part and solver take the present lists.
 void ActiveRegion::restrict_stages() {
-  m_part.rows.visit(m_active ? &m_active->awake() : nullptr);
-  m_part.near_rows.visit(m_active ? &m_active->near() : nullptr);
-  m_part.nodes.visit(m_active ? &m_active->nodes() : nullptr);
-  m_part.batches.visit(m_active ? &m_active->batches() : nullptr);
-  const bool is_restricted = m_body.history.solver->visit(m_active ? &m_active->awake() : nullptr);
+  m_part.rows.restrict_to(m_active ? &m_active->awake() : nullptr);
+  m_part.near_rows.restrict_to(m_active ? &m_active->near() : nullptr);
+  m_part.nodes.restrict_to(m_active ? &m_active->nodes() : nullptr);
+  m_part.batches.restrict_to(m_active ? &m_active->batches() : nullptr);
+  const bool is_restricted = m_body.history.solver->restrict_to(m_active ? &m_active->awake() : nullptr);
   ARGIL_ASSERT(is_restricted || !m_active);
 }
 
@@ -105,7 +106,7 @@ void ActiveRegion::wake(const StepLoads& loads) {
   const auto look_at = [&](Eigen::Index n) {
     if ((loads.force.col(n).array() == m_last_load.col(n).array()).all()) return;
     m_active->wake_node(static_cast<int>(n));
-    m_last_load.col(n) = loads.force.col(n);
+    set_last_load(n, loads.force.col(n));
   };
   if (is_first || !m_are_forces_known || !loads.changed) {
     for (Eigen::Index n = 0; n < loads.force.cols(); ++n) look_at(n);
@@ -119,6 +120,11 @@ void ActiveRegion::wake(const StepLoads& loads) {
   m_are_forces_known = true;
 }
 
+void ActiveRegion::set_last_load(Eigen::Index node, const Vec3& force) {
+  if (m_had_last_load) m_committed_load.emplace_back(static_cast<int>(node), m_last_load.col(node));
+  m_last_load.col(node) = force;
+}
+
 /// By D⁻¹ r, the speed that they would take on if all others stayed, with what the step leaves of it.
 void ActiveRegion::grow_by_speed(const StepLoads& loads) {
   if (!m_active) return;
@@ -126,7 +132,7 @@ void ActiveRegion::grow_by_speed(const StepLoads& loads) {
   if (loads.region_slack > 0.0) return;
   const Model& model = m_body.model;
   const linear::BlockMatrix& matrix = m_body.system.matrix;
-  const double bound = model.params.region_tolerance * std::max(m_fastest, kStill);
+  const double bound = model.params.region_tolerance * std::max(m_past.fastest, kStill);
   for (const int run : m_active->fringe()) {
     const auto [begin, end] = find_rows(run, model.node_of_row.size());
     for (std::size_t row = begin; row < end; ++row) {
@@ -228,7 +234,7 @@ bool ActiveRegion::grow_by_force(const StepLoads& loads) {
     m_active->wake(run);
     total += minus_felt;
   }
-  m_held_back = std::max(0.0, total);
+  m_past.held_back = std::max(0.0, total);
   if (!m_active->update()) return false;
   take_in(loads);
   return true;
@@ -251,15 +257,15 @@ void ActiveRegion::put_to_sleep(SolidState& state, const std::vector<char>& is_f
   const std::vector<int>& node_of_row = m_body.model.node_of_row;
   std::vector<double>& fastest = m_run_speed;
   fastest.assign(m_active->awake().size(), 0.0);
-  m_fastest = 0.0;
+  m_past.fastest = 0.0;
   for (std::size_t i = 0; i < fastest.size(); ++i) {
     const auto [begin, end] = find_rows(m_active->awake()[i], node_of_row.size());
     for (std::size_t row = begin; row < end; ++row)
       fastest[i] = std::max(fastest[i], state.v.col(node_of_row[row]).norm());
-    m_fastest = std::max(m_fastest, fastest[i]);
+    m_past.fastest = std::max(m_past.fastest, fastest[i]);
   }
   m_active->wake_batches(is_flowing);
-  const double bound = kSleepShare * m_body.model.params.region_tolerance * std::max(m_fastest, kStill);
+  const double bound = kSleepShare * m_body.model.params.region_tolerance * std::max(m_past.fastest, kStill);
   // What is stopped is, with all others that may be, felt by as much as may be held back.
   const double share = kSleepShare * m_slack / std::sqrt(std::max(1.0, static_cast<double>(fastest.size())));
   const auto is_slow = [&](std::size_t i, int run) {
@@ -274,13 +280,33 @@ void ActiveRegion::put_to_sleep(SolidState& state, const std::vector<char>& is_f
   };
   for (std::size_t i = 0; i < fastest.size(); ++i) {
     const int run = m_active->awake()[i];
-    int& calm = m_active->calm_steps(run);
-    calm = is_slow(i, run) && !m_active->has_any(run, is_flowing) ? calm + 1 : 0;
-    if (calm < kCalmSteps) continue;
+    const bool is_calm = is_slow(i, run) && !m_active->has_any(run, is_flowing);
+    m_active->set_calm_steps(run, is_calm ? m_active->calm_steps(run) + 1 : 0);
+    if (m_active->calm_steps(run) < kCalmSteps) continue;
     m_active->make_drowsy(run);
     const auto [begin, end] = find_rows(run, node_of_row.size());
     for (std::size_t row = begin; row < end; ++row) state.v.col(node_of_row[row]).setZero();
   }
+}
+
+void ActiveRegion::commit() {
+  if (m_active) m_active->commit();
+  m_left.reset();
+  m_committed_past = m_past;
+  m_committed_load.clear();
+  m_had_last_load = m_last_load.size() > 0;
+}
+
+void ActiveRegion::roll_back() {
+  if (m_left) m_active = std::move(m_left);
+  if (m_active) m_active->roll_back();
+  restrict_stages();
+  m_past = m_committed_past;
+  for (auto change = m_committed_load.rbegin(); change != m_committed_load.rend(); ++change)
+    m_last_load.col(change->first) = change->second;
+  if (!m_had_last_load) m_last_load.resize(3, 0);
+  m_committed_load.clear();
+  forget();
 }
 
 void ActiveRegion::serialize_use(Archive& archive) {
@@ -294,8 +320,8 @@ void ActiveRegion::serialize(Archive& archive) {
   if (!m_active) return;
   m_active->exchange_state(archive);
   if (archive.is_restoring()) restrict_stages();
-  archive.number("region/fastest", m_fastest);
-  archive.number("region/held_back", m_held_back);
+  archive.number("region/fastest", m_past.fastest);
+  archive.number("region/held_back", m_past.held_back);
   archive.any_size("region/last_load", m_last_load);
 }
 

@@ -24,7 +24,7 @@ class ActiveRegion {
   bool is_awake(Eigen::Index node) const;
   int num_active() const;  ///< nodes that the next step solves for
   /// By what the last step left as it is: how much of that force the hand may feel [N].
-  double held_back() const { return m_held_back; }
+  double held_back() const { return m_past.held_back; }
 
   void wake_all();
   void sleep_all();  ///< those that are awake, until something acts
@@ -53,6 +53,9 @@ class ActiveRegion {
 
   void serialize_use(Archive& archive);
   void serialize(Archive& archive);
+  /// What woke and fell asleep since the last commit stays so; or all is as it was then.
+  void commit();
+  void roll_back();
 
  private:
   struct LargestDisplacement {
@@ -68,17 +71,23 @@ class ActiveRegion {
   double find_felt_pull(int run, const LargestDisplacement& largest, const StepLoads& loads) const;
   LargestDisplacement find_largest_displacement() const;
 
+  void set_last_load(Eigen::Index node, const Vec3& force);
+
   Body& m_body;
   Part m_whole, m_part;
-  std::unique_ptr<ActiveSet> m_active;
+  std::unique_ptr<ActiveSet> m_active, m_left;  // since the last commit
   bool m_is_start_known = false;                // of nodes that sleep
   bool m_are_forces_known = false;              // of tets that sleep
-  double m_fastest = 0.0;                       // speed of the last step [m/s]
   double m_slack = 0.0;                         // of the present step [N]
-  double m_held_back = 0.0;                     // [N]
-  std::vector<std::pair<double, int>> m_pulls;  // on runs that sleep [N], and their numbers
-  Points m_last_load;                           // forces of the last step
-  std::vector<double> m_run_speed;              // of the fastest node of each run that is awake
+  struct {
+    double fastest = 0.0;    // speed of the last step [m/s]
+    double held_back = 0.0;  // [N]
+  } m_past, m_committed_past;
+  std::vector<std::pair<double, int>> m_pulls;         // on runs that sleep [N], and their numbers
+  Points m_last_load;                                  // forces of the last step
+  bool m_had_last_load = false;                        // at the last commit
+  std::vector<std::pair<int, Vec3>> m_committed_load;  // of nodes where it has changed since then
+  std::vector<double> m_run_speed;                     // of the fastest node of each run that is awake
 };
 
 }  // namespace argil::solid

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "base/lanes.h"
-#include "base/ordered_runs.h"
+#include "base/ordered_loops.h"
 
 namespace argil::solid {
 namespace {
@@ -56,6 +56,9 @@ ActiveSet::ActiveSet(const Elements& elements, const std::vector<int>& node_of_r
   m_nodes_of_batch = make_table(nodes_of_batch, num_batches);
   m_state.assign(static_cast<std::size_t>(num_runs), kAwake);
   m_calm_steps.assign(m_state.size(), 0);
+  m_listed = m_state;
+  m_changed_runs.resize(m_state.size());
+  m_before.reserve(m_state.size());
   m_batch_marks.resize(static_cast<std::size_t>(num_batches));
   m_run_marks.resize(m_state.size());
   m_node_marks.resize(static_cast<std::size_t>(elements.num_nodes()));
@@ -68,16 +71,24 @@ void ActiveSet::wake_all() {
 }
 
 void ActiveSet::sleep_all() {
-  std::replace(m_state.begin(), m_state.end(), kAwake, kDrowsy);
+  for (int run = 0; run < num_runs(); ++run)
+    if (is_awake(run)) make_drowsy(run);
   m_is_changed = true;
 }
 
 void ActiveSet::wake(int run) {
-  m_calm_steps[static_cast<std::size_t>(run)] = 0;
+  set_calm_steps(run, 0);
   char& state = m_state[static_cast<std::size_t>(run)];
   if (state == kAwake) return;
+  remember(run);
   state = kAwake;
   m_is_changed = true;
+}
+
+void ActiveSet::set_calm_steps(int run, int steps) {
+  if (calm_steps(run) == steps) return;
+  remember(run);
+  m_calm_steps[static_cast<std::size_t>(run)] = steps;
 }
 
 void ActiveSet::wake_node(int node) {
@@ -103,17 +114,48 @@ void ActiveSet::wake_batches(const std::vector<char>& of_batch) {
 }
 
 void ActiveSet::make_drowsy(int run) {
+  remember(run);
   m_state[static_cast<std::size_t>(run)] = kDrowsy;
   m_is_changed = true;
 }
 
 bool ActiveSet::update() {
   if (!m_is_changed && !m_has_drowsy) return false;
-  m_listed = m_state;
-  std::replace(m_state.begin(), m_state.end(), kDrowsy, kAsleep);  // gone from the lists of the next update
+  for (int run = 0; run < num_runs(); ++run) {
+    char& state = m_state[static_cast<std::size_t>(run)];
+    char& listed = m_listed[static_cast<std::size_t>(run)];
+    if (state == listed && state != kDrowsy) continue;
+    remember(run);
+    listed = state;
+    if (state == kDrowsy) state = kAsleep;  // gone from the lists of the next update
+  }
   make_lists();
   m_is_changed = false;
   return true;
+}
+
+/// Keeps what a run is, before it first changes after a commit.
+void ActiveSet::remember(int run) {
+  const auto r = static_cast<std::size_t>(run);
+  if (m_changed_runs.set(r)) m_before.push_back({run, m_calm_steps[r], m_state[r], m_listed[r]});
+}
+
+void ActiveSet::commit() {
+  m_changed_runs.clear();
+  m_before.clear();
+  m_was_changed = m_is_changed;
+}
+
+void ActiveSet::roll_back() {
+  for (const Before& before : m_before) {
+    const auto r = static_cast<std::size_t>(before.run);
+    m_calm_steps[r] = before.calm_steps;
+    m_state[r] = before.state;
+    m_listed[r] = before.listed;
+  }
+  make_lists();
+  m_is_changed = m_was_changed;
+  commit();
 }
 
 void ActiveSet::make_lists() {

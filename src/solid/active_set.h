@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "base/archive.h"
-#include "base/ordered_runs.h"
+#include "base/change_marks.h"
+#include "base/ordered_loops.h"
 #include "solid/elements.h"
 
 namespace argil::solid {
@@ -43,8 +44,12 @@ class ActiveSet {
                const std::vector<char>& of_batch) const;  ///< is it set for any of a run's batches of tets?
 
   /// Steps for which a run has been slow.
-  int& calm_steps(int run) { return m_calm_steps[static_cast<std::size_t>(run)]; }
+  int calm_steps(int run) const { return m_calm_steps[static_cast<std::size_t>(run)]; }
+  void set_calm_steps(int run, int steps);
   void exchange_state(Archive& archive);
+  /// What woke and fell asleep since the last commit stays so; or all, lists too, is as it was then.
+  void commit();
+  void roll_back();
 
  private:
   /// A set of small numbers that is read in their order.
@@ -71,6 +76,7 @@ class ActiveSet {
   };
   static Table make_table(std::vector<std::pair<int, int>>& pairs, int count);
   void make_lists();
+  void remember(int run);
 
   int m_num_rows;
   std::vector<int> m_run_of_node;  // −1: held
@@ -79,6 +85,14 @@ class ActiveSet {
   std::vector<char> m_listed;  // states at the last update, which the lists are of
   std::vector<int> m_calm_steps;
   Marks m_batch_marks, m_run_marks, m_node_marks;
+  /// Of a run that has changed since the last commit, what it was then.
+  struct Before {
+    int run, calm_steps;
+    char state, listed;
+  };
+  std::vector<Before> m_before;
+  ChangeMarks m_changed_runs;
+  bool m_was_changed = true;  // m_is_changed at the last commit
   bool m_is_changed = true;
   bool m_has_drowsy = false;
   std::vector<int> m_awake, m_fringe, m_near, m_batches, m_nodes;

@@ -33,7 +33,7 @@ void set_corner_forces(const Strained& body, Eigen::Matrix3Xd& corner_force) {
 void gather(const Model& model, const Part& part, const Eigen::Matrix3Xd& corner_force, Points& force) {
   constexpr std::size_t kAhead = 2;
   const Elements& elements = model.elements;
-  const std::vector<int>& nodes = part.nodes.visited() ? *part.nodes.visited() : model.nodes_along_curve;
+  const std::vector<int>& nodes = part.nodes.list() ? *part.nodes.list() : model.nodes_along_curve;
   const int* corners = elements.node_corners.data();
   parallel_for(static_cast<std::ptrdiff_t>(nodes.size()), model.threads, [&](std::ptrdiff_t item) {
     const auto i = static_cast<std::size_t>(item);

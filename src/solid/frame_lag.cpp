@@ -74,13 +74,14 @@ linear::SolveReport solve_for_left(Body& body, const Part& part, const StepLoads
 
 double find_frame_tolerance(const Body& body) {
   constexpr double kLargest = 0.01;
-  const linear::SolverParams& solver = body.model.params.solver;
-  if (body.is_newton() || linear::is_direct(solver.kind)) return 0.0;
-  return std::min(kLargest, std::max(solver.tolerance, body.history.frame_lag.slack));
+  if (body.prediction.is_static || !has_lagging_frames(body.model)) return 0.0;
+  return std::min(kLargest, std::max(body.model.params.solver.tolerance, body.history.frame_lag.slack));
 }
 
-bool has_lagging_frames(const Body& body) {
-  return body.kinematics.has_frames() && find_frame_tolerance(body) > 0.0;
+bool has_lagging_frames(const Model& model) {
+  const SolidParams& params = model.params;
+  return model.elements.nodes_per_tet == 4 && params.iteration != Iteration::newton &&
+         !linear::is_direct(params.solver.kind) && params.solver.tolerance > 0.0;
 }
 
 bool may_lag_further(const Body& body) {

@@ -8,8 +8,8 @@ namespace argil::solid {
 /// matrix that is off by as much. Its residual is always that of R.
 double find_frame_tolerance(const Body& body);
 
-/// Do frames lag in steps of this body?
-bool has_lagging_frames(const Body& body);
+/// Do frames lag in steps of this body? Statics leaves them where the rotations are.
+bool has_lagging_frames(const Model& model);
 
 /// May they lag more than that where a step has slack? Only where what it leaves is known all the same.
 bool may_lag_further(const Body& body);

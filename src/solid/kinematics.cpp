@@ -24,7 +24,7 @@ double find_least(const Numbers& numbers) {
 
 }  // namespace
 
-Kinematics::Kinematics(const Elements& elements, StrainModel model, int threads)
+Kinematics::Kinematics(const Elements& elements, StrainModel model, bool has_lag, int threads)
     : m_model(model), m_threads(threads) {
   const Eigen::Index num_points = elements.num_points();
   const bool is_linear_tet = elements.nodes_per_tet == 4;
@@ -34,6 +34,10 @@ Kinematics::Kinematics(const Elements& elements, StrainModel model, int threads)
   m_volume_ratio.setOnes(num_points);
   m_turned_gradient.setZero(3, elements.gradient.cols());
   m_frame.setZero(3, is_linear_tet ? 3 * num_points : 0);
+  if (has_lag && is_linear_tet) {
+    m_committed_frame.resize(3, 3 * num_points);
+    m_changed_frames.resize(static_cast<std::size_t>(num_points));
+  }
   const Eigen::Index num_batches = (elements.num_tets() + kLanes - 1) / kLanes;
   m_batch_volume_ratio.setOnes(num_batches);
   m_group_volume_ratio.setOnes((num_batches + kBatchGroup - 1) / kBatchGroup);
@@ -43,7 +47,7 @@ void Kinematics::update(const Elements& elements, const Eigen::Matrix3Xd& gradie
                         const Update& how) {
   if (elements.nodes_per_tet == 4) {
     set_tets(elements, gradient, x, how);
-    m_min_volume_ratio = find_least_of_groups(how.batches.visited());
+    m_min_volume_ratio = find_least_of_groups(how.batches.list());
   } else {
     set_quadratic(elements, gradient, x, how.keeps_frames);
     m_min_volume_ratio = find_least(m_volume_ratio);
@@ -63,7 +67,9 @@ void Kinematics::set_tets(const Elements& elements, const Eigen::Matrix3Xd& grad
                        how.frame_tolerance,
                        m_strain.data(),
                        m_volume_ratio.data(),
-                       how.is_turned.data()};
+                       how.is_turned.data(),
+                       has_lag() ? &m_changed_frames : nullptr,
+                       m_committed_frame.data()};
   const auto set = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     compute_motions(tets, begin, end);
     m_batch_volume_ratio(begin / kLanes) = find_least(m_volume_ratio.segment(begin, end - begin));
@@ -109,7 +115,24 @@ double Kinematics::find_least_of_groups(const std::vector<int>* batches) {
 }
 
 void Kinematics::drop_frame(int tet) {
-  if (m_frame.size() > 0) m_frame.middleCols<3>(3 * static_cast<Eigen::Index>(tet)).setZero();
+  if (m_frame.size() == 0) return;
+  const Eigen::Index first = 3 * static_cast<Eigen::Index>(tet);
+  if (has_lag() && m_changed_frames.set(static_cast<std::size_t>(tet)))
+    m_committed_frame.middleCols<3>(first) = m_frame.middleCols<3>(first);
+  m_frame.middleCols<3>(first).setZero();
+}
+
+void Kinematics::roll_back(const Eigen::Matrix3Xd& gradient) {
+  for (std::size_t tet = 0; tet < m_changed_frames.size(); ++tet) {
+    if (!m_changed_frames.is_set(tet)) continue;
+    const auto t = static_cast<Eigen::Index>(tet);
+    const Mat3 Q = m_committed_frame.middleCols<3>(3 * t);
+    m_frame.middleCols<3>(3 * t) = Q;
+    for (Eigen::Index i = 4 * t; i < 4 * (t + 1); ++i)  // in the order of operations of compute_motions
+      m_turned_gradient.col(i) =
+          (Q.col(0) * gradient(0, i) + Q.col(1) * gradient(1, i)) + Q.col(2) * gradient(2, i);
+  }
+  m_changed_frames.clear();
 }
 
 PointMotion Kinematics::at(int point) const {

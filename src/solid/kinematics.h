@@ -3,7 +3,8 @@
 #include <vector>
 
 #include "base/archive.h"
-#include "base/ordered_runs.h"
+#include "base/change_marks.h"
+#include "base/ordered_loops.h"
 #include "solid/elements.h"
 #include "solid/law.h"
 
@@ -13,7 +14,8 @@ namespace argil::solid {
 /// last update. The matrix of kept rotations sees its tets in frames Q that may lag behind R.
 class Kinematics {
  public:
-  Kinematics(const Elements& elements, StrainModel model, int threads);
+  /// `has_lag`: frames may lag, so that what they were at the last commit is known.
+  Kinematics(const Elements& elements, StrainModel model, bool has_lag, int threads);
 
   /// Which tets an update looks at, and what it does with their frames.
   struct Update {
@@ -41,8 +43,12 @@ class Kinematics {
   bool has_frames() const { return m_frame.size() > 0; }
   /// What frames remember of earlier rotations.
   void exchange_frames(Archive& archive);
+  /// Frames stay as they are from now on; or are again what they were then, of the same shape at rest.
+  void commit() { m_changed_frames.clear(); }
+  void roll_back(const Eigen::Matrix3Xd& gradient);
 
  private:
+  bool has_lag() const { return m_committed_frame.size() > 0; }
   bool keeps_deformation() const { return m_deformation.size() > 0; }
   void set_tets(const Elements& elements, const Eigen::Matrix3Xd& gradient, const Points& x,
                 const Update& how);
@@ -60,7 +66,9 @@ class Kinematics {
   Field m_group_volume_ratio;  // and of each group of these runs
   double m_min_volume_ratio = 1.0;
   Eigen::Matrix3Xd m_turned_gradient;
-  Eigen::Matrix3Xd m_frame;  // Q of 4-node tets
+  Eigen::Matrix3Xd m_frame;            // Q of 4-node tets
+  Eigen::Matrix3Xd m_committed_frame;  // of those that have changed since the last commit; empty without lag
+  ChangeMarks m_changed_frames;
 };
 
 }  // namespace argil::solid

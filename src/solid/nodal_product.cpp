@@ -183,8 +183,8 @@ bool NodalProduct::find_busy_runs() {
   const bool has_new_nodes = collect(m_busy_nodes, num_nodes(), is_node_busy);
   const bool has_new_rows = collect(m_busy_rows, num_rows(), is_row_busy);
   if (!has_new_nodes && !has_new_rows) return false;
-  m_node_runs.visit(&m_busy_nodes);
-  m_row_runs.visit(&m_busy_rows);
+  m_node_runs.restrict_to(&m_busy_nodes);
+  m_row_runs.restrict_to(&m_busy_rows);
   return true;
 }
 

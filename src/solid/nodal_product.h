@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "base/ordered_runs.h"
+#include "base/ordered_loops.h"
 #include "solid/nodal_volume.h"
 #include "solid/supports.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/ordered_runs.h"
+#include "base/ordered_loops.h"
 #include "linear/block_matrix.h"
 #include "solid/elements.h"
 

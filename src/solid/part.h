@@ -1,8 +1,7 @@
 #pragma once
 
 #include "base/lanes.h"
-#include "base/ordered_items.h"
-#include "base/ordered_runs.h"
+#include "base/ordered_loops.h"
 #include "solid/model.h"
 
 namespace argil::solid {

@@ -20,7 +20,9 @@ Solid::Solid(Solid&&) noexcept = default;
 Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vector<Support> supports,
              const SolidParams& params, int threads)
     : m_body(std::make_unique<Body>(mesh, topology, std::move(supports), params, threads)),
-      m_region(std::make_unique<ActiveRegion>(*m_body)) {}
+      m_region(std::make_unique<ActiveRegion>(*m_body)) {
+  commit(m_body->committed);
+}
 
 SolidState Solid::make_rest_state() const {
   return solid::make_rest_state(m_body->model);
@@ -57,7 +59,7 @@ StepStatus Solid::update_kinematics(const Points& x, Tick tick) {
 }
 
 StepStatus Solid::restore_kinematics(const Points& x, Tick tick) {
-  const FrameUpdate frames{find_frame_tolerance(*m_body), has_lagging_frames(*m_body)};
+  const FrameUpdate frames{find_frame_tolerance(*m_body), has_lagging_frames(m_body->model)};
   return solid::update_kinematics(*m_body, m_region->start_part(), x, frames, tick);
 }
 
@@ -74,6 +76,7 @@ void Solid::take_up(const SolidState& state) {
   m_body->plastic_strain = &state.plastic_strain;
   start_from_committed(*m_body, part);
   m_region->set_start_known();
+  m_is_in_step = true;
 }
 
 StepStatus Solid::begin_step(const SolidState& state, const StepLoads& loads, double step_s, double time,
@@ -136,6 +139,7 @@ void Solid::sleep_all() {
 
 void Solid::make_ready(const SolidState& state, const Points& force) {
   take_up(state);
+  m_is_in_step = false;
   m_region->make_ready(force);
   if (!m_body->is_explicit()) m_body->history.solver->prepare(m_body->system.matrix);
 }
@@ -146,7 +150,7 @@ bool Solid::is_awake(Eigen::Index node) const {
 
 bool Solid::has_any_moving(const std::vector<char>& of_batch) const {
   const auto is_set = [&](int batch) { return of_batch[static_cast<std::size_t>(batch)] != 0; };
-  const std::vector<int>* batches = moving_batches().visited();
+  const std::vector<int>* batches = moving_batches().list();
   if (batches) return std::any_of(batches->begin(), batches->end(), is_set);
   return std::any_of(of_batch.begin(), of_batch.end(), [](char c) { return c != 0; });
 }
@@ -185,6 +189,9 @@ StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
 void Solid::prepare_response(const SolidState& state, double step_s) {
   m_body->plastic_strain = &state.plastic_strain;
   solid::prepare_response(*m_body, m_region->part(), state, step_s);
+  // Between two steps that is no part of one that might be taken back.
+  if (!m_is_in_step)
+    m_body->history.committed.has_nodal_blocks = m_body->system.has_nodal_blocks(m_body->materials);
 }
 
 StepStatus Solid::find_response(const Points& force, Tick tick, Points& displacement) {
@@ -227,7 +234,52 @@ void Solid::exchange_frames(Archive& archive) {
   archive.number("solid/frame_error", lag.left);
   archive.number("solid/frame_error_way", lag.lag_speed);
   archive.number("solid/frame_error_steps", lag.steps);
-  if (has_lagging_frames(*m_body)) m_body->kinematics.exchange_frames(archive);
+  if (has_lagging_frames(m_body->model)) m_body->kinematics.exchange_frames(archive);
+}
+
+void Solid::commit(const SolidState& state, const std::vector<char>& is_flowing) {
+  Body& body = *m_body;
+  const Part& part = m_region->start_part();
+  SolidState& committed = body.committed;
+  part.nodes.each(state.x.cols(), [&](std::ptrdiff_t n) {
+    committed.x.col(n) = state.x.col(n);
+    committed.v.col(n) = state.v.col(n);
+  });
+  committed.x_before = state.x_before;
+  committed.v_before = state.v_before;
+  part.batches.each(body.model.elements.num_points(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    if (is_flowing.empty() || is_flowing[static_cast<std::size_t>(begin / kLanes)] != 0)
+      committed.plastic_strain.middleCols(begin, end - begin) =
+          state.plastic_strain.middleCols(begin, end - begin);
+  });
+  body.kinematics.commit();
+  body.history.commit();
+  body.history.committed.has_nodal_blocks = body.system.has_nodal_blocks(body.materials);
+  m_region->commit();
+  m_is_in_step = false;
+}
+
+StepStatus Solid::roll_back(SolidState& state, Tick tick) {
+  Body& body = *m_body;
+  state = body.committed;
+  if (!body.history.committed.has_nodal_blocks) drop_nodal_stiffness(body.model, body.materials, body.system);
+  body.history.roll_back(body.system.matrix);
+  m_region->roll_back();
+  body.system.mark_all_changed();
+  std::fill(body.energies.is_batch_new.begin(), body.energies.is_batch_new.end(), char{1});
+  m_is_in_step = false;
+  body.kinematics.roll_back(body.materials.gradient());
+  return restore_kinematics(state.x, tick);
+}
+
+void Solid::serialize(Archive& archive, SolidState& state) {
+  archive.array("solid/x", state.x);
+  archive.array("solid/v", state.v);
+  archive.array("solid/plastic_strain", state.plastic_strain);
+  archive.any_size("solid/x_before", state.x_before);
+  archive.any_size("solid/v_before", state.v_before);
+  exchange_state(archive);
+  exchange_frames(archive);
 }
 
 const Elements& Solid::elements() const {

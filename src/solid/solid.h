@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "base/archive.h"
-#include "base/ordered_items.h"
-#include "base/ordered_runs.h"
+#include "base/ordered_loops.h"
 #include "base/status.h"
 #include "solid/elements.h"
 #include "solid/energy.h"
@@ -51,7 +50,8 @@ class Solid {
                         Tick tick);
   /// Residual and matrix at the present iterate. True when Newton's residual is small enough.
   bool assemble(const StepLoads& loads);
-  Vec3 find_free_part(const Vec3& force, Eigen::Index node) const;  ///< without what a support takes
+  Vec3 find_free_part(const Vec3& force,
+                      Eigen::Index node) const;  ///< without what a support takes
   /// After the first assembly of a step: the force [N] that would act on a node if the body were stopped
   /// where it is; and the norm over all awake nodes of these and the forces that stop it within the step.
   Vec3 find_imbalance(const StepLoads& loads, Eigen::Index node) const;
@@ -115,6 +115,16 @@ class Solid {
   /// After that: kinematics as those of the saved x were, with frames that lag as far as they did.
   StepStatus restore_kinematics(const Points& x, Tick tick);
 
+  /// The step that led to `state` counts from now on; it flowed where `is_flowing` is set, of each run of
+  /// kLanes points (empty: maybe anywhere).
+  void commit(const SolidState& state, const std::vector<char>& is_flowing = {});
+  /// What has happened since the last commit never was: `state` and all that steps take from earlier ones are
+  /// as they were then. Moduli, sizes and masses are to be those of then already.
+  [[nodiscard]] StepStatus roll_back(SolidState& state, Tick tick);
+  /// `state` and all that steps take from earlier ones besides moduli, sizes and masses, which come first.
+  /// After a return kinematics are to be restored.
+  void serialize(Archive& archive, SolidState& state);
+
   const Elements& elements() const;
   const Constraints& constraints() const;
   const TensorField& strain() const;  ///< ε (Mandel) of each point, last kinematics
@@ -149,6 +159,7 @@ class Solid {
 
   std::unique_ptr<Body> m_body;
   std::unique_ptr<ActiveRegion> m_region;
+  bool m_is_in_step = false;  // begun since the last commit
 };
 
 }  // namespace argil::solid

@@ -31,6 +31,17 @@ struct SolverHistory {
   std::unique_ptr<linear::Solver> response_solver;
   FrameLag frame_lag;
   StepCounters counters;
+
+  /// Solves since the last commit count from now on; or they never were. `pattern`: of the system's matrix.
+  void commit();
+  void roll_back(const linear::BlockMatrix& pattern);
+
+  struct {
+    FrameLag frame_lag;
+    StepCounters counters;
+    bool has_response_solver = false;
+    bool has_nodal_blocks = false;  ///< p1_nodal: the matrix held the nodes' stiffness
+  } committed;
 };
 
 }  // namespace argil::solid

@@ -1,6 +1,8 @@
 #include "solid/system.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 namespace argil::solid {
 namespace {
@@ -58,7 +60,9 @@ std::unique_ptr<NodalProduct> make_nodal_product(const Model& model, const Mater
 }
 
 void make_anew(const Model& model, const Materials& materials, System& system) {
+  std::vector<std::uint32_t> revision = std::move(system.matrix.revision);  // none comes twice
   make_pattern(model, materials, system);
+  for (std::size_t row = 0; row < revision.size(); ++row) system.matrix.revision[row] = revision[row] + 1;
   system.stored_shares = {};
   std::fill(system.is_row_stale.begin(), system.is_row_stale.end(), char{1});
 }

@@ -65,6 +65,8 @@ ARGIL_INLINE void turn_frames(const TetArrays& tets, const Real33<Lanes>& R, con
     const std::ptrdiff_t lane = t - begin;
     if (is_turned[lane] == 0.0) continue;
     tets.is_turned[t] = 1;
+    if (tets.changed_frames && tets.changed_frames->set(static_cast<std::size_t>(t)))
+      std::copy_n(tets.frame + 9 * t, 9, tets.committed_frame + 9 * t);
     for (int k = 0; k < 9; ++k) tets.frame[9 * t + k] = R.m[k][lane];
     for (int k = 0; k < 12; ++k) tets.turned_gradient[12 * t + k] = turned[k][lane];
   }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/change_marks.h"
 #include "base/lanes.h"
 #include "base/parallel.h"
 
@@ -11,18 +12,20 @@ namespace argil::solid {
 
 /// Arrays of a body of 4-node tets as the loops below read and write them, column by column.
 struct TetArrays {
-  const double* x = nullptr;          ///< 3 a node
-  const int* nodes = nullptr;         ///< 4 a tet
-  const double* gradient = nullptr;   ///< ∇Nᵢ, 12 a tet
-  bool is_linear = false;             ///< R = 1
-  double* F = nullptr;                ///< 9 a tet; may be null: not wanted
-  double* R = nullptr;                ///< 9 a tet
-  double* turned_gradient = nullptr;  ///< Q ∇Nᵢ, 12 a tet; may be null: not wanted
-  double* frame = nullptr;            ///< Q, 9 a tet: R, or an earlier one that is still near
-  double frame_tolerance = 0.0;       ///< on ‖R − Q‖; beyond it Q becomes R
-  double* strain = nullptr;           ///< ε, Mandel, 6 a tet
-  double* volume_ratio = nullptr;     ///< det F
-  char* is_turned = nullptr;          ///< set to 1 where Q changed
+  const double* x = nullptr;              ///< 3 a node
+  const int* nodes = nullptr;             ///< 4 a tet
+  const double* gradient = nullptr;       ///< ∇Nᵢ, 12 a tet
+  bool is_linear = false;                 ///< R = 1
+  double* F = nullptr;                    ///< 9 a tet; may be null: not wanted
+  double* R = nullptr;                    ///< 9 a tet
+  double* turned_gradient = nullptr;      ///< Q ∇Nᵢ, 12 a tet; may be null: not wanted
+  double* frame = nullptr;                ///< Q, 9 a tet: R, or an earlier one that is still near
+  double frame_tolerance = 0.0;           ///< on ‖R − Q‖; beyond it Q becomes R
+  double* strain = nullptr;               ///< ε, Mandel, 6 a tet
+  double* volume_ratio = nullptr;         ///< det F
+  char* is_turned = nullptr;              ///< set to 1 where Q changed
+  ChangeMarks* changed_frames = nullptr;  ///< of Q since the last commit; null: not wanted
+  double* committed_frame = nullptr;      ///< where these have changed, what Q was before
 };
 
 /// Runs of kLanes tets whose sums and least values are kept together, so that those of a large body are found

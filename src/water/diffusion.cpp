@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/check.h"
-#include "base/parallel.h"
 #include "water/implicit_system.h"
 #include "water/water.h"
 
@@ -38,16 +37,20 @@ double PoreWater::num_substeps(double step_s) const {
   return std::max(1.0, std::ceil(step_s * find_steepest() / (kLimitShare * m_stencil.monotone_step)));
 }
 
-/// body(t) for every active tet, which may write only what belongs to t.
-template <class Body>
-void PoreWater::each_active(Body body) const {
-  constexpr std::size_t kWorthwhile = 1024;  // tets, for a second thread
-  parallel_for(std::ssize(m_active), m_active.size() < kWorthwhile ? 1 : m_threads,
-               [&](std::ptrdiff_t i) { body(m_active[static_cast<std::size_t>(i)]); });
+/// Tets that hold water or are next to such.
+OrderedItems PoreWater::active_tets() const {
+  constexpr std::ptrdiff_t kWorthwhile = 1024;  // tets, for a second thread
+  OrderedItems tets(m_threads, kWorthwhile);
+  tets.restrict_to(&m_active);
+  return tets;
 }
 
 void PoreWater::diffuse_explicitly(double step_s) {
   const bool is_corrected = m_params.flux == FluxForm::corrected;
+  const OrderedItems tets = active_tets();
+  const auto each_active = [&](auto body) {
+    tets.each(std::ssize(m_active), [&](std::ptrdiff_t t) { body(static_cast<int>(t)); });
+  };
   each_active([&](int t) {
     set_flow(t, step_s);
     if (is_corrected) set_gradient(t);

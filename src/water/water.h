@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/ordered_loops.h"
 #include "water/stencil.h"
 
 namespace argil::water {
@@ -107,8 +108,7 @@ class PoreWater {
   std::pair<double, double> find_range(int tet) const;
   void limit_correction(int tet);
   double compute_let_through(int tet) const;
-  template <class Body>
-  void each_active(Body body) const;
+  OrderedItems active_tets() const;
 
   // implicit.cpp
   int diffuse_implicitly(double step_s);

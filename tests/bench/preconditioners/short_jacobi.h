@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "base/ordered_runs.h"
+#include "base/ordered_loops.h"
 #include "linear/short_blocks.h"
 
 namespace argil::bench {

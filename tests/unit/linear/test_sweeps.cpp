@@ -246,7 +246,7 @@ TEST(ShortIteration, SolvesForSomeRowsAsIfThereWereNoOthers) {
       const std::vector<int> runs = list_runs(first, last);
       const Eigen::Index begin = 24 * first;
       const Eigen::Index size = std::min(Eigen::Index{24} * last, dense.rows()) - begin;
-      iteration.visit(&runs);
+      iteration.restrict_to(&runs);
       MatrixOperator product(matrix, 1);
       Points x = Points::Zero(3, b.cols());
       ASSERT_TRUE(iteration.solve(matrix, product, b, 1e-4, 100, x).converged);

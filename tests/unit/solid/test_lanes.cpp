@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/mandel.h"
-#include "base/ordered_runs.h"
+#include "base/ordered_loops.h"
 #include "base/rng.h"
 #include "solid/element.h"
 

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <vector>
 
-#include "base/ordered_items.h"
+#include "base/ordered_loops.h"
 
 namespace argil {
 namespace {
@@ -24,7 +24,7 @@ TEST(OrderedItems, VisitsAllOrThoseOfAList) {
   visit();
   EXPECT_EQ(visits, std::vector<int>(kCount, 1));
   const std::vector<int> some = {3, 500, 999};
-  items.visit(&some);
+  items.restrict_to(&some);
   visit();
   EXPECT_EQ(std::accumulate(visits.begin(), visits.end(), 0), kCount + 3);
   for (const int i : some) EXPECT_EQ(visits[static_cast<std::size_t>(i)], 2);
@@ -49,7 +49,7 @@ TEST(OrderedItems, SumsAndFindsTheSameOnAnyNumberOfThreads) {
 TEST(OrderedItems, OfNoneAreNothing) {
   OrderedItems items(2);
   const std::vector<int> none;
-  items.visit(&none);
+  items.restrict_to(&none);
   EXPECT_EQ(items.sum(kCount, term), 0.0);
   EXPECT_EQ(items.find_largest(kCount, term), 0.0);
 }
