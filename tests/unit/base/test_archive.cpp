@@ -25,6 +25,11 @@ struct State {
   Field before;
   std::vector<int> faces;
   std::vector<Vec3> forces;
+  struct Record {
+    int vertex = -1;
+    Vec3 force = Vec3::Zero();
+  };
+  std::vector<Record> records;
 
   void exchange(Archive& archive) {
     archive.number("tick", tick);
@@ -36,6 +41,10 @@ struct State {
     archive.any_size("before", before);
     archive.list("faces", faces);
     archive.list("forces", forces);
+    archive.records("records", records, [](Record& record, auto field) {
+      field(record.vertex);
+      for (double& value : record.force) field(value);
+    });
   }
 };
 
@@ -64,6 +73,7 @@ State make_state() {
   state.before = Field::LinSpaced(7, 0.0, 1.0);
   state.faces = {3, -1, 2147483647};
   state.forces = {Vec3(1, 2, 3), Vec3(-4, 5e-300, 6)};
+  state.records = {{7, Vec3(-1, 2, 3)}, {-1, Vec3(4, 5e-300, -6)}};
   return state;
 }
 
@@ -80,6 +90,33 @@ TEST(Archive, GivesBackEveryKindOfFieldToTheBit) {
   EXPECT_EQ(is.before, was.before);
   EXPECT_EQ(is.faces, was.faces);
   EXPECT_EQ(is.forces, was.forces);
+  ASSERT_EQ(is.records.size(), was.records.size());
+  for (std::size_t i = 0; i < is.records.size(); ++i) {
+    EXPECT_EQ(is.records[i].vertex, was.records[i].vertex);
+    EXPECT_EQ(is.records[i].force, was.records[i].force);
+  }
+}
+
+TEST(Archive, LeavesHistoryAsItIsWhereItIsDropped) {
+  Snapshot snapshot;
+  const auto serialize = [](Archive& archive, double& motion, Field& last) {
+    archive.number("motion", motion);
+    const Archive::History history(archive);
+    archive.any_size("last", last);
+  };
+  double motion = 3.0;
+  Field last = Field::Constant(2, 5.0);
+  Archive saving = Archive::make_saving(snapshot);
+  serialize(saving, motion, last);
+  motion = 0.0;
+  last = Field::Constant(1, 7.0);
+  Archive dropping = Archive::make_restoring_without_history(snapshot, "run.h5");
+  serialize(dropping, motion, last);
+  EXPECT_EQ(motion, 3.0);
+  EXPECT_EQ(last, Field::Constant(1, 7.0));
+  Archive restoring = Archive::make_restoring(snapshot, "run.h5");
+  serialize(restoring, motion, last);
+  EXPECT_EQ(last, Field::Constant(2, 5.0));
 }
 
 TEST(Archive, EmptyListsComeBackEmptyAlsoWhereThereWereSome) {
@@ -89,6 +126,28 @@ TEST(Archive, EmptyListsComeBackEmptyAlsoWhereThereWereSome) {
   EXPECT_EQ(state.before.size(), 0);
   EXPECT_TRUE(state.faces.empty());
   EXPECT_TRUE(state.forces.empty());
+}
+
+std::string hash(State state) {
+  Sha256 digest;
+  Archive archive = Archive::make_hashing(digest);
+  state.exchange(archive);
+  return digest.hex_digest();
+}
+
+TEST(Archive, HashChangesWithEveryFieldOfASnapshotAndWithNothingElse) {
+  const Snapshot whole = save(make_state());
+  const std::string of_whole = hash(make_state());
+  EXPECT_EQ(hash(restore(whole)), of_whole);
+  for (const auto& [name, value] : whole) {
+    if (value.size() == 0) continue;
+    Snapshot other = whole;
+    other[name](0) = name == "is_pressed" ? 0.0 : 0.75 - other[name](0);
+    EXPECT_NE(hash(restore(other)), of_whole) << name;
+  }
+  State longer = make_state();
+  longer.faces.push_back(0);
+  EXPECT_NE(hash(longer), of_whole);
 }
 
 TEST(Archive, RefusesASnapshotOfAnotherStateByTheFieldsName) {

@@ -28,5 +28,18 @@ TEST(Sha256, MatchesThePublishedDigestOfAMillionLettersAddedInUnevenPieces) {
   EXPECT_EQ(hash.hex_digest(), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
+TEST(Sha256, ProcessorsInstructionsGiveThePortableDigestForAnyLengthAndAnySplit) {
+  std::string text;
+  for (int i = 0; i < 500; ++i) text += static_cast<char>(37 * i % 251);
+  for (std::size_t length = 0; length < text.size(); length += 7) {
+    Sha256 portable(Sha256::Code::portable);
+    const std::string whole = portable.add(text.substr(0, length)).hex_digest();
+    const std::size_t split = length / 3;
+    Sha256 fastest;
+    fastest.add(text.substr(0, split)).add(text.substr(split, length - split));
+    EXPECT_EQ(fastest.hex_digest(), whole) << length;
+  }
+}
+
 }  // namespace
 }  // namespace argil
