@@ -56,8 +56,14 @@ class OrderedItems : public RestrictedLoop {
   /// body(i) for every item.
   template <class Body>
   void each(std::ptrdiff_t count, Body body) const {
-    const std::ptrdiff_t items = size(count);
-    parallel_for(items, items < m_least_shared ? 1 : m_threads, [&](std::ptrdiff_t i) { body(at(i)); });
+    const std::ptrdiff_t num_items = size(count);
+    const int threads = num_items < m_least_shared ? 1 : m_threads;
+    if (!m_list) {
+      parallel_for(num_items, threads, body);
+      return;
+    }
+    const int* items = m_list->data();
+    parallel_for(num_items, threads, [items, &body](std::ptrdiff_t i) { body(items[i]); });
   }
   /// Σ term(i).
   template <class Term>

@@ -190,7 +190,7 @@ struct ContactDetector::Impl {
   // press.cpp
   void press_vertices(const Motion& motion, Contacts& out);
   void add_tasks(const VertexFaceMotion& m);
-  void settle(VertexTask& task, Worker& worker) const;
+  void resolve(VertexTask& task, Worker& worker) const;
   void press_edges(const Motion& m, Contacts& out);
   double compute_uncovered_share(const EdgePair& pair, double depth) const;
   bool is_edge_pair_inside(const EdgePair& pair, const Motion& m, double t);

@@ -192,7 +192,7 @@ void ContactDetector::Impl::press_vertices(const Motion& motion, Contacts& out) 
     side.pressed.clear();
     side.inside.clear();
   }
-  each_item(tasks.size(), [&](Worker& worker, std::size_t i) { settle(tasks[i], worker); });
+  each_item(tasks.size(), [&](Worker& worker, std::size_t i) { resolve(tasks[i], worker); });
   for (const VertexTask& task : tasks) {
     VertexSide& side = task.motion->side;
     if (task.inside) side.inside.push_back(task.vertex);
@@ -229,7 +229,7 @@ void ContactDetector::Impl::add_tasks(const VertexFaceMotion& m) {
 }
 
 /// What becomes of a vertex; changes nothing that belongs to another.
-void ContactDetector::Impl::settle(VertexTask& task, Worker& worker) const {
+void ContactDetector::Impl::resolve(VertexTask& task, Worker& worker) const {
   const VertexFaceMotion& m = *task.motion;
   const int v = task.vertex;
   int face = task.face;

@@ -44,7 +44,7 @@ bool ChatterWatch::trembles(const Power& stretch) const {
   return stretch.above > m_limit * m_limit * stretch.all && stretch.all > touch;
 }
 
-void ChatterWatch::see(const Vec3& force) {
+void ChatterWatch::add(const Vec3& force) {
   if (m_stretch_ticks == 0) return;
   m_stretch.above += m_filter[1].pass(m_filter[0].pass(force)).squaredNorm();
   m_stretch.all += force.squaredNorm();
@@ -70,7 +70,7 @@ double ChatterWatch::share() const {
   return m_row.all > 0.0 ? std::sqrt(m_row.above / m_row.all) : 0.0;
 }
 
-void ChatterWatch::exchange_state(Archive& archive) {
+void ChatterWatch::serialize(Archive& archive) {
   archive.array("hand/chatter_filter_first", m_filter[0].memory);
   archive.array("hand/chatter_filter_second", m_filter[1].memory);
   archive.number("hand/chatter_above", m_stretch.above);

@@ -22,13 +22,13 @@ class ChatterWatch {
   ChatterWatch(double limit, double period);
 
   /// Takes the force [N] of the next tick.
-  void see(const Vec3& force);
+  void add(const Vec3& force);
   /// Does the hand chatter, by what was seen so far?
   bool is_chattering() const;
   /// Rms above 50 Hz over rms of the stretches that tremble now, in a row.
   double share() const;
 
-  void exchange_state(Archive& archive);
+  void serialize(Archive& archive);
 
  private:
   /// Two poles of the filter, in the transposed direct form II.

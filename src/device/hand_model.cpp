@@ -100,7 +100,7 @@ DeviceSample HandModel::advance(const Vec3& force) {
   return now;
 }
 
-void HandModel::exchange_state(Archive& archive) {
+void HandModel::serialize(Archive& archive) {
   archive.number("hand_model/tick", m_tick);
   archive.array("hand_model/x", m_x);
   archive.array("hand_model/v", m_v);

@@ -39,7 +39,7 @@ class HandModel {
   DeviceSample sample() const;  ///< now
   double time() const;          ///< since the start [s]
   /// All that advance takes from earlier calls.
-  void exchange_state(Archive& archive);
+  void serialize(Archive& archive);
 
  private:
   DeviceSample intend() const;

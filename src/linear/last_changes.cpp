@@ -164,7 +164,7 @@ void LastChanges::roll_back() {
   m_changed_runs.clear();
 }
 
-void LastChanges::exchange_state(Archive& archive, const std::string& prefix) {
+void LastChanges::serialize(Archive& archive, const std::string& prefix) {
   for (int k = 0; k < kKept; ++k) archive.list(prefix + "last_change_" + std::to_string(k), m_d[k]);
   archive.number(prefix + "last_scale", m_use.scale);
   archive.number(prefix + "rest", m_use.rest);

@@ -35,7 +35,7 @@ class LastChanges {
   void keep(const OrderedRuns& runs, std::ptrdiff_t num_rows, const float* x, double scale);
   /// Forgets rows begin … end−1.
   void clear(std::ptrdiff_t begin, std::ptrdiff_t end);
-  void exchange_state(Archive& archive, const std::string& prefix);
+  void serialize(Archive& archive, const std::string& prefix);
 
   /// Solves since the last commit count from now on; or they never were.
   void commit();

@@ -78,8 +78,8 @@ void ShortIteration::add_to(Points& x, double scale) const {
   });
 }
 
-void ShortIteration::exchange_state(Archive& archive, const std::string& prefix) {
-  m_last.exchange_state(archive, prefix);
+void ShortIteration::serialize(Archive& archive, const std::string& prefix) {
+  m_last.serialize(archive, prefix);
   if (archive.is_restoring()) m_is_changed = m_has_solved_all = true;
 }
 

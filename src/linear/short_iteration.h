@@ -32,7 +32,7 @@ class ShortIteration {
   /// From now on rows of these runs alone, as if there were no others. Null: all.
   void restrict_to(const std::vector<int>* runs);
   /// What the next solve takes from the last one.
-  void exchange_state(Archive& archive, const std::string& prefix);
+  void serialize(Archive& archive, const std::string& prefix);
   /// Solves since the last commit count from now on; or they never were.
   void commit() { m_last.commit(); }
   void roll_back();

@@ -50,7 +50,7 @@ class KnownFactor {
       m_factorised.resize(3, 0);
     return is_positive;
   }
-  void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) {
+  void serialize(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) {
     archive.any_size(prefix + "factorised", m_factorised);
     if (archive.is_restoring()) make_anew(pattern);
   }
@@ -96,9 +96,9 @@ class DirectSolver final : public Solver {
     return {residual <= kUsable, 0, residual};  // a NaN is not
   }
 
-  void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
-    Solver::exchange_state(archive, prefix, pattern);
-    m_known.exchange_state(archive, prefix, pattern);
+  void serialize(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
+    Solver::serialize(archive, prefix, pattern);
+    m_known.serialize(archive, prefix, pattern);
   }
   void commit() override {
     Solver::commit();
@@ -145,8 +145,8 @@ class JacobiIteration {
     if (m_is_short) m_short.restrict_to(runs);
     return m_is_short;
   }
-  void exchange_state(Archive& archive, const std::string& prefix) {
-    if (m_is_short) m_short.exchange_state(archive, prefix);
+  void serialize(Archive& archive, const std::string& prefix) {
+    if (m_is_short) m_short.serialize(archive, prefix);
   }
   void commit() { m_short.commit(); }
   void roll_back() { m_short.roll_back(); }
@@ -172,9 +172,9 @@ class JacobiSolver final : public Solver {
   }
   void prepare(const BlockMatrix& pattern) override { m_iteration.prepare(pattern); }
   bool restrict_to(const std::vector<int>* runs) override { return m_iteration.restrict_to(runs); }
-  void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
-    Solver::exchange_state(archive, prefix, pattern);
-    m_iteration.exchange_state(archive, prefix);
+  void serialize(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
+    Solver::serialize(archive, prefix, pattern);
+    m_iteration.serialize(archive, prefix);
   }
   void commit() override {
     Solver::commit();
@@ -245,13 +245,13 @@ class KeptFactorSolver final : public Solver {
     return m_is_part;
   }
 
-  void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
-    Solver::exchange_state(archive, prefix, pattern);
+  void serialize(Archive& archive, const std::string& prefix, const BlockMatrix& pattern) override {
+    Solver::serialize(archive, prefix, pattern);
     archive.number(prefix + "has_factor", m_use.has_factor);
-    if (!m_use.has_factor) m_jacobi.exchange_state(archive, prefix);
+    if (!m_use.has_factor) m_jacobi.serialize(archive, prefix);
     archive.number(prefix + "last_iterations", m_use.last_iterations);
     archive.number(prefix + "is_fresh", m_use.is_fresh);
-    m_known.exchange_state(archive, prefix, pattern);
+    m_known.serialize(archive, prefix, pattern);
   }
   void commit() override {
     Solver::commit();
@@ -298,7 +298,7 @@ class KeptFactorSolver final : public Solver {
 
 }  // namespace
 
-void Solver::exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix&) {
+void Solver::serialize(Archive& archive, const std::string& prefix, const BlockMatrix&) {
   archive.number(prefix + "solves", m_cost.solves);
   archive.number(prefix + "iterations", m_cost.iterations);
   archive.number(prefix + "factorisations", m_cost.factorisations);

@@ -70,7 +70,7 @@ class Solver {
 
   /// What the next solve takes from the last ones, under names that begin with `prefix`. `pattern`: any
   /// matrix with the pattern of those to come.
-  virtual void exchange_state(Archive& archive, const std::string& prefix, const BlockMatrix& pattern);
+  virtual void serialize(Archive& archive, const std::string& prefix, const BlockMatrix& pattern);
 
   /// Solves since the last commit count from now on; or they never were, and the next one begins with what
   /// the first of them began with.

@@ -158,7 +158,7 @@ void Session::make_step() {
   step.record = body.make_record();
   const int period = m_simulation.params().rates.frame_period_ticks;
   if (sim::passes_multiple(ticks_before, body.hand().ticks, period))
-    step.frame = std::make_unique<sim::Frame>(body.make_frame(body.hand()));
+    step.frame = std::make_unique<sim::Frame>(body.make_frame_of_step());
   // Where the writing thread is behind, the physics is late, not the hand.
   while (!m_steps.push(std::move(step)) && !m_is_abandoned.load(std::memory_order_relaxed))
     sleep_until(monotonic_now() + kLook);

@@ -17,8 +17,8 @@ device::DeviceSample HandMotion::advance(Tick k, const Vec3& felt) {
   return sample;
 }
 
-void HandMotion::exchange_state(Archive& archive) {
-  if (m_hand) m_hand->exchange_state(archive);
+void HandMotion::serialize(Archive& archive) {
+  if (m_hand) m_hand->serialize(archive);
 }
 
 }  // namespace argil::run

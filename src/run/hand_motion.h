@@ -15,7 +15,7 @@ class HandMotion {
   /// The hand at the end of tick k, one after the last call's; `felt`: what the device renders meanwhile [N].
   device::DeviceSample advance(Tick k, const Vec3& felt);
   /// Adds to a checkpoint what advance takes from earlier calls, or takes it back.
-  void exchange_state(Archive& archive);
+  void serialize(Archive& archive);
 
  private:
   const scenario::Scenario& m_scenario;

@@ -38,7 +38,7 @@ class StageClock final : public sim::StageObserver {
 };
 
 /// Appends what a tick gave.
-void append_records(const sim::Simulation& simulation, FullModel* full, output::ResultFile& file) {
+void append_records(sim::Simulation& simulation, FullModel* full, output::ResultFile& file) {
   file.append(simulation.haptic_record());
   if (full) full->compare(simulation);
   if (simulation.physics_due_last_tick()) {
@@ -69,7 +69,7 @@ std::optional<Failure> run_ticks(const scenario::Scenario& s, Tick num_ticks, Ha
     if ((is_due || is_interrupted()) && k < num_ticks) {
       Snapshot snapshot = simulation.take_snapshot();
       Archive archive = Archive::make_saving(snapshot);
-      hand.exchange_state(archive);
+      hand.serialize(archive);
       if (full) full->save(snapshot);
       file.write_checkpoint(snapshot);
       last_checkpoint = k;

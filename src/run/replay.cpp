@@ -10,12 +10,12 @@ namespace argil::run {
 namespace {
 
 /// After a step of the body: as the physics thread of the session did.
-void append_step(Tick ticks_before, const sim::Simulation& simulation, output::ResultFile& file) {
-  const sim::BodySide& body = simulation.body_side();
+void append_step(Tick ticks_before, sim::Simulation& simulation, output::ResultFile& file) {
+  sim::BodySide& body = simulation.body_side();
   file.append(body.make_record());
   const int period = simulation.params().rates.frame_period_ticks;
   if (sim::passes_multiple(ticks_before, body.hand().ticks, period))
-    file.append(body.make_frame(body.hand()));
+    file.append(body.make_frame_of_step());
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ sim::Params session_params(const output::SessionHead& head, sim::Params params) 
   return params;
 }
 
-void end_session(const sim::Simulation& simulation, output::ResultFile& file) {
+void end_session(sim::Simulation& simulation, output::ResultFile& file) {
   const bool is_in_last_frame =
       simulation.frame_due_last_tick() && simulation.body_side().hand().ticks == simulation.clock().tick;
   if (!is_in_last_frame) file.append(simulation.make_frame());

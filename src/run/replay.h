@@ -20,7 +20,7 @@ std::optional<output::Session> find_session(const std::string& trace, const scen
 sim::Params session_params(const output::SessionHead& head, sim::Params params);
 
 /// The last frame and the hash of all, when the hand has ended and the body made its last step.
-void end_session(const sim::Simulation& simulation, output::ResultFile& file);
+void end_session(sim::Simulation& simulation, output::ResultFile& file);
 
 /// Makes the session again in one thread: the same samples, each physics step with the same ticks' contacts
 /// and seen in the same tick. Writes the same records, frames and hashes. Returns the failure in which it

@@ -170,7 +170,7 @@ int run(const RunOptions& options) {
     simulation.restore(from.state, result);
     if (full) full->restore(from.state, result);
     Archive archive = Archive::make_restoring(from.state, result);
-    hand.exchange_state(archive);
+    hand.serialize(archive);
     from.state.clear();
   }
   const Tick first = simulation.clock().tick;

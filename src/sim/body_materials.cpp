@@ -76,7 +76,7 @@ void BodyMaterials::roll_back() {
 }
 
 void BodyMaterials::serialize(Archive& archive) {
-  archive.array("water/collected", m_saturation);
+  archive.array("materials/saturation", m_saturation);
   if (archive.is_restoring())
     for (int t = 0; t < m_body.mesh.num_tets(); ++t) set(t, m_saturation(t));
 }

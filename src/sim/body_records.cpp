@@ -59,28 +59,16 @@ Frame BodySide::make_frame(const HandPose& hand) const {
       embed::compute_region_of_influence(frame.skin_position, hand.tool.position, m_params.kernel.radius,
                                          frame.skin_influence);
   }
-  frame.state_hash = make_hash(hand);
   return frame;
 }
 
-std::string BodySide::make_hash(const HandPose& hand) const {
+Frame BodySide::make_frame_of_step() {
+  Frame frame = make_frame(m_state.hand);
   Sha256 hash;
-  const auto add = [&hash](const auto& array) {
-    hash.add(array.data(), static_cast<std::size_t>(array.size()));
-  };
-  const double tick = static_cast<double>(hand.ticks);
-  hash.add(&tick, 1);
-  add(hand.tool.position);
-  add(hand.tool.orientation.coeffs());
-  add(hand.felt.force);
-  add(hand.felt.torque);
-  add(m_state.solid.x);
-  add(m_state.solid.v);
-  add(m_state.solid.plastic_strain);
-  add(m_state.solid.x_before);
-  add(m_state.solid.v_before);
-  add(m_water.saturation());
-  return hash.hex_digest();
+  Archive archive = Archive::make_hashing(hash);
+  serialize(archive);
+  frame.state_hash = hash.hex_digest();
+  return frame;
 }
 
 }  // namespace argil::sim

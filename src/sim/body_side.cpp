@@ -82,6 +82,7 @@ void BodySide::commit() {
   m_committed = m_state;
   if (m_has_moved_water) m_water.commit();
   m_materials.commit();
+  m_flow.commit();
   m_economy.commit();
   m_has_moved_water = m_has_begun_solid = false;
 }
@@ -90,6 +91,7 @@ void BodySide::roll_back() {
   static_cast<BodyProgress&>(m_state) = m_committed;
   if (m_has_moved_water) m_water.roll_back();
   m_materials.roll_back();
+  m_flow.roll_back();
   m_economy.roll_back();
   const StepStatus status = m_solid.roll_back(m_state.solid, tick());
   ARGIL_ASSERT(status.is_ok());

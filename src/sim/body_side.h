@@ -43,9 +43,11 @@ class BodySide {
   const HandPose& hand() const { return m_state.hand; }         ///< of the last step
   const Points& x_before() const { return m_solid.x_start(); }  ///< nodes before the last move
   BodyBetweenSteps between_steps(Tick tick);
-  PhysicsRecord make_record() const;                  ///< of the last step
-  Frame make_frame(const HandPose& hand) const;       ///< the body as it is now, with the hand there
-  std::string make_hash(const HandPose& hand) const;  ///< SHA-256 of all that a step changes, and the hand
+  PhysicsRecord make_record() const;             ///< of the last step
+  Frame make_frame(const HandPose& hand) const;  ///< the body as it is now, with the hand there
+  /// The same with the hand of the last step, and the hash of the body's side alone: where the hand goes on
+  /// meanwhile.
+  Frame make_frame_of_step();
 
   void serialize(Archive& archive);
   void observe_stages(StageObserver* observer) { m_observer = observer; }

@@ -124,7 +124,7 @@ StepStatus BodySide::update_kinematics() {
 void BodySide::flow() {
   const StageScope scope(m_observer, Stage::plasticity);
   m_state.plastic_dissipation += m_flow.apply(m_state.solid.plastic_strain);
-  m_solid.settle_region(m_state.solid, m_flow.is_flowing());
+  m_solid.sleep_slow_runs(m_state.solid, m_flow.is_flowing());
 }
 
 void BodySide::find_surface(StepResult& result) {

@@ -214,7 +214,9 @@ void LocalCompliance::find_places(const ContactSurface& surface) {
 }
 
 void LocalCompliance::serialize(Archive& archive, const ContactSurface& surface) {
-  ARGIL_ASSERT(m_acting.empty());
+  archive.records("compliance/acting", m_acting, [](Acting& acting, auto field) {
+    list_spring_fields(acting.spring, field), field(acting.share), field(acting.group);
+  });
   archive.list("compliance/known", m_state.known);
   archive.list("compliance/force", m_state.force);
   archive.list("compliance/held", m_state.held);
@@ -222,7 +224,8 @@ void LocalCompliance::serialize(Archive& archive, const ContactSurface& surface)
   archive.number("compliance/guess_factor", m_state.guess_factor);
   archive.number("compliance/next_renewed", m_state.next_renewed);
   const auto num_columns = 3 * static_cast<Eigen::Index>(m_state.known.size());
-  Eigen::MatrixXd columns = m_columns.leftCols(archive.is_restoring() ? 0 : num_columns);
+  Eigen::MatrixXd columns(m_displacement.size(), archive.is_restoring() ? 0 : num_columns);
+  if (columns.cols() > 0) columns = m_columns.leftCols(num_columns);
   archive.any_size("compliance/columns", columns);
   if (!archive.is_restoring()) return;
   m_columns = columns;

@@ -18,6 +18,15 @@ struct ContactSpring {
   Vec3 point = Vec3::Zero();   ///< where it acts [m]
 };
 
+/// Every number of a spring, for an archive.
+inline constexpr auto list_spring_fields = [](ContactSpring& s, auto field) {
+  for (int& vertex : s.vertex) field(vertex);
+  for (double& weight : s.weight) field(weight);
+  for (double& value : s.normal) field(value);
+  field(s.stiffness), field(s.force);
+  for (double& value : s.point) field(value);
+};
+
 /// The body as the last physics step left it.
 struct BodyBetweenSteps {
   solid::Solid& solid;
@@ -62,15 +71,15 @@ class LocalCompliance {
   double compute_deflection(const ContactSurface& surface, const ContactSpring& spring) const;
   void commit();
   void roll_back(const ContactSurface& surface);
-  /// All that press takes from earlier ticks; right after begin_frame, or before the first.
+  /// All that press takes from earlier ticks.
   void serialize(Archive& archive, const ContactSurface& surface);
   int num_known() const { return static_cast<int>(m_state.known.size()); }
 
  private:
   struct Acting {
     ContactSpring spring;
-    double share;
-    int group;
+    double share = 0.0;
+    int group = -1;
   };
   /// What ticks and steps change, but for the columns.
   struct State {

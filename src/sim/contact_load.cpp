@@ -27,6 +27,30 @@ void ContactLoad::cut_to(const Mark& mark) {
   last_detection = mark.last_detection;
 }
 
+void ContactLoad::serialize(Archive& archive) {
+  const auto numbers = [](auto& list, auto field) {
+    for (auto& value : list) field(value);
+  };
+  archive.array("load/centre", patch.centre);
+  archive.number("load/weight", patch.weight);
+  archive.number("load/is_pressed", patch.is_pressed);
+  archive.number("load/is_touched", patch.is_touched);
+  archive.number("load/last_detection", last_detection);
+  archive.records("load/forces", forces, [&](SurfaceForce& f, auto field) {
+    numbers(f.vertex, field), numbers(f.weight, field), numbers(f.force, field);
+  });
+  archive.records("load/stiffness", stiffness, [&](solid::PointStiffness& s, auto field) {
+    numbers(s.vertex, field), numbers(s.weight, field), numbers(s.normal, field), numbers(s.force, field);
+    field(s.stiffness), field(s.group), field(s.counts);
+  });
+  archive.records("load/levers", levers, [&](ContactLever& lever, auto field) {
+    numbers(lever.point, field), field(lever.force_at_rest);
+  });
+  archive.records("load/groups", groups, [&](ContactGroup& group, auto field) {
+    numbers(group.vertex, field), field(group.first), field(group.pieces);
+  });
+}
+
 LoadCollector::LoadCollector(const Params& params, const ContactSurface& surface,
                              const solid::Elements& elements)
     : m_params(params),

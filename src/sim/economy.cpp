@@ -138,17 +138,14 @@ void Economy::roll_back() {
   m_slow_steps = m_committed_slow_steps;
 }
 
-void Economy::serialize_rest(Archive& archive) {
+void Economy::serialize(Archive& archive) {
   archive.number("solid/slow_steps", m_slow_steps);
   archive.number("solid/rest_energy", m_rest_strain.elastic_energy);
   archive.number("solid/rest_plastic_strain", m_rest_strain.largest_plastic_strain);
-}
-
-void Economy::serialize(Archive& archive) {
   if (m_fidelity.is_full()) return;
   archive.array("fidelity/held_back", m_held_back);
   archive.number("fidelity/held_back_squares", m_held_back_squares);
-  m_fidelity.exchange_state(archive);
+  m_fidelity.serialize(archive);
 }
 
 }  // namespace argil::sim

@@ -34,7 +34,6 @@ class Economy {
   void commit();
   void roll_back();
   void serialize(Archive& archive);
-  void serialize_rest(Archive& archive);
 
  private:
   void fall_asleep(BodyState& state);

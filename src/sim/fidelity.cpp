@@ -23,9 +23,9 @@ void Fidelity::begin_step(const Vec3& felt_force) {
 }
 
 void Fidelity::find_reach(const Points& x, const Points& rest, const OrderedItems& nodes) {
-  const auto way = [&](std::ptrdiff_t n) { return (x.col(n) - rest.col(n)).squaredNorm(); };
-  const double squares = nodes.sum(x.cols(), way);
-  const double largest = nodes.find_largest(x.cols(), way);
+  const auto squared_displacement = [&](std::ptrdiff_t n) { return (x.col(n) - rest.col(n)).squaredNorm(); };
+  const double squares = nodes.sum(x.cols(), squared_displacement);
+  const double largest = nodes.find_largest(x.cols(), squared_displacement);
   // As long as the hand has moved nothing, all nodes may go with it.
   const auto count = static_cast<double>(x.cols());
   m_reach = kSafety * std::sqrt(largest > 0.0 ? squares / largest : count);
@@ -70,7 +70,7 @@ void Fidelity::set_made(bool is_solved, double imbalance, double held_back) {
   m_record.estimate = m_reach * m_stiffening * imbalance + held_back;
 }
 
-void Fidelity::exchange_state(Archive& archive) {
+void Fidelity::serialize(Archive& archive) {
   archive.array("fidelity/felt_force", m_felt_force);
   archive.number("fidelity/reach", m_reach);
   archive.number("fidelity/large_strain", m_record.large_strain);

@@ -73,7 +73,7 @@ class Fidelity {
 
   void set_large_strain(double mean_strain) { m_record.large_strain = mean_strain; }
   const FidelityRecord& record() const { return m_record; }
-  void exchange_state(Archive& archive);
+  void serialize(Archive& archive);
 
  private:
   double lasting_share() const;

@@ -139,7 +139,7 @@ void HandSide::hand_over(ContactLoad& load) {
 
 /// The last force, old or new, less what would generate energy, through the device's limits.
 void HandSide::render(device::HandFeed feed) {
-  m_state.chatter.see(m_state.hand_force);
+  m_state.chatter.add(m_state.hand_force);
   const device::Wrench felt{m_state.hand_force, m_state.hand_torque};
   device::Wrench sent = felt;
   if (m_params.passivity == device::Passivity::time_domain)

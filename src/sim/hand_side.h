@@ -63,10 +63,6 @@ class HandSide {
   void place_surface(const Points& x);
   /// Does the tool touch or lie in a body whose surface is at x?
   bool overlaps(const Points& x) const { return m_detector.overlaps(x, m_state.tool); }
-  /// Is every result received, and has nothing been gathered since? Only then is there a state to keep.
-  bool is_between_steps() const {
-    return m_state.ticks_since_step == 0 && m_collector.load().stiffness.empty();
-  }
 
   const HandState& state() const { return m_state; }
   const Clock& clock() const { return m_state.clock; }
@@ -78,8 +74,6 @@ class HandSide {
   }
   HapticRecord make_record() const;  ///< of the last tick
   void serialize(Archive& archive);
-  /// After a return, with the body as it has returned.
-  void restore_surface();
   void observe_stages(StageObserver* observer) { m_observer = observer; }
 
  private:

@@ -20,7 +20,9 @@ class PlasticFlow {
   bool is_anywhere() const { return m_is_anywhere; }  ///< in the last step
   /// Of each run of kLanes points, in the last step.
   const std::vector<char>& is_flowing() const { return m_is_flowing; }
-  void serialize(Archive& archive) { archive.number("fidelity/flows", m_is_anywhere); }
+  void commit() { m_was_anywhere = m_is_anywhere; }
+  void roll_back() { m_is_anywhere = m_was_anywhere; }
+  void serialize(Archive& archive) { archive.number("flow/is_anywhere", m_is_anywhere); }
 
  private:
   double apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain);
@@ -32,7 +34,7 @@ class PlasticFlow {
   solid::Solid& m_solid;
   bool m_has_additive_split;
   bool m_is_driven;  // by the stress, not the strain
-  bool m_is_anywhere = false;
+  bool m_is_anywhere = false, m_was_anywhere = false;
   std::vector<char> m_is_flowing;
 };
 

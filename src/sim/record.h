@@ -56,7 +56,7 @@ struct Frame {
   Points skin_position;        ///< 3×k, empty without a skin
   Field skin_saturation;       ///< k
   Field skin_influence;        ///< k, region of influence
-  std::string state_hash;      ///< SHA-256 of the whole state
+  std::string state_hash;  ///< SHA-256 of all that a tick, or in a session a step, takes from earlier ones
 };
 
 }  // namespace argil::sim

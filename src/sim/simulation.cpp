@@ -51,6 +51,12 @@ StepStatus Simulation::deliver(HandSide& hand) {
   return m_step_status;
 }
 
+Frame Simulation::make_frame() {
+  Frame frame = m_body_side.make_frame(m_hand.pose());
+  frame.state_hash = state_hash();
+  return frame;
+}
+
 StepStatus Simulation::find_equilibrium() {
   ARGIL_TRY(m_body_side.find_equilibrium());
   m_hand.place_surface(surface_now());

@@ -52,16 +52,18 @@ class Simulation final : private BodySteps {
 
   HapticRecord haptic_record() const { return m_hand.make_record(); }         ///< of the last tick
   PhysicsRecord physics_record() const { return m_body_side.make_record(); }  ///< of the last physics step
-  Frame make_frame() const { return m_body_side.make_frame(m_hand.pose()); }  ///< the body as it is now
-  /// SHA-256 of everything a tick changes.
-  std::string state_hash() const { return m_body_side.make_hash(m_hand.pose()); }
+  Frame make_frame();                                                         ///< the body as it is now
+  /// SHA-256 of all that a tick takes from earlier ones: from equal hashes, equal samples lead to equal bits.
+  std::string state_hash();
 
-  /// All that a tick takes from earlier ones: bits after a return are those without. Only after a physics
-  /// step, or before the first tick.
+  /// All that a tick takes from earlier ones: bits after a return are those without.
   Snapshot take_snapshot();
   /// Goes on from `snapshot`, taken from a simulation of the same body, tool and parameters. `origin` is what
   /// messages call it. Throws IoError when it does not fit.
   void restore(const Snapshot& snapshot, const std::string& origin);
+  /// The same without solver history, as where the mesh changes: goes on to the same motion, but for the
+  /// tolerance of the solves.
+  void restore_without_history(const Snapshot& snapshot, const std::string& origin);
 
   void observe_stages(StageObserver* observer) {
     m_hand.observe_stages(observer);

@@ -6,7 +6,6 @@
 namespace argil::sim {
 
 Snapshot Simulation::take_snapshot() {
-  ARGIL_ASSERT(m_hand.is_between_steps(), clock().tick);
   Snapshot snapshot;
   Archive archive = Archive::make_saving(snapshot);
   serialize(archive);
@@ -16,7 +15,18 @@ Snapshot Simulation::take_snapshot() {
 void Simulation::restore(const Snapshot& snapshot, const std::string& origin) {
   Archive archive = Archive::make_restoring(snapshot, origin);
   serialize(archive);
-  m_hand.restore_surface();
+}
+
+void Simulation::restore_without_history(const Snapshot& snapshot, const std::string& origin) {
+  Archive archive = Archive::make_restoring_without_history(snapshot, origin);
+  serialize(archive);
+}
+
+std::string Simulation::state_hash() {
+  Sha256 hash;
+  Archive archive = Archive::make_hashing(hash);
+  serialize(archive);
+  return hash.hex_digest();
 }
 
 void Simulation::serialize(Archive& archive) {
@@ -27,6 +37,8 @@ void Simulation::serialize(Archive& archive) {
 void HandSide::serialize(Archive& archive) {
   archive.number("tick", m_state.clock.tick);
   archive.number("steps_begun", m_state.steps_begun);
+  archive.number("ticks_since_step", m_state.ticks_since_step);
+  archive.number("has_felt_anew", m_state.has_felt_anew);
   archive.array("tool/position", m_state.tool.position);
   archive.quaternion("tool/orientation", m_state.tool.orientation);
   archive.number("tool/mode", m_state.mode);
@@ -35,35 +47,31 @@ void HandSide::serialize(Archive& archive) {
   serialize_contacts(archive);
   archive.number("ledger/port_energy", m_state.port_energy);
   archive.number("ledger/passivity_energy", m_state.passivity_energy);
-}
-
-void HandSide::restore_surface() {
-  m_touched.restore(m_body.state().solid.x);
-  commit();
+  if (archive.is_restoring()) commit();
 }
 
 /// Kinematics are a function of what was saved and are found again.
 void BodySide::serialize(Archive& archive) {
   archive.number("steps", m_state.steps);
-  archive.number("tick_of_step", m_state.hand.ticks);
-  archive.array("solid/x", m_state.solid.x);
-  archive.array("solid/v", m_state.solid.v);
-  archive.array("solid/plastic_strain", m_state.solid.plastic_strain);
-  archive.any_size("solid/x_before", m_state.solid.x_before);
-  archive.any_size("solid/v_before", m_state.solid.v_before);
-  archive.number("solid/is_at_rest", m_state.is_at_rest);
-  m_economy.serialize_rest(archive);
-  m_solid.exchange_state(archive);
-  serialize_water(archive);
+  archive.number("step/tick", m_state.hand.ticks);
+  archive.array("step/tool_position", m_state.hand.tool.position);
+  archive.quaternion("step/tool_orientation", m_state.hand.tool.orientation);
+  archive.array("step/felt_force", m_state.hand.felt.force);
+  archive.array("step/felt_torque", m_state.hand.felt.torque);
   archive.number("ledger/plastic_dissipation", m_state.plastic_dissipation);
   archive.number("ledger/contact_work", m_state.contact_work);
   archive.number("ledger/energy_given", m_state.energy_given);
+  archive.number("solid/is_at_rest", m_state.is_at_rest);
+  serialize_water(archive);
   m_materials.serialize(archive);
-  m_solid.exchange_frames(archive);
+  m_solid.serialize(archive, m_state.solid);
   m_flow.serialize(archive);
   m_economy.serialize(archive);
   if (!archive.is_restoring()) return;
-  const StepStatus status = m_solid.restore_kinematics(m_state.solid.x, m_state.hand.ticks);
+  if (!archive.keeps_history()) m_solid.wake_all();
+  const StepStatus status = archive.keeps_history()
+                                ? m_solid.restore_kinematics(m_state.solid.x, m_state.hand.ticks)
+                                : m_solid.update_kinematics(m_state.solid.x, m_state.hand.ticks);
   ARGIL_ASSERT(status.is_ok());
   m_solid.commit(m_state.solid);
   commit();
@@ -82,7 +90,7 @@ void HandSide::serialize_contacts(Archive& archive) {
   archive.array("hand/gated_force", m_state.gated.force);
   archive.array("hand/gated_torque", m_state.gated.torque);
   archive.number("hand/gate_events", m_state.gated.events);
-  m_state.chatter.exchange_state(archive);
+  m_state.chatter.serialize(archive);
   Tick gate_count = m_state.gate.count();
   Vec3 gate_force = m_state.gate.last_force();
   archive.number("hand/gate_count", gate_count);
@@ -105,6 +113,7 @@ void HandSide::serialize_contacts(Archive& archive) {
   archive.list("contact/tool_edge", tool_edge);
   archive.list("contact/body_edge", body_edge);
   archive.list("contact/edge_stretch", inside.edge_stretch);
+  m_collector.serialize(archive);
   serialize_springs(archive);
   m_compliance.serialize(archive, m_surface);
   if (!archive.is_restoring()) return;
@@ -114,36 +123,8 @@ void HandSide::serialize_contacts(Archive& archive) {
   m_detector.restore(inside);
 }
 
-/// A spring is a column: vertices, weights, normal, stiffness, force, point.
 void HandSide::serialize_springs(Archive& archive) {
-  Eigen::Matrix<double, 14, Eigen::Dynamic> table(14, m_springs.size());
-  for (std::size_t i = 0; i < m_springs.size(); ++i) {
-    const ContactSpring& s = m_springs[i];
-    auto column = table.col(static_cast<Eigen::Index>(i));
-    for (std::size_t k = 0; k < 3; ++k) {
-      column(static_cast<Eigen::Index>(k)) = s.vertex[k];
-      column(static_cast<Eigen::Index>(3 + k)) = s.weight[k];
-    }
-    column.segment<3>(6) = s.normal;
-    column(9) = s.stiffness;
-    column(10) = s.force;
-    column.segment<3>(11) = s.point;
-  }
-  archive.any_size("contact/springs", table);
-  if (!archive.is_restoring()) return;
-  m_springs.assign(static_cast<std::size_t>(table.cols()), {});
-  for (std::size_t i = 0; i < m_springs.size(); ++i) {
-    const auto column = table.col(static_cast<Eigen::Index>(i));
-    ContactSpring& s = m_springs[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      s.vertex[k] = static_cast<int>(column(static_cast<Eigen::Index>(k)));
-      s.weight[k] = column(static_cast<Eigen::Index>(3 + k));
-    }
-    s.normal = column.segment<3>(6);
-    s.stiffness = column(9);
-    s.force = column(10);
-    s.point = column.segment<3>(11);
-  }
+  archive.records("contact/springs", m_springs, list_spring_fields);
 }
 
 void BodySide::serialize_water(Archive& archive) {

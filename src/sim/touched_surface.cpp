@@ -92,13 +92,15 @@ void TouchedSurface::roll_back(const Points* x) {
 void TouchedSurface::serialize(Archive& archive) {
   archive.array("contact/x", m_x_t0);
   archive.number("contact/has_moved", m_has_moved);
-}
-
-void TouchedSurface::restore(const Points& x) {
-  const bool has_moved = m_has_moved;
-  forget_motion();
-  m_is_t1_known = false;
-  if (has_moved) move_to(x);
+  Points x_t1 =
+      m_has_all_moved ? m_x_t1 : m_x_t0;  // of vertices that have not moved, m_x_t1 may know nothing
+  for (const int v : m_moved) x_t1.col(v) = m_x_t1.col(v);
+  archive.array("contact/moved_x", x_t1);
+  if (!archive.is_restoring()) return;
+  m_x_t1 = x_t1;
+  m_moved.clear();
+  m_has_all_moved = m_has_moved;
+  m_is_t1_known = true;
   commit();
 }
 

@@ -37,8 +37,6 @@ class TouchedSurface {
   void roll_back(const Points* x);
   void commit();
   void serialize(Archive& archive);
-  /// After a return, with the nodes of the body as it has returned.
-  void restore(const Points& x);
 
  private:
   void forget_motion();

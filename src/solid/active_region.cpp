@@ -309,16 +309,13 @@ void ActiveRegion::roll_back() {
   forget();
 }
 
-void ActiveRegion::serialize_use(Archive& archive) {
+void ActiveRegion::serialize(Archive& archive) {
   bool is_used = m_active != nullptr;
   archive.number("region/is_used", is_used);
   if (is_used && !m_active) make();
   if (!is_used && m_active) drop();
-}
-
-void ActiveRegion::serialize(Archive& archive) {
   if (!m_active) return;
-  m_active->exchange_state(archive);
+  m_active->serialize(archive);
   if (archive.is_restoring()) restrict_stages();
   archive.number("region/fastest", m_past.fastest);
   archive.number("region/held_back", m_past.held_back);

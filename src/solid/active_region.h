@@ -35,6 +35,7 @@ class ActiveRegion {
   /// Does ahead of the first step what is done once: memory, and the forces of tets that do not move.
   /// `force`: 3×n [N] that act already, of which no node needs to be told.
   void make_ready(const Points& force);
+  bool is_start_known() const { return m_is_start_known; }
   void set_start_known() { m_is_start_known = true; }
 
   /// Before a step's forces: those that change and contacts wake their nodes, and those around.
@@ -51,7 +52,6 @@ class ActiveRegion {
   /// their speed. `is_flowing`: of each run of kLanes tets.
   void put_to_sleep(SolidState& state, const std::vector<char>& is_flowing);
 
-  void serialize_use(Archive& archive);
   void serialize(Archive& archive);
   /// What woke and fell asleep since the last commit stays so; or all is as it was then.
   void commit();

@@ -193,7 +193,7 @@ bool ActiveSet::has_any(int run, const std::vector<char>& of_batch) const {
   return std::any_of(first, last, [&](int batch) { return of_batch[static_cast<std::size_t>(batch)] != 0; });
 }
 
-void ActiveSet::exchange_state(Archive& archive) {
+void ActiveSet::serialize(Archive& archive) {
   archive.list("region/state", m_state);
   archive.list("region/calm_steps", m_calm_steps);
   archive.list("region/listed", m_listed);

@@ -46,7 +46,7 @@ class ActiveSet {
   /// Steps for which a run has been slow.
   int calm_steps(int run) const { return m_calm_steps[static_cast<std::size_t>(run)]; }
   void set_calm_steps(int run, int steps);
-  void exchange_state(Archive& archive);
+  void serialize(Archive& archive);
   /// What woke and fell asleep since the last commit stays so; or all, lists too, is as it was then.
   void commit();
   void roll_back();

@@ -151,7 +151,7 @@ int Kinematics::find_worst_point() const {
   return static_cast<int>(worst);
 }
 
-void Kinematics::exchange_frames(Archive& archive) {
+void Kinematics::serialize_frames(Archive& archive) {
   archive.array("solid/frame", m_frame);
   archive.array("solid/turned_gradient", m_turned_gradient);
 }

@@ -42,7 +42,7 @@ class Kinematics {
 
   bool has_frames() const { return m_frame.size() > 0; }
   /// What frames remember of earlier rotations.
-  void exchange_frames(Archive& archive);
+  void serialize_frames(Archive& archive);
   /// Frames stay as they are from now on; or are again what they were then, of the same shape at rest.
   void commit() { m_changed_frames.clear(); }
   void roll_back(const Eigen::Matrix3Xd& gradient);

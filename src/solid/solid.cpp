@@ -125,7 +125,7 @@ void Solid::keep_start(SolidState& state) const {
   state.v_before = m_body->committed.v;
 }
 
-void Solid::settle_region(SolidState& state, const std::vector<char>& is_flowing) {
+void Solid::sleep_slow_runs(SolidState& state, const std::vector<char>& is_flowing) {
   m_region->put_to_sleep(state, is_flowing);
 }
 
@@ -135,6 +135,7 @@ void Solid::wake_all() {
 
 void Solid::sleep_all() {
   m_region->sleep_all();
+  m_is_in_step = true;  // the speed that is lost is the state's
 }
 
 void Solid::make_ready(const SolidState& state, const Points& force) {
@@ -183,6 +184,7 @@ void Solid::apply_contact_stiffness(std::span<const PointStiffness> contacts, Po
 StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
   wake_all();
   m_body->plastic_strain = &state.plastic_strain;
+  m_is_in_step = true;
   return solid::find_equilibrium(*m_body, m_region->whole(), loads, state);
 }
 
@@ -202,27 +204,14 @@ Mat3 Solid::compute_local_response(int node) const {
   return solid::compute_local_response(*m_body, node);
 }
 
-void Solid::exchange_state(Archive& archive) {
-  SolverHistory& history = m_body->history;
-  System& system = m_body->system;
-  archive.number("solid/newton_iterations", history.counters.newton_iterations);
-  archive.number("solid/linear_iterations", history.counters.linear_iterations);
-  archive.number("solid/residual", history.counters.residual);
-  bool stores_nodal = system.has_nodal_blocks(m_body->materials);
-  archive.number("solid/stores_nodal", stores_nodal);
-  if (stores_nodal) store_nodal_stiffness(m_body->model, m_body->materials, system);
-  history.solver->exchange_state(archive, "solver/", system.matrix);
-  m_region->serialize_use(archive);
-  bool has_response_solver = history.response_solver != nullptr;
-  archive.number("response/is_known", has_response_solver);
-  if (!has_response_solver) return;
-  const SolidParams& params = m_body->model.params;
-  if (!history.response_solver)
-    history.response_solver = linear::make_solver(make_exact(params.solver), m_body->model.threads);
-  history.response_solver->exchange_state(archive, "response/", system.matrix);
-}
-
-void Solid::exchange_frames(Archive& archive) {
+void Solid::serialize(Archive& archive, SolidState& state) {
+  archive.array("solid/x", state.x);
+  archive.array("solid/v", state.v);
+  archive.array("solid/plastic_strain", state.plastic_strain);
+  archive.any_size("solid/x_before", state.x_before);
+  archive.any_size("solid/v_before", state.v_before);
+  const Archive::History of_solves(archive);
+  serialize_solvers(archive);
   m_region->serialize(archive);
   if (archive.is_restoring()) {
     m_region->forget();
@@ -232,12 +221,32 @@ void Solid::exchange_frames(Archive& archive) {
   FrameLag& lag = m_body->history.frame_lag;
   archive.number("solid/frame_slack", lag.slack);
   archive.number("solid/frame_error", lag.left);
-  archive.number("solid/frame_error_way", lag.lag_speed);
+  archive.number("solid/frame_lag_speed", lag.lag_speed);
   archive.number("solid/frame_error_steps", lag.steps);
-  if (has_lagging_frames(m_body->model)) m_body->kinematics.exchange_frames(archive);
+  if (has_lagging_frames(m_body->model)) m_body->kinematics.serialize_frames(archive);
 }
 
-void Solid::commit(const SolidState& state, const std::vector<char>& is_flowing) {
+void Solid::serialize_solvers(Archive& archive) {
+  SolverHistory& history = m_body->history;
+  System& system = m_body->system;
+  archive.number("solid/newton_iterations", history.counters.newton_iterations);
+  archive.number("solid/linear_iterations", history.counters.linear_iterations);
+  archive.number("solid/residual", history.counters.residual);
+  bool stores_nodal = system.has_nodal_blocks(m_body->materials);
+  archive.number("solid/stores_nodal", stores_nodal);
+  if (stores_nodal) store_nodal_stiffness(m_body->model, m_body->materials, system);
+  history.solver->serialize(archive, "solver/", system.matrix);
+  bool has_response_solver = history.response_solver != nullptr;
+  archive.number("response/is_known", has_response_solver);
+  if (!has_response_solver) return;
+  const SolidParams& params = m_body->model.params;
+  if (!history.response_solver)
+    history.response_solver = linear::make_solver(make_exact(params.solver), m_body->model.threads);
+  history.response_solver->serialize(archive, "response/", system.matrix);
+}
+
+/// Copies what has moved and flowed to the committed state.
+void Solid::keep(const SolidState& state, const std::vector<char>& is_flowing) {
   Body& body = *m_body;
   const Part& part = m_region->start_part();
   SolidState& committed = body.committed;
@@ -252,6 +261,11 @@ void Solid::commit(const SolidState& state, const std::vector<char>& is_flowing)
       committed.plastic_strain.middleCols(begin, end - begin) =
           state.plastic_strain.middleCols(begin, end - begin);
   });
+}
+
+void Solid::commit(const SolidState& state, const std::vector<char>& is_flowing) {
+  Body& body = *m_body;
+  if (m_is_in_step || !m_region->is_start_known()) keep(state, is_flowing);
   body.kinematics.commit();
   body.history.commit();
   body.history.committed.has_nodal_blocks = body.system.has_nodal_blocks(body.materials);
@@ -270,16 +284,6 @@ StepStatus Solid::roll_back(SolidState& state, Tick tick) {
   m_is_in_step = false;
   body.kinematics.roll_back(body.materials.gradient());
   return restore_kinematics(state.x, tick);
-}
-
-void Solid::serialize(Archive& archive, SolidState& state) {
-  archive.array("solid/x", state.x);
-  archive.array("solid/v", state.v);
-  archive.array("solid/plastic_strain", state.plastic_strain);
-  archive.any_size("solid/x_before", state.x_before);
-  archive.any_size("solid/v_before", state.v_before);
-  exchange_state(archive);
-  exchange_frames(archive);
 }
 
 const Elements& Solid::elements() const {

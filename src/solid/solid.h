@@ -64,7 +64,7 @@ class Solid {
 
   /// Extent::local, after a step's kinematics and flow: runs that have been slow for some steps, and whose
   /// tets do not flow, fall asleep and lose their speed. `is_flowing`: of each run of kLanes tets.
-  void settle_region(SolidState& state, const std::vector<char>& is_flowing);
+  void sleep_slow_runs(SolidState& state, const std::vector<char>& is_flowing);
   void wake_all();   ///< the whole body moves again
   void sleep_all();  ///< none of it until something acts; it has no speed
   /// Does ahead of the first step what is done once: memory, and the forces of tets that do not move.
@@ -106,13 +106,7 @@ class Solid {
   /// The same of one node by a force on it while all others stay: τ² Aᵢᵢ⁻¹ [m/N], a lower bound.
   Mat3 compute_local_response(int node) const;
 
-  /// What a step takes from the last ones besides the state, its moduli and its kinematics: what the solvers
-  /// keep, and the counters.
-  void exchange_state(Archive& archive);
-  /// What the matrix remembers of earlier rotations, and which part of the body sleeps; restored once the
-  /// tets have their moduli and size at rest.
-  void exchange_frames(Archive& archive);
-  /// After that: kinematics as those of the saved x were, with frames that lag as far as they did.
+  /// After a return: kinematics as those of the saved x were, with frames that lag as far as they did.
   StepStatus restore_kinematics(const Points& x, Tick tick);
 
   /// The step that led to `state` counts from now on; it flowed where `is_flowing` is set, of each run of
@@ -155,11 +149,13 @@ class Solid {
   double compute_kinetic_energy(const SolidState& state) const;
 
  private:
+  void serialize_solvers(Archive& archive);
   void take_up(const SolidState& state);
+  void keep(const SolidState& state, const std::vector<char>& is_flowing);
 
   std::unique_ptr<Body> m_body;
   std::unique_ptr<ActiveRegion> m_region;
-  bool m_is_in_step = false;  // begun since the last commit
+  bool m_is_in_step = false;  // the state may be another than at the last commit
 };
 
 }  // namespace argil::solid

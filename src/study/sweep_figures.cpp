@@ -104,7 +104,7 @@ output::StudyTable SweepTable::take() {
       {{"mean_force_N", "N", "mean force at the hand over the ticks in touch"}, &SweepFigures::mean_force},
       {{"work_J", "J", "work of the contact forces on the body"}, &SweepFigures::work},
       {{"dissipation_J", "J", "energy dissipated by plastic flow"}, &SweepFigures::dissipation},
-      {{"indentation_m", "m", "largest way of a vertex from rest over the frames"},
+      {{"indentation_m", "m", "largest displacement of a vertex from rest over the frames"},
        &SweepFigures::indentation},
       {{"final_saturation", "1", "mean saturation of the last frame by volume"},
        &SweepFigures::final_saturation},

@@ -16,7 +16,7 @@ struct SweepFigures {
   double mean_force = kNone;        ///< [N] over the ticks in touch
   double work = kNone;              ///< [J] of the contact forces on the body
   double dissipation = kNone;       ///< [J] by plastic flow
-  double indentation = kNone;       ///< [m] largest way of a vertex from rest, over the frames
+  double indentation = kNone;       ///< [m] largest displacement of a vertex from rest, over the frames
   double final_saturation = kNone;  ///< [–] mean of the last frame by volume
   double water_added = kNone;       ///< [kg]
   double water_removed = kNone;     ///< [kg]

@@ -21,7 +21,7 @@ std::optional<int> find_chatter(ChatterWatch& watch, const Force& force, double 
                                 double period = kPeriod) {
   const int last = static_cast<int>(std::lround(seconds / period));
   for (int k = first; k <= last; ++k) {
-    watch.see({0.0, 0.0, force(k * period)});
+    watch.add({0.0, 0.0, force(k * period)});
     if (watch.is_chattering()) return k;
   }
   return std::nullopt;
@@ -100,10 +100,10 @@ TEST(ChatterWatch, GoesOnFromASnapshotToTheSameBits) {
   ASSERT_FALSE(find_chatter(first, force, 0.2));
   Snapshot snapshot;
   Archive saving = Archive::make_saving(snapshot);
-  first.exchange_state(saving);
+  first.serialize(saving);
   ChatterWatch second(kLimit, kPeriod);
   Archive restoring = Archive::make_restoring(snapshot, "a snapshot");
-  second.exchange_state(restoring);
+  second.serialize(restoring);
   const auto tick = find_chatter(whole, force, 3.0, 201);
   ASSERT_TRUE(tick);
   EXPECT_EQ(find_chatter(second, force, 3.0, 201), tick);

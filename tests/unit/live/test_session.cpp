@@ -136,7 +136,7 @@ void expect_replays(const sim::Params& params, const Recorded& recorded) {
     ASSERT_EQ(simulation.physics_record().tick, step.record.tick);
     ASSERT_EQ(simulation.physics_record().elastic_energy, step.record.elastic_energy);
     if (!step.frame) continue;
-    ASSERT_EQ(simulation.body_side().make_hash(simulation.body_side().hand()), step.frame->state_hash);
+    ASSERT_EQ(simulation.body_side().make_frame_of_step().state_hash, step.frame->state_hash);
   }
   EXPECT_EQ(steps, recorded.steps.size());
   EXPECT_EQ(simulation.state_hash(), recorded.hash);

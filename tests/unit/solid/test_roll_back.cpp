@@ -86,7 +86,7 @@ struct PulledBar {
     ARGIL_TRY(scene.solid.update_kinematics(scene.state.x, steps));
     scene.solid.keep_start(scene.state);
     flow();
-    scene.solid.settle_region(scene.state, is_flowing);
+    scene.solid.sleep_slow_runs(scene.state, is_flowing);
     return StepStatus::ok();
   }
   /// Some points, others in each step.
