@@ -15,11 +15,13 @@ class OrderedRuns {
   explicit OrderedRuns(int threads) : m_threads(threads) {}
 
   /// Takes the memory for sums of so many items, whichever runs are visited.
-  void prepare(std::ptrdiff_t count) { m_sums.reserve(static_cast<std::size_t>(count_all_runs(count))); }
+  void prepare(std::ptrdiff_t count) const {
+    m_sums.reserve(static_cast<std::size_t>(count_all_runs(count)));
+  }
   /// body(begin, end) for every run; its number is added to the sum that is returned. No allocation after the
   /// first call of one count.
   template <class Body>
-  double sum(std::ptrdiff_t count, Body body) {
+  double sum(std::ptrdiff_t count, Body body) const {
     prepare(count);
     m_sums.resize(static_cast<std::size_t>(count_runs(count)));
     double* sums = m_sums.data();
@@ -43,6 +45,14 @@ class OrderedRuns {
       body(i, run * kLength, std::min((run + 1) * kLength, count));
     });
   }
+  /// The same, one run after the other by the calling thread.
+  template <class Body>
+  void each_in_order(std::ptrdiff_t count, Body body) const {
+    for (std::ptrdiff_t i = 0; i < count_runs(count); ++i) {
+      const std::ptrdiff_t run = m_visited ? (*m_visited)[static_cast<std::size_t>(i)] : i;
+      body(run * kLength, std::min((run + 1) * kLength, count));
+    }
+  }
   /// How many runs are visited.
   std::ptrdiff_t count_runs(std::ptrdiff_t count) const {
     return m_visited ? static_cast<std::ptrdiff_t>(m_visited->size()) : count_all_runs(count);
@@ -52,12 +62,13 @@ class OrderedRuns {
   }
   /// From now on only these runs, increasing; the list must outlive them. Null: all.
   void visit(const std::vector<int>* runs) { m_visited = runs; }
+  const std::vector<int>* visited() const { return m_visited; }
   static constexpr std::ptrdiff_t kLength = 8;
 
  private:
   int m_threads;
   const std::vector<int>* m_visited = nullptr;
-  std::vector<double> m_sums;
+  mutable std::vector<double> m_sums;
 };
 
 }  // namespace argil

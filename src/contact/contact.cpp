@@ -74,6 +74,9 @@ ContactDetector::Impl::Impl(const Triangles& surface, int num_body_vertices,
   body_candidates.reserve(static_cast<std::size_t>(surface.cols()));
   areas.reserve(body_candidates.capacity());
   tasks.reserve(kRoom);
+  for (std::vector<int>* list :
+       {&committed.tool_vertex, &committed.body_face, &committed.body_vertex, &committed.tool_face})
+    list->reserve(kRoom);
 }
 
 void ContactDetector::Impl::make_workers(const Points& x) {
@@ -202,24 +205,39 @@ bool ContactDetector::overlaps(const Points& x, const Pose& pose) const {
   return is_any_inside(body, body_tree, tool) || is_any_inside(tool, tool_tree, body);
 }
 
+void ContactDetector::Impl::copy_state(ContactState& out) const {
+  const auto copy = [this](const VertexSide& side, std::vector<int>& vertices, std::vector<int>& faces,
+                           std::vector<Vec3>& stretch) {
+    vertices = side.inside;
+    faces.clear();
+    stretch.clear();
+    for (const int v : vertices) faces.push_back(side.face_of_vertex[static_cast<std::size_t>(v)]);
+    if (params.friction == 0.0) return;
+    for (const int v : vertices) stretch.push_back(side.stretch[static_cast<std::size_t>(v)]);
+  };
+  copy(tool_vertices, out.tool_vertex, out.body_face, out.tool_stretch);
+  copy(body_vertices, out.body_vertex, out.tool_face, out.body_stretch);
+  out.edges.clear();
+  out.edge_stretch.clear();
+  if (params.friction == 0.0) return;
+  for (const EdgeSpring& spring : edge_springs) {
+    out.edges.push_back(spring.key);
+    out.edge_stretch.push_back(spring.stretch);
+  }
+}
+
 ContactState ContactDetector::state() const {
   ContactState state;
-  state.tool_vertex = m_impl->tool_vertices.inside;
-  for (const int v : state.tool_vertex)
-    state.body_face.push_back(m_impl->tool_vertices.face_of_vertex[static_cast<std::size_t>(v)]);
-  state.body_vertex = m_impl->body_vertices.inside;
-  for (const int v : state.body_vertex)
-    state.tool_face.push_back(m_impl->body_vertices.face_of_vertex[static_cast<std::size_t>(v)]);
-  if (m_impl->params.friction == 0.0) return state;
-  for (const int v : state.tool_vertex)
-    state.tool_stretch.push_back(m_impl->tool_vertices.stretch[static_cast<std::size_t>(v)]);
-  for (const int v : state.body_vertex)
-    state.body_stretch.push_back(m_impl->body_vertices.stretch[static_cast<std::size_t>(v)]);
-  for (const EdgeSpring& spring : m_impl->edge_springs) {
-    state.edges.push_back(spring.key);
-    state.edge_stretch.push_back(spring.stretch);
-  }
+  m_impl->copy_state(state);
   return state;
+}
+
+void ContactDetector::commit() {
+  m_impl->copy_state(m_impl->committed);
+}
+
+void ContactDetector::roll_back() {
+  restore(m_impl->committed);
 }
 
 void ContactDetector::restore(const ContactState& state) {
@@ -242,6 +260,7 @@ void ContactDetector::restore(const ContactState& state) {
   for (std::size_t i = 0; i < state.edges.size(); ++i)
     m_impl->edge_springs.push_back({state.edges[i], state.edge_stretch.at(i)});
   m_impl->workers.clear();
+  commit();
 }
 
 void ContactDetector::share(int threads) {

@@ -97,6 +97,10 @@ class ContactDetector {
   /// anywhere.
   void share(int threads);
 
+  /// What has been found since the last commit stays so; or is as it was then.
+  void commit();
+  void roll_back();
+
   /// Continues from a state taken from a detector of the same surface and tool. The next call may start
   /// anywhere.
   void restore(const ContactState& state);

@@ -142,6 +142,8 @@ struct ContactDetector::Impl {
   VertexSide tool_vertices;  // tool vertices behind body faces
   VertexSide body_vertices;  // body vertices behind tool faces
 
+  ContactState committed;
+
   // Working arrays; they grow to what a scene needs and stay so.
   std::vector<int> body_candidates;
   std::vector<VertexTask> tasks;
@@ -168,6 +170,7 @@ struct ContactDetector::Impl {
     parallel_for(static_cast<std::ptrdiff_t>(used), used > 1 ? threads : 1, run);
   }
 
+  void copy_state(ContactState& out) const;
   void place_tool(const Pose& pose, Points& out) const;
   void place_tool(const Pose& pose_t0, const Pose& pose_t1);
   mesh::Box tool_bounds() const;

@@ -75,7 +75,7 @@ ARGIL_EVERY_PROCESSOR double multiply_rows(const BlockMatrix& matrix, const doub
 
 }  // namespace
 
-double multiply(const BlockMatrix& matrix, const Points& x, Points& y, OrderedRuns& rows) {
+double multiply(const BlockMatrix& matrix, const Points& x, Points& y, const OrderedRuns& rows) {
   return rows.sum(matrix.num_rows(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     return multiply_rows(matrix, x.data(), begin, end, y.data());
   });

@@ -34,6 +34,6 @@ int find_block(const BlockMatrix& matrix, int row, int column);
 Mat3 invert_block(const Mat3& block);
 
 /// y = A x; returns x·y.
-double multiply(const BlockMatrix& matrix, const Points& x, Points& y, OrderedRuns& rows);
+double multiply(const BlockMatrix& matrix, const Points& x, Points& y, const OrderedRuns& rows);
 
 }  // namespace argil::linear

@@ -20,7 +20,7 @@ Session::Session(sim::Simulation& simulation, device::HapticDevice& device, Sess
       m_device(device),
       m_options(std::move(options)),
       m_period(simulation.params().rates.haptic_period),
-      m_mailbox(simulation.solid().elements().num_nodes(), simulation.body_side().surface().num_vertices()),
+      m_mailbox(simulation.body_side().surface().num_vertices()),
       m_ticks(static_cast<std::size_t>(m_options.record_buffer_s / m_period) + 1),
       m_steps(kWaitingSteps),
       m_sample_number(m_options.first_sample) {
@@ -89,7 +89,6 @@ SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
   if (m_is_asked.load(std::memory_order_relaxed)) return SessionEnd::asked;
   if (!m_ticks.has_room()) return SessionEnd::overflow;  // before the hand feels what no record would have
   sim::HandSide& hand = m_simulation.hand();
-  if (!hand.status().is_ok()) return SessionEnd::failed;
   const device::DevicePoll poll = m_device.poll();
   if (poll.state == device::DeviceState::lost) return SessionEnd::lost;
   if (poll.is_valid()) {
@@ -99,34 +98,28 @@ SessionEnd Session::make_tick(output::TickTiming timing, double woken_at) {
   if (m_options.mode) m_sample.mode = *m_options.mode;
   timing.sample_age = poll.age;
 
-  if (m_mailbox.has_answer()) {
-    if (!m_mailbox.see(hand)) return SessionEnd::failed;
-    m_surface_time = m_mailbox.given_at();
-  }
-  ++m_ticks_since_step;
-  const int late = m_ticks_since_step - m_simulation.params().rates.physics_period_ticks;
-  const bool begins_step = late >= 0 && m_mailbox.is_free();
-  hand.move(m_sample);
-  if (const StepStatus status = hand.touch(begins_step, nullptr); !status.is_ok()) {
+  sim::TickPlan plan;
+  plan.receives_step = m_mailbox.has_result();
+  if (plan.receives_step) m_surface_time = m_mailbox.begun_at();
+  const int ticks_since_step = hand.state().ticks_since_step + 1;
+  plan.begins_step = ticks_since_step >= m_simulation.params().rates.physics_period_ticks &&
+                     (plan.receives_step || m_mailbox.is_free());
+  plan.feed = device::judge_feed(m_simulation.params().device.watchdog, poll.number, poll.age,
+                                 woken_at - m_surface_time);
+  if (const StepStatus status = sim::tick(hand, m_mailbox, m_sample, plan); !status.is_ok()) {
     m_tick_failure = status.failure();
     return SessionEnd::failed;
   }
   HandTick tick;
-  if (begins_step) {
-    m_mailbox.give(hand, late, monotonic_now());
-    m_ticks_since_step = 0;
-    tick.session.begun_step = ++m_steps_given;
-  }
-  tick.session.feed = device::judge_feed(m_simulation.params().device.watchdog, poll.number, poll.age,
-                                         woken_at - m_surface_time);
-  hand.render(tick.session.feed);
+  if (plan.begins_step) tick.session.begun_step = hand.state().steps_begun;
+  tick.session.feed = plan.feed;
   m_device.send({hand.gated().force, hand.gated().torque});
 
   timing.work = monotonic_now() - woken_at;
   tick.record = hand.make_record();
   tick.timing = timing;
   tick.session.sample = m_sample_number;
-  tick.session.seen_step = m_mailbox.seen();
+  tick.session.seen_step = m_mailbox.received();
   tick.session.device_state = poll.state;
   m_ticks.push(std::move(tick));
   return SessionEnd::none;
@@ -154,10 +147,10 @@ void Session::make_step() {
   BodyStep step;
   const double begin = monotonic_now();
   if (m_options.before_step) m_options.before_step(body.state().steps + 1);
-  step.given_at = m_mailbox.given_at();
+  step.given_at = m_mailbox.begun_at();
   step.timing.wait = begin - step.given_at;
-  step.timing.late = m_mailbox.late();
-  m_mailbox.answer(body);
+  step.timing.late = m_mailbox.num_ticks() - m_simulation.params().rates.physics_period_ticks;
+  m_mailbox.make(body);
   step.timing.work = monotonic_now() - begin;
   const bool is_failed = m_mailbox.is_failed();
   m_mailbox.publish();

@@ -36,7 +36,7 @@ struct HandTick {
 struct BodyStep {
   sim::PhysicsRecord record;
   output::StepTiming timing;
-  double given_at = 0.0;              ///< [s] on the monotonic clock, when the hand gave it
+  double given_at = 0.0;              ///< [s] on the monotonic clock, when the hand handed it over
   std::unique_ptr<sim::Frame> frame;  ///< with those that are due
 };
 
@@ -96,9 +96,7 @@ class Session {
   SpscRing<BodyStep> m_steps;
   device::DeviceSample m_sample;  // that was consumed last; the hand's thread
   std::int64_t m_sample_number = 0;
-  double m_surface_time = 0.0;  // [s] when the hand gave the step whose surface it meets
-  int m_ticks_since_step = 0;
-  Tick m_steps_given = 0;
+  double m_surface_time = 0.0;  // [s] when the hand handed over the step whose surface it meets
   SessionEnd m_end = SessionEnd::none;
   std::optional<Failure> m_tick_failure;
   std::string m_warning;

@@ -64,7 +64,7 @@ int run_static(const scenario::Scenario& s, scenario::Scene& scene, const RunOpt
   const std::string result = name_result(s, options);
   output::ResultFile file(result, make_header(s, simulation, scene, tool, find_identity(s)));
   const auto start = std::chrono::steady_clock::now();
-  const StepStatus status = simulation.settle();
+  const StepStatus status = simulation.find_equilibrium();
   const std::optional<Failure> failure =
       status.is_ok() ? std::nullopt : std::optional<Failure>(status.failure());
   file.append(simulation.physics_record());

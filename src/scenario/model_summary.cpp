@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "scenario/json_document.h"
+#include "scenario/strain_models.h"
 
 namespace argil::scenario {
 namespace {
@@ -60,11 +61,10 @@ std::string print(double value) {
 }
 
 void describe_solid(Summary& s) {
-  const std::string model = s.word("/dynamics/model");
-  if (model == "linear") s.simplify("strain: linear, as in the paper: a body that turns seems strained");
-  if (model == "corotational")
-    s.simplify("strain: small in each tet, which turns (corotational): not for large strain");
-  if (model == "neo_hookean") s.keep("strain: large (neo-Hookean)");
+  if (const solid::ElasticLaw* law = find_law_by_name(s.word("/dynamics/model"))) {
+    if (law->is_simplified) s.simplify(law->summary);
+    if (!law->is_simplified) s.keep(law->summary);
+  }
   const std::string element = s.word("/dynamics/element");
   if (element == "p1")
     s.simplify(

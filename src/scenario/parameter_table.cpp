@@ -7,6 +7,7 @@
 #include "mesh/quality.h"
 #include "scenario/binding.h"
 #include "scenario/medium_check.h"
+#include "scenario/strain_models.h"
 
 namespace argil::scenario {
 namespace {
@@ -324,12 +325,7 @@ void bind_dynamics(Binder& b, Scenario& s) {
   b.choice<Mode>("/dynamics/mode", s.mode, {{Mode::dynamic, "dynamic"}, {Mode::equilibrium, "static"}},
                  "The hand's motion in time, or one equilibrium under /body/loads and /body/fixed, elastic, "
                  "without tool and trace.");
-  b.choice<solid::StrainModel>(
-      "/dynamics/model", d.model,
-      {{solid::StrainModel::corotational, "corotational"},
-       {solid::StrainModel::linear, "linear"},
-       {solid::StrainModel::neo_hookean, "neo_hookean"}},
-      "Elastic law; linear is the paper's, neo_hookean the reference for large strain.");
+  b.choice("/dynamics/model", d.model, strain_model_names(), describe_strain_models());
   b.choice<solid::ElementKind>(
       "/dynamics/element", d.element,
       {{solid::ElementKind::p1, "p1"},

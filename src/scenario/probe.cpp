@@ -18,6 +18,7 @@
 #include "material/plasticity.h"
 #include "scenario/json_document.h"
 #include "scenario/medium_check.h"
+#include "scenario/strain_models.h"
 #include "solid/element.h"
 
 namespace argil::scenario {
@@ -221,34 +222,44 @@ Json probe_polar(Case& c) {
   return {{"R", to_json(R)}, {"S", to_json(Mat3(R.transpose() * F))}};
 }
 
+solid::StrainModel read_strain_model(Case& c) {
+  const auto models = strain_model_names();
+  std::vector<std::string> names;
+  for (const auto& model : models) names.push_back(model.second);
+  return models[c.word("model", names, 0)].first;
+}
+
 Json probe_element(Case& c) {
   const std::vector<double> rest_list = c.numbers("rest", 12);
   const std::vector<double> deformed_list = c.numbers("deformed", 12);
   const solid::Mat34 rest = Eigen::Map<const solid::Mat34>(rest_list.data());
   const solid::Mat34 deformed = Eigen::Map<const solid::Mat34>(deformed_list.data());
   const material::Elastic e = read_elastic(c);
-  using solid::StrainModel;
-  constexpr std::array<StrainModel, 3> kModels = {StrainModel::corotational, StrainModel::linear,
-                                                  StrainModel::neo_hookean};
-  const StrainModel model = kModels[c.word("model", {"corotational", "linear", "neo_hookean"}, 0)];
+  const solid::StrainModel model = read_strain_model(c);
+  const solid::ElasticLaw& law = find_law(model);
   const Vec6 plastic = c.tensor("plastic_strain", true);
-  if (model == StrainModel::neo_hookean &&
+  if (law.plastic_split == solid::PlasticSplit::multiplicative &&
       !(Eigen::SelfAdjointEigenSolver<Mat3>(from_mandel(plastic)).eigenvalues()(0) > -1.0))
-    c.refuse_range("plastic_strain", "strains that leave a stretch, eigenvalues above -1, for neo_hookean");
+    c.refuse_range("plastic_strain",
+                   std::string("strains that leave a stretch, eigenvalues above -1, for ") + law.name);
+  if (law.plastic_split == solid::PlasticSplit::none && !plastic.isZero(0.0))
+    c.refuse_range("plastic_strain", std::string("zero, the only one of ") + law.name);
   const solid::TetGeometry tet = solid::make_tet_geometry(rest);
   if (!(tet.volume > 0.0)) c.refuse_range("rest", "tets of positive volume");
   const solid::PointMotion motion =
       solid::make_motion(model, solid::compute_deformation_gradient(deformed, tet.gradient));
+  if (!law.bears_inversion && !(motion.F.determinant() > 0.0))
+    c.refuse_range("deformed", std::string("tets of positive volume, all that ") + law.name + " bears");
   const double E = e.youngs_modulus;
   const double nu = e.poissons_ratio;
   const solid::Elasticity elasticity{E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))};
   const solid::Mat34 force = solid::compute_element_force(tet, model, motion, plastic, elasticity);
   const Mat6 C = solid::make_isotropic_stiffness(elasticity.lambda, elasticity.mu);
   const solid::Mat12 stiffness =
-      model == StrainModel::neo_hookean
-          ? solid::compute_element_stiffness(
-                tet, solid::make_positive(solid::compute_tangent(model, motion, plastic, elasticity)))
-          : solid::compute_element_stiffness(tet, motion.R, C);
+      law.is_quadratic
+          ? solid::compute_element_stiffness(tet, motion.R, C)
+          : solid::compute_element_stiffness(
+                tet, solid::make_positive(solid::compute_tangent(model, motion, plastic, elasticity)));
   return {{"force", to_json(Eigen::MatrixXd(force.transpose()))},
           {"energy_J", tet.volume * solid::compute_energy_density(model, motion, plastic, elasticity)},
           {"stiffness", to_json(stiffness)}};

@@ -168,7 +168,7 @@ void check_extent(Scenario& s) {
   // Whether a contact sticks or slides may hang on less than what a region leaves out.
   if (!is_asked_for && s.params.contact.friction > 0.0) p.extent = solid::Extent::whole;
   using linear::SolverKind;
-  require(p.element == solid::ElementKind::p1 && p.model != solid::StrainModel::neo_hookean &&
+  require(p.element == solid::ElementKind::p1 && find_law(p.model).is_quadratic &&
               !is_anisotropic(s.params.moisture),
           "is for p1 elements of the isotropic linear and corotational laws",
           "change /dynamics or /material");
@@ -192,7 +192,7 @@ void check_solid(Scenario& s) {
   const bool is_second_order =
       p.integrator == solid::Integrator::bdf2 || p.integrator == solid::Integrator::newmark;
   if (s.mode == Mode::dynamic && is_second_order && p.iteration == solid::Iteration::one &&
-      p.model != solid::StrainModel::linear)
+      !find_law(p.model).is_linear)
     s.warnings.push_back(
         s.file +
         ": /dynamics/iteration: one linearised solve with bdf2 or newmark gains energy where "
@@ -206,17 +206,26 @@ void check_solid(Scenario& s) {
       p.iteration == solid::Iteration::newton)
     s.warnings.push_back(
         s.file + ": /dynamics/iteration has no effect: symplectic_euler is explicit and solves nothing");
-  const bool needs_isotropy =
-      p.model == solid::StrainModel::neo_hookean || p.element == solid::ElementKind::p1_nodal;
+  const bool takes_full_stiffness = find_law(p.model).takes_full_stiffness;
+  const bool needs_isotropy = !takes_full_stiffness || p.element == solid::ElementKind::p1_nodal;
   if (needs_isotropy && is_anisotropic(s.params.moisture))
-    throw InputError(s.file,
-                     p.model == solid::StrainModel::neo_hookean ? "/dynamics/model" : "/dynamics/element",
+    throw InputError(s.file, takes_full_stiffness ? "/dynamics/element" : "/dynamics/model",
                      "takes isotropic stiffness only, but the pores are aligned spheroids",
                      "use the corotational or linear model with p1 or p2, or orientation random");
   if (p.element == solid::ElementKind::p1_nodal && s.params.plasticity.enabled &&
       !s.params.plasticity.deviatoric)
     throw InputError(s.file, "/dynamics/element", "p1_nodal needs plastic flow that keeps the volume",
                      "set /material/plasticity/deviatoric to true, or use p1 or p2");
+}
+
+/// A law that does not bear inversion has no forces at det F ≤ 0, where a step must not go on.
+void check_inversion(const Scenario& s) {
+  const solid::ElasticLaw& law = find_law(s.params.solid.model);
+  if (!law.bears_inversion && !(s.params.solid.min_volume_ratio >= 0.0))
+    throw InputError(s.file, "/dynamics/min_volume_ratio",
+                     Json(s.params.solid.min_volume_ratio).dump() + " is outside [0, 1] for " + law.name +
+                         ", which has no stress where a tet is inverted",
+                     "give 0 or more");
 }
 
 void require_normal(const Scenario& s, const solid::Region& region, const std::string& pointer) {
@@ -233,9 +242,19 @@ void check_regions(const Scenario& s) {
     require_normal(s, s.body.loads.pressure[i].region, "/body/loads/pressure/" + std::to_string(i));
 }
 
+/// A law of which no plastic flow is known takes none; an equilibrium is elastic in any case.
+void check_flow_of_model(const Scenario& s) {
+  const solid::ElasticLaw& law = find_law(s.params.solid.model);
+  if (law.plastic_split == solid::PlasticSplit::none && s.mode == Mode::dynamic)
+    throw InputError(s.file, "/material/plasticity/enabled",
+                     std::string("true, but ") + law.name + " is an elastic law without plastic flow",
+                     "set it to false, or /dynamics/model to neo_hookean or corotational");
+}
+
 void check_plasticity(Scenario& s) {
   const material::Plasticity& law = s.params.plasticity;
   if (!law.enabled) return;
+  check_flow_of_model(s);
   const std::string place = "/material/plasticity/form";
   if (law.form == material::FlowForm::j2 && !(law.deviatoric && law.norm == material::StrainNorm::frobenius))
     throw InputError(s.file, place, "j2 is a law of the deviator's Frobenius norm",
@@ -251,10 +270,11 @@ void check_plasticity(Scenario& s) {
                      "shorten the step or lower creep_per_s, or take rate");
   // F_p = 1 + ε_p must stay a stretch: no eigenvalue of ε_p may reach −1.
   const double most = law.norm == material::StrainNorm::frobenius ? 1.0 : std::sqrt(0.5);
-  if (s.params.solid.model == solid::StrainModel::neo_hookean && !(law.max < most))
+  const solid::ElasticLaw& elastic = find_law(s.params.solid.model);
+  if (elastic.plastic_split == solid::PlasticSplit::multiplicative && !(law.max < most))
     throw InputError(s.file, "/material/plasticity/max",
-                     Json(law.max).dump() + " is outside [0, " + Json(most).dump() +
-                         ") for neo_hookean, whose plastic stretch would lose a dimension",
+                     Json(law.max).dump() + " is outside [0, " + Json(most).dump() + ") for " + elastic.name +
+                         ", whose plastic stretch would lose a dimension",
                      "lower it, or use corotational");
 }
 
@@ -262,6 +282,7 @@ void check_combinations(Scenario& s) {
   check_regions(s);
   check_plasticity(s);
   check_solid(s);
+  check_inversion(s);
   check_rates(s);
   check_between_frames(s);
   check_extent(s);

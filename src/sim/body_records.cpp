@@ -8,12 +8,12 @@ namespace argil::sim {
 
 PhysicsRecord BodySide::make_record() const {
   PhysicsRecord record;
-  record.tick = m_hand.ticks;
-  record.time = static_cast<double>(m_hand.ticks) * m_params.rates.haptic_period;
+  record.tick = m_state.hand.ticks;
+  record.time = static_cast<double>(m_state.hand.ticks) * m_params.rates.haptic_period;
   record.kinetic_energy = m_solid.compute_kinetic_energy(m_state.solid);
   const bool is_at_rest = m_state.is_at_rest;
   const solid::StrainSummary strain =
-      is_at_rest ? m_rest_strain : m_solid.summarise(m_state.solid.plastic_strain);
+      is_at_rest ? m_economy.rest_strain() : m_solid.summarise(m_state.solid.plastic_strain);
   record.elastic_energy = strain.elastic_energy;
   record.plastic_dissipation = m_state.plastic_dissipation;
   record.contact_work = m_state.contact_work;
@@ -27,7 +27,7 @@ PhysicsRecord BodySide::make_record() const {
   record.active_nodes = is_at_rest ? 0 : m_solid.num_active();
   record.min_volume_ratio = m_solid.min_volume_ratio();
   record.max_plastic_strain = strain.largest_plastic_strain;
-  record.fidelity = m_fidelity.record();
+  record.fidelity = m_economy.record();
   return record;
 }
 

@@ -4,15 +4,17 @@
 #include <vector>
 
 #include "base/archive.h"
-#include "base/ordered_items.h"
-#include "material/moisture.h"
+#include "sim/body_materials.h"
 #include "sim/compliance.h"
 #include "sim/contact_surface.h"
-#include "sim/exchange.h"
+#include "sim/economy.h"
+#include "sim/external_force.h"
 #include "sim/params.h"
+#include "sim/plastic_flow.h"
 #include "sim/record.h"
 #include "sim/stage.h"
 #include "sim/state.h"
+#include "sim/step_result.h"
 
 namespace argil::sim {
 
@@ -25,85 +27,75 @@ class BodySide {
   BodySide(const BodySide&) = delete;
   BodySide& operator=(const BodySide&) = delete;
 
-  /// One physics step under `load`, after the water's when that is due. Clears `load`. Also a step that fails
-  /// answers.
-  StepStatus step(ContactLoad& load, BodyAnswer& answer);
+  /// One physics step under `load`, after the water's when that is due. Nothing of it counts before commit();
+  /// after one that fails comes roll_back(). Also a step that fails has a result.
+  StepStatus step(const ContactLoad& load, StepResult& result);
+  void commit();
+  void roll_back();
   /// To the elastic equilibrium under the loads, without the tool.
-  StepStatus settle();
+  StepStatus find_equilibrium();
 
   const BodyState& state() const { return m_state; }
   const Body& body() const { return m_body; }
   const ContactSurface& surface() const { return m_surface; }
   const solid::Solid& solid() const { return m_solid; }
   const water::PoreWater& pore_water() const { return m_water; }
-  const HandPose& hand() const { return m_hand; }               ///< of the last step
+  const HandPose& hand() const { return m_state.hand; }         ///< of the last step
   const Points& x_before() const { return m_solid.x_start(); }  ///< nodes before the last move
-  BodyAtFrame at_frame(Tick tick);
+  BodyBetweenSteps between_steps(Tick tick);
   PhysicsRecord make_record() const;                  ///< of the last step
   Frame make_frame(const HandPose& hand) const;       ///< the body as it is now, with the hand there
   std::string make_hash(const HandPose& hand) const;  ///< SHA-256 of all that a step changes, and the hand
 
-  void exchange_state(Archive& archive);
+  void serialize(Archive& archive);
   void observe_stages(StageObserver* observer) { m_observer = observer; }
 
  private:
-  // Stages of a step: step.cpp.
-  StepStatus water_step(const ContactLoad& load);
-  StepStatus physics_step(ContactLoad& load, BodyAnswer& answer);
+  // step.cpp
+  StepStatus move_water(const ContactLoad& load);
+  StepStatus find_velocity(const ContactLoad& load);
+  StepStatus move_solid(const ContactLoad& load, StepResult& result);
+
+  // Stages of these: body_stages.cpp.
+  void transfer_water(const ContactLoad& load, double step_s);
+  StepStatus refresh_materials();
+  StepStatus predict(const ContactLoad& load);
+  bool assemble();
+  StepStatus solve(bool& is_solved);
+  void apply_deflection(const ContactLoad& load, device::Wrench& felt);
+  void scale_velocity(const ContactPatch& patch);
+  StepStatus update_kinematics();
+  void flow();
+  void find_surface(StepResult& result);
+  StepStatus check_energy();
+  double clay_factor(Eigen::Index node, const ContactPatch& patch) const;
 
   // body_side.cpp
-  void exchange_water(Archive& archive);
-  double step_seconds() const { return m_params.rates.haptic_period * m_params.rates.physics_period_ticks; }
+  void begin_step(const ContactLoad& load, StepResult& result);
+  void serialize_water(Archive& archive);
   /// At the end of the present step, and the tick in which it began.
   double time_at_end() const {
     return static_cast<double>(m_state.steps * m_params.rates.physics_period_ticks) *
            m_params.rates.haptic_period;
   }
-  Tick tick() const { return m_hand.ticks - 1; }
-  void begin_step(ContactLoad& load, BodyAnswer& answer);
-  void set_external_force(const ContactLoad& load);
-  void apply_contact_yield(ContactLoad& load, device::Wrench& felt);
-  double clay_factor(Eigen::Index node, const ContactLoad& load, double step_s) const;
-  void apply_clay_kernel(const ContactLoad& load, double step_s);
-  StepStatus check_energy(const ContactLoad& contacts);
-  void take_back(double energy_given);
-  Vec6 compute_flow(int point, double step_s) const;
-  void apply_plastic_flow(double step_s);
-  double flow_at_points(std::ptrdiff_t begin, std::ptrdiff_t end, double step_s);
-  double flow_at_point(int point, double step_s);
+  Tick tick() const { return m_state.hand.ticks - 1; }
+  // body_records.cpp
   TensorField mean_plastic_strain() const;
-  StepStatus refresh_materials(double tolerance);
-  void refresh_material(int tet, double S);
-  void fall_asleep();
-  bool rests(const ContactLoad& load);
-  bool sleeps_on(const ContactLoad& load);
-  void find_reach(const OrderedItems& nodes);
-  void watch_strain();
-  bool falls_asleep(const ContactLoad& load, const solid::StepLoads& loads);
 
   const Params& m_params;
   Body m_body;
   BodyState m_state;
-  HandPose m_hand;
-  material::MoistureTable m_moisture;
+  BodyProgress m_committed;
   solid::Solid m_solid;
   water::PoreWater m_water;
   ContactSurface m_surface;
-  std::vector<int> m_changed_tets;
-  Points m_load_force;  // 3×n, constant
-  Points m_external_force;
-  std::vector<int> m_forced_nodes;        // by contacts, in the last step
-  std::vector<int> m_changed_nodes;       // whose external force may be another than in that before
-  std::vector<double> m_shape_stiffness;  // 2μ* per tet [Pa]; empty: isotropic stiffness
-  bool m_is_flow_driven = false;          // plastic flow follows the stress, not the strain
-  Field m_yield;                          // of each point: elastic strain norm [–]
-  bool m_flows = false;                   // anywhere
-  std::vector<char> m_is_flowing;         // of each run of kLanes points, in the last step
-  bool m_is_moved = false;                // some support moves
-  Fidelity m_fidelity;
-  double m_held_back_squares = 0.0;
-  Points m_held_back;  // 3×n [N] of a body that sleeps: loads less internal forces, where nodes are free
-  solid::StrainSummary m_rest_strain;  // of the body while it is at rest
+  ExternalForce m_force;
+  solid::StepLoads m_loads;  // of the present step
+  BodyMaterials m_materials;
+  PlasticFlow m_flow;
+  Economy m_economy;
+  bool m_has_moved_water = false;  // since the last commit, as is the next
+  bool m_has_begun_solid = false;
   StageObserver* m_observer = nullptr;
 };
 

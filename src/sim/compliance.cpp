@@ -30,40 +30,40 @@ constexpr int kSolvedAStep = 4;
 
 }  // namespace
 
-void LocalCompliance::learn(const BodyAtFrame& body, int vertex) {
+void LocalCompliance::learn(const BodyBetweenSteps& body, int vertex) {
   if (m_known_of_vertex[static_cast<std::size_t>(vertex)] >= 0) return;
-  const std::size_t place = m_known.size();
+  const std::size_t place = m_state.known.size();
   const auto needed = 3 * static_cast<Eigen::Index>(place + 1);
   if (m_columns.cols() < needed) {
     m_columns.conservativeResize(m_displacement.size(), 2 * needed);
     m_between.conservativeResize(2 * needed, 2 * needed);
   }
   m_known_of_vertex[static_cast<std::size_t>(vertex)] = static_cast<int>(place);
-  m_known.push_back(vertex);
-  m_is_guess.push_back(1);
-  m_force.push_back(Vec3::Zero());
-  m_held.push_back(Vec3::Zero());
+  m_state.known.push_back(vertex);
+  m_state.is_guess.push_back(1);
+  m_state.force.push_back(Vec3::Zero());
+  m_state.held.push_back(Vec3::Zero());
   guess_columns(body, place);
 }
 
-void LocalCompliance::guess_columns(const BodyAtFrame& body, std::size_t place) {
+void LocalCompliance::guess_columns(const BodyBetweenSteps& body, std::size_t place) {
   if (!m_is_prepared) body.solid.prepare_response(body.state, body.step_s);
   m_is_prepared = true;
-  const std::span<const int> nodes = body.surface.nodes(m_known[place]);
-  const std::span<const double> weights = body.surface.weights(m_known[place]);
+  const std::span<const int> nodes = body.surface.nodes(m_state.known[place]);
+  const std::span<const double> weights = body.surface.weights(m_state.known[place]);
   auto columns = m_columns.middleCols<3>(3 * static_cast<Eigen::Index>(place));
   columns.setZero();
   for (std::size_t k = 0; k < nodes.size(); ++k)
     columns.middleRows<3>(m_row_of_node[static_cast<std::size_t>(nodes[k])]) =
-        weights[k] * m_guess_factor * body.solid.compute_local_response(nodes[k]);
+        weights[k] * m_state.guess_factor * body.solid.compute_local_response(nodes[k]);
   update_between(body.surface, place);
 }
 
-StepStatus LocalCompliance::solve_columns(const BodyAtFrame& body, std::size_t place) {
+StepStatus LocalCompliance::solve_columns(const BodyBetweenSteps& body, std::size_t place) {
   guess_columns(body, place);
-  const double guessed = between(place, place).trace() / m_guess_factor;
-  const std::span<const int> nodes = body.surface.nodes(m_known[place]);
-  const std::span<const double> weights = body.surface.weights(m_known[place]);
+  const double guessed = between(place, place).trace() / m_state.guess_factor;
+  const std::span<const int> nodes = body.surface.nodes(m_state.known[place]);
+  const std::span<const double> weights = body.surface.weights(m_state.known[place]);
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < nodes.size(); ++k) m_load(axis, nodes[k]) = weights[k];
     ARGIL_TRY(body.solid.find_response(m_load, body.tick, m_response));
@@ -72,10 +72,10 @@ StepStatus LocalCompliance::solve_columns(const BodyAtFrame& body, std::size_t p
     for (std::size_t s = 0; s < m_nodes.size(); ++s)
       column.segment<3>(3 * static_cast<Eigen::Index>(s)) = m_response.col(m_nodes[s]);
   }
-  m_is_guess[place] = 0;
+  m_state.is_guess[place] = 0;
   update_between(body.surface, place);
   const double solved = between(place, place).trace();
-  if (guessed > 0.0) m_guess_factor = std::max(1.0, solved / guessed);
+  if (guessed > 0.0) m_state.guess_factor = std::max(1.0, solved / guessed);
   return StepStatus::ok();
 }
 
@@ -83,17 +83,18 @@ StepStatus LocalCompliance::solve_columns(const BodyAtFrame& body, std::size_t p
 /// guess and a solution there is nothing: with either kind by itself the whole is positive semidefinite.
 void LocalCompliance::update_between(const ContactSurface& surface, std::size_t place) {
   const auto moved = [&](std::size_t i, std::size_t j) {
-    const std::span<const int> nodes = surface.nodes(m_known[i]);
-    const std::span<const double> weights = surface.weights(m_known[i]);
+    const std::span<const int> nodes = surface.nodes(m_state.known[i]);
+    const std::span<const double> weights = surface.weights(m_state.known[i]);
     Mat3 sum = Mat3::Zero();
     for (std::size_t k = 0; k < nodes.size(); ++k)
       sum += weights[k] * m_columns.block<3, 3>(m_row_of_node[static_cast<std::size_t>(nodes[k])],
                                                 3 * static_cast<Eigen::Index>(j));
     return sum;
   };
-  for (std::size_t i = 0; i < m_known.size(); ++i) {
+  for (std::size_t i = 0; i < m_state.known.size(); ++i) {
     Mat3 block = Mat3::Zero();
-    if (m_is_guess[i] == m_is_guess[place]) block = 0.5 * (moved(i, place) + moved(place, i).transpose());
+    if (m_state.is_guess[i] == m_state.is_guess[place])
+      block = 0.5 * (moved(i, place) + moved(place, i).transpose());
     const auto row = 3 * static_cast<Eigen::Index>(i), column = 3 * static_cast<Eigen::Index>(place);
     m_between.block<3, 3>(row, column) = block;
     m_between.block<3, 3>(column, row) = block.transpose();
@@ -102,77 +103,78 @@ void LocalCompliance::update_between(const ContactSurface& surface, std::size_t 
 
 /// The last known vertex takes the place of the one that is forgotten.
 void LocalCompliance::forget(std::size_t place) {
-  const std::size_t last = m_known.size() - 1;
-  m_known_of_vertex[static_cast<std::size_t>(m_known[place])] = -1;
+  const std::size_t last = m_state.known.size() - 1;
+  m_known_of_vertex[static_cast<std::size_t>(m_state.known[place])] = -1;
   if (place != last) {
-    m_known_of_vertex[static_cast<std::size_t>(m_known[last])] = static_cast<int>(place);
+    m_known_of_vertex[static_cast<std::size_t>(m_state.known[last])] = static_cast<int>(place);
     m_columns.middleCols<3>(3 * static_cast<Eigen::Index>(place)) =
         m_columns.middleCols<3>(3 * static_cast<Eigen::Index>(last));
     const auto from = 3 * static_cast<Eigen::Index>(last), to = 3 * static_cast<Eigen::Index>(place);
     m_between.middleCols<3>(to) = m_between.middleCols<3>(from);
     m_between.middleRows<3>(to) = m_between.middleRows<3>(from);
-    m_known[place] = m_known[last];
-    m_is_guess[place] = m_is_guess[last];
-    m_force[place] = m_force[last];
-    m_held[place] = m_held[last];
+    m_state.known[place] = m_state.known[last];
+    m_state.is_guess[place] = m_state.is_guess[last];
+    m_state.force[place] = m_state.force[last];
+    m_state.held[place] = m_state.held[last];
   }
-  m_known.pop_back();
-  m_is_guess.pop_back();
-  m_force.pop_back();
-  m_held.pop_back();
+  m_state.known.pop_back();
+  m_state.is_guess.pop_back();
+  m_state.force.pop_back();
+  m_state.held.pop_back();
 }
 
-StepStatus LocalCompliance::begin_frame(const BodyAtFrame& body, const Points& x_before) {
+StepStatus LocalCompliance::begin_frame(const BodyBetweenSteps& body, const Points& x_before) {
+  m_has_begun_frame = true;
+  m_columns_before = m_columns.leftCols(3 * static_cast<Eigen::Index>(m_state.known.size()));
   m_is_prepared = false;
   // What acted is what was held less what the body yielded to it in the step.
   for (std::size_t s = 0; s < m_nodes.size(); ++s)
     m_own.segment<3>(3 * static_cast<Eigen::Index>(s)) =
         body.state.x.col(m_nodes[s]) - x_before.col(m_nodes[s]);
-  std::fill(m_held.begin(), m_held.end(), Vec3::Zero());
+  std::fill(m_state.held.begin(), m_state.held.end(), Vec3::Zero());
   for (const auto& [spring, share, group] : m_acting) {
     if (!body.solid.acts(group)) continue;
     const double yielded = spring.normal.dot(compute_mean(body.surface, spring, m_own));
     const Vec3 acted = share * (spring.force - spring.stiffness * yielded) * spring.normal;
     for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) {
       learn(body, spring.vertex[i]);
-      m_held[place_of(spring.vertex[i])] += spring.weight[i] * acted;
+      m_state.held[place_of(spring.vertex[i])] += spring.weight[i] * acted;
     }
   }
-  m_acting.clear();
-  for (std::size_t i = m_known.size(); i-- > 0;)
-    if (m_held[i].isZero(0.0) && m_force[i].isZero(0.0)) forget(i);
+  for (std::size_t i = m_state.known.size(); i-- > 0;)
+    if (m_state.held[i].isZero(0.0) && m_state.force[i].isZero(0.0)) forget(i);
   ARGIL_TRY(solve_due_columns(body));
   update_displacement();
   return StepStatus::ok();
 }
 
-StepStatus LocalCompliance::solve_due_columns(const BodyAtFrame& body) {
+StepStatus LocalCompliance::solve_due_columns(const BodyBetweenSteps& body) {
   int solved = 0;
   for (int guess = find_most_pressed_guess(); guess >= 0 && solved < kSolvedAStep; ++solved) {
     ARGIL_TRY(solve_columns(body, static_cast<std::size_t>(guess)));
     guess = find_most_pressed_guess();
   }
-  if (solved < kSolvedAStep && !m_known.empty())
-    ARGIL_TRY(solve_columns(body, m_next_renewed++ % m_known.size()));
-  for (std::size_t i = 0; i < m_known.size(); ++i)
-    if (m_is_guess[i]) guess_columns(body, i);
+  if (solved < kSolvedAStep && !m_state.known.empty())
+    ARGIL_TRY(solve_columns(body, m_state.next_renewed++ % m_state.known.size()));
+  for (std::size_t i = 0; i < m_state.known.size(); ++i)
+    if (m_state.is_guess[i]) guess_columns(body, i);
   return StepStatus::ok();
 }
 
 /// By what held it in the last step; −1: there is none.
 int LocalCompliance::find_most_pressed_guess() const {
   int most = -1;
-  for (std::size_t i = 0; i < m_known.size(); ++i)
-    if (m_is_guess[i] &&
-        (most < 0 || m_held[i].squaredNorm() > m_held[static_cast<std::size_t>(most)].squaredNorm()))
+  for (std::size_t i = 0; i < m_state.known.size(); ++i)
+    if (m_state.is_guess[i] && (most < 0 || m_state.held[i].squaredNorm() >
+                                                m_state.held[static_cast<std::size_t>(most)].squaredNorm()))
       most = static_cast<int>(i);
   return most;
 }
 
 void LocalCompliance::update_displacement() {
   m_displacement.setZero();
-  for (std::size_t i = 0; i < m_known.size(); ++i) {
-    const Vec3 change = m_force[i] - m_held[i];
+  for (std::size_t i = 0; i < m_state.known.size(); ++i) {
+    const Vec3 change = m_state.force[i] - m_state.held[i];
     for (int axis = 0; axis < 3; ++axis)
       if (change(axis) != 0.0)
         m_displacement += change(axis) * m_columns.col(3 * static_cast<Eigen::Index>(i) + axis);
@@ -180,28 +182,52 @@ void LocalCompliance::update_displacement() {
 }
 
 void LocalCompliance::release() {
-  std::fill(m_force.begin(), m_force.end(), Vec3::Zero());
+  std::fill(m_state.force.begin(), m_state.force.end(), Vec3::Zero());
   update_displacement();
 }
 
-void LocalCompliance::exchange_state(Archive& archive, const ContactSurface& surface) {
+void LocalCompliance::commit() {
+  if (m_has_begun_frame) m_acting.clear();
+  m_has_begun_frame = false;
+  m_committed = m_state;
+  m_committed_acting = m_acting.size();
+}
+
+/// Ticks append columns; only the begin of a frame changes those that were there.
+void LocalCompliance::roll_back(const ContactSurface& surface) {
+  for (const int vertex : m_state.known) m_known_of_vertex[static_cast<std::size_t>(vertex)] = -1;
+  m_state = m_committed;
+  m_acting.resize(m_committed_acting);
+  if (m_has_begun_frame) m_columns = m_columns_before;
+  m_has_begun_frame = false;
+  m_is_prepared = false;
+  find_places(surface);
+}
+
+/// All that follows from what is known.
+void LocalCompliance::find_places(const ContactSurface& surface) {
+  for (std::size_t i = 0; i < m_state.known.size(); ++i)
+    m_known_of_vertex.at(static_cast<std::size_t>(m_state.known[i])) = static_cast<int>(i);
+  m_between.setZero(m_columns.cols(), m_columns.cols());
+  for (std::size_t i = 0; i < m_state.known.size(); ++i) update_between(surface, i);
+  update_displacement();
+}
+
+void LocalCompliance::serialize(Archive& archive, const ContactSurface& surface) {
   ARGIL_ASSERT(m_acting.empty());
-  archive.list("compliance/known", m_known);
-  archive.list("compliance/force", m_force);
-  archive.list("compliance/held", m_held);
-  archive.list("compliance/is_guess", m_is_guess);
-  archive.number("compliance/guess_factor", m_guess_factor);
-  archive.number("compliance/next_renewed", m_next_renewed);
-  const auto num_columns = 3 * static_cast<Eigen::Index>(m_known.size());
+  archive.list("compliance/known", m_state.known);
+  archive.list("compliance/force", m_state.force);
+  archive.list("compliance/held", m_state.held);
+  archive.list("compliance/is_guess", m_state.is_guess);
+  archive.number("compliance/guess_factor", m_state.guess_factor);
+  archive.number("compliance/next_renewed", m_state.next_renewed);
+  const auto num_columns = 3 * static_cast<Eigen::Index>(m_state.known.size());
   Eigen::MatrixXd columns = m_columns.leftCols(archive.is_restoring() ? 0 : num_columns);
   archive.any_size("compliance/columns", columns);
   if (!archive.is_restoring()) return;
   m_columns = columns;
-  for (std::size_t i = 0; i < m_known.size(); ++i)
-    m_known_of_vertex.at(static_cast<std::size_t>(m_known[i])) = static_cast<int>(i);
-  m_between.resize(num_columns, num_columns);
-  for (std::size_t i = 0; i < m_known.size(); ++i) update_between(surface, i);
-  update_displacement();
+  find_places(surface);
+  commit();
 }
 
 Vec3 LocalCompliance::compute_mean(const ContactSurface& surface, const ContactSpring& spring,
@@ -217,7 +243,7 @@ Vec3 LocalCompliance::compute_mean(const ContactSurface& surface, const ContactS
   return mean;
 }
 
-double LocalCompliance::compute_yield(const ContactSurface& surface, const ContactSpring& spring) const {
+double LocalCompliance::compute_deflection(const ContactSurface& surface, const ContactSpring& spring) const {
   return spring.normal.dot(compute_mean(surface, spring, m_displacement));
 }
 
@@ -239,8 +265,8 @@ void LocalCompliance::assemble_balance(const std::vector<ContactSpring>& springs
     for (std::size_t i = 0; i < 3 && at.vertex[i] >= 0; ++i) {
       const std::size_t place = place_of(at.vertex[i]);
       const Vec3 direction = at.weight[i] * at.normal;
-      for (std::size_t k = 0; k < m_known.size(); ++k)
-        if (!m_force[k].isZero(0.0)) m_right[c] += direction.dot(between(place, k) * m_force[k]);
+      for (std::size_t k = 0; k < m_state.known.size(); ++k)
+        if (!m_state.force[k].isZero(0.0)) m_right[c] += direction.dot(between(place, k) * m_state.force[k]);
       for (std::size_t d = 0; d <= c; ++d)
         for (std::size_t j = 0; j < 3 && springs[d].vertex[j] >= 0; ++j)
           m_balance[c * m + d] +=
@@ -281,7 +307,7 @@ bool LocalCompliance::solve_balance(std::size_t m) {
 
 /// Springs that would draw are let go, those let go that would press again are taken back one by one, the
 /// one that presses most first.
-StepStatus LocalCompliance::press(const BodyAtFrame& body, std::vector<ContactSpring>& springs) {
+StepStatus LocalCompliance::press(const BodyBetweenSteps& body, std::vector<ContactSpring>& springs) {
   for (const ContactSpring& spring : springs) {
     ARGIL_DCHECK(spring.stiffness > 0.0);
     for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) learn(body, spring.vertex[i]);
@@ -315,11 +341,12 @@ StepStatus LocalCompliance::press(const BodyAtFrame& body, std::vector<ContactSp
   if (!is_balanced)
     return StepStatus::failed({body.tick, "contact", -1, "rounds in which the compliance finds no balance",
                                static_cast<double>(3 * m + 1), static_cast<double>(3 * m)});
-  std::fill(m_force.begin(), m_force.end(), Vec3::Zero());
+  std::fill(m_state.force.begin(), m_state.force.end(), Vec3::Zero());
   for (std::size_t c = 0; c < m; ++c) {
     springs[c].force = std::max(0.0, m_trial[c]);
     for (std::size_t i = 0; i < 3 && springs[c].vertex[i] >= 0; ++i)
-      m_force[place_of(springs[c].vertex[i])] += springs[c].weight[i] * springs[c].force * springs[c].normal;
+      m_state.force[place_of(springs[c].vertex[i])] +=
+          springs[c].weight[i] * springs[c].force * springs[c].normal;
   }
   update_displacement();
   return StepStatus::ok();

@@ -19,7 +19,7 @@ struct ContactSpring {
 };
 
 /// The body as the last physics step left it.
-struct BodyAtFrame {
+struct BodyBetweenSteps {
   solid::Solid& solid;
   const ContactSurface& surface;
   const solid::SolidState& state;
@@ -45,13 +45,13 @@ class LocalCompliance {
 
   /// After a physics step from x_before (3×n) on, under what was held: forgets the vertices that nothing
   /// presses.
-  StepStatus begin_frame(const BodyAtFrame& body, const Points& x_before);
+  StepStatus begin_frame(const BodyBetweenSteps& body, const Points& x_before);
 
   /// Lets the surface yield under `springs`. In: the force of each if the surface stayed as it is. Out: the
   /// forces f ≥ 0 in balance with the surface as it then is, f = f_in − k n·Δu, 0 where that were below. Of
   /// Δu, what guessed and solved vertices do to each other is left to the next tick's detection. The balance
   /// is unique and continuous in what it is given.
-  StepStatus press(const BodyAtFrame& body, std::vector<ContactSpring>& springs);
+  StepStatus press(const BodyBetweenSteps& body, std::vector<ContactSpring>& springs);
 
   /// Nothing presses any more; the surface comes back.
   void release();
@@ -59,10 +59,12 @@ class LocalCompliance {
   /// x + u at the nodes that carry the surface; the others as in x. 3×n both.
   void displace(const Points& x, Points& displaced) const;
   /// n·u where a spring acts [m].
-  double compute_yield(const ContactSurface& surface, const ContactSpring& spring) const;
+  double compute_deflection(const ContactSurface& surface, const ContactSpring& spring) const;
+  void commit();
+  void roll_back(const ContactSurface& surface);
   /// All that press takes from earlier ticks; right after begin_frame, or before the first.
-  void exchange_state(Archive& archive, const ContactSurface& surface);
-  int num_known() const { return static_cast<int>(m_known.size()); }
+  void serialize(Archive& archive, const ContactSurface& surface);
+  int num_known() const { return static_cast<int>(m_state.known.size()); }
 
  private:
   struct Acting {
@@ -70,13 +72,22 @@ class LocalCompliance {
     double share;
     int group;
   };
-  void learn(const BodyAtFrame& body, int vertex);
-  void guess_columns(const BodyAtFrame& body, std::size_t place);
-  StepStatus solve_columns(const BodyAtFrame& body, std::size_t place);
-  StepStatus solve_due_columns(const BodyAtFrame& body);
+  /// What ticks and steps change, but for the columns.
+  struct State {
+    std::vector<int> known;         // vertices whose columns are known
+    std::vector<char> is_guess;     // of each
+    std::vector<Vec3> force, held;  // F and G of each
+    double guess_factor = 1.0;      // deflection of the vertex solved for last over that of its nodes alone
+    std::size_t next_renewed = 0;
+  };
+  void learn(const BodyBetweenSteps& body, int vertex);
+  void guess_columns(const BodyBetweenSteps& body, std::size_t place);
+  StepStatus solve_columns(const BodyBetweenSteps& body, std::size_t place);
+  StepStatus solve_due_columns(const BodyBetweenSteps& body);
   int find_most_pressed_guess() const;
   void update_between(const ContactSurface& surface, std::size_t place);
   void forget(std::size_t place);
+  void find_places(const ContactSurface& surface);
   void update_displacement();
   Vec3 compute_mean(const ContactSurface& surface, const ContactSpring& spring,
                     const Eigen::VectorXd& displacement) const;
@@ -89,20 +100,19 @@ class LocalCompliance {
     return static_cast<std::size_t>(m_known_of_vertex[static_cast<std::size_t>(vertex)]);
   }
 
-  std::vector<int> m_nodes;            // that carry the surface, increasing
-  std::vector<int> m_row_of_node;      // first of three; −1: within the body
-  std::vector<int> m_known;            // vertices whose columns are known
+  std::vector<int> m_nodes;        // that carry the surface, increasing
+  std::vector<int> m_row_of_node;  // first of three; −1: within the body
+  State m_state, m_committed;
+  std::size_t m_committed_acting = 0;
   std::vector<int> m_known_of_vertex;  // −1: not known
   Eigen::MatrixXd m_columns;           // C: 3 rows a carrying node, 3 columns a known vertex
   Eigen::MatrixXd m_between;           // 3×3 blocks of the balance: vertex i by a force on vertex j
-  std::vector<char> m_is_guess;        // of each known vertex
-  double m_guess_factor = 1.0;         // yield of the vertex solved for last over that of its nodes alone
-  std::vector<Vec3> m_force, m_held;   // F and G of each known vertex
   std::vector<Acting> m_acting;        // since the last physics step
+  bool m_has_begun_frame = false;      // since the last commit
+  Eigen::MatrixXd m_columns_before;    // and the columns before that
   Eigen::VectorXd m_displacement;      // u, 3 rows a carrying node
   bool m_is_prepared = false;          // the body's matrix is that of find_columns
-  std::size_t m_next_renewed = 0;
-  Points m_load, m_response;  // 3×n
+  Points m_load, m_response;           // 3×n
   // Working arrays of press.
   Eigen::VectorXd m_own;  // displacement by one spring
   std::vector<double> m_balance, m_factor, m_right, m_trial;

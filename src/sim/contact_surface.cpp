@@ -83,10 +83,10 @@ bool ContactSurface::find_moved(const OrderedItems& nodes, const Points& x, std:
   return true;
 }
 
-void ContactSurface::add_force(const contact::Contact& contact, const Vec3& f, NodalForce& force) const {
-  for (std::size_t c = 0; c < 3 && contact.vertex[c] >= 0; ++c) {
-    const Vec3 share = contact.weight[c] * f;
-    const auto i = static_cast<std::size_t>(contact.vertex[c]);
+void ContactSurface::add_force(const SurfaceForce& f, NodalForce& force) const {
+  for (std::size_t c = 0; c < 3 && f.vertex[c] >= 0; ++c) {
+    const Vec3 share = f.weight[c] * f.force;
+    const auto i = static_cast<std::size_t>(f.vertex[c]);
     for (auto k = static_cast<std::size_t>(m_begin[i]); k < static_cast<std::size_t>(m_begin[i + 1]); ++k)
       force.add(m_node[k], m_weight[k] * share);
   }

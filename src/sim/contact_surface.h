@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,13 @@
 #include "sim/state.h"
 
 namespace argil::sim {
+
+/// A force on vertices of the touched surface, shared by weights of sum 1.
+struct SurfaceForce {
+  std::array<int, 3> vertex = {-1, -1, -1};  ///< −1 beyond the last
+  std::array<double, 3> weight = {};
+  Vec3 force = Vec3::Zero();  ///< [N]
+};
 
 /// What the tool touches: the boundary of the solid, or the skin embedded in it. Its vertices lie at x_s = W
 /// x, and what acts on them acts on the nodes as f = Wᵀ f_s: the same weights, so that force, torque and work
@@ -32,8 +40,8 @@ class ContactSurface {
   bool find_moved(const OrderedItems& nodes, const Points& x, std::vector<int>& vertices,
                   Points& places) const;
 
-  /// Adds Wᵀ f to the nodes' forces, f the force on a contact [N].
-  void add_force(const contact::Contact& contact, const Vec3& f, NodalForce& force) const;
+  /// Adds Wᵀ f to the nodes' forces [N].
+  void add_force(const SurfaceForce& f, NodalForce& force) const;
 
   /// Appends a contact's stiffness [N/m] along a direction, between nodes. What hangs on nodes that share no
   /// tet is taken as one stiffness for each vertex of the contact, in proportion to its weight: no softer, as

@@ -32,6 +32,10 @@ struct RateParams {
   int water_period_ticks = 10;   ///< uptake, diffusion and moduli; a multiple of physics_period_ticks
   int frame_period_ticks = 100;  ///< pictures
   BetweenFrames between_frames = BetweenFrames::hold;
+
+  double step_seconds() const { return haptic_period * physics_period_ticks; }  ///< of physics [s]
+  /// Does step number `step`, from 1, move water?
+  bool moves_water(Tick step) const { return step * physics_period_ticks % water_period_ticks == 0; }
 };
 
 /// Everything that stays the same during a run, in SI units.

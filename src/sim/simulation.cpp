@@ -2,20 +2,57 @@
 
 #include <utility>
 
+#include "base/check.h"
+
 namespace argil::sim {
 
 Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& params,
                        const device::DeviceSample& start)
     : m_params(params),
       m_body_side(std::move(body), m_params),
-      m_hand(tool, m_params, m_body_side.surface(), m_body_side.solid().elements(), start),
-      m_load(m_body_side.solid().elements().num_nodes()),
-      m_answer(m_body_side.surface().num_vertices()) {
+      m_hand(tool, m_params, m_body_side.surface(), m_body_side, start),
+      m_result(m_body_side.surface().num_vertices()) {
   m_hand.place_surface(surface_now());
 }
 
-StepStatus Simulation::settle() {
-  ARGIL_TRY(m_body_side.settle());
+StepStatus tick(HandSide& hand, BodySteps& steps, const device::DeviceSample& sample, const TickPlan& plan,
+                ContactLoad* load) {
+  StepStatus status = make_tick(hand, steps, sample, plan);
+  if (status.is_ok())
+    hand.commit();
+  else
+    hand.roll_back(load);
+  return status;
+}
+
+StepStatus Simulation::tick(const device::DeviceSample& sample) {
+  const bool is_due = clock().due(m_params.rates.physics_period_ticks);
+  return tick(sample, {.begins_step = is_due, .waits_for_step = is_due});
+}
+
+StepStatus Simulation::tick(const device::DeviceSample& sample, const TickPlan& plan) {
+  ARGIL_ASSERT(plan.begins_step == plan.waits_for_step ||
+               m_params.rates.between_frames != BetweenFrames::compliant);
+  return sim::tick(m_hand, *this, sample, plan, plan.waits_for_step ? &m_load : nullptr);
+}
+
+void Simulation::begin(HandSide& hand) {
+  hand.hand_over(m_load);
+  m_step_status = m_body_side.step(m_load, m_result);
+  if (m_step_status.is_ok() && m_result.has_moved) m_step_status = hand.update_compliance();
+  if (m_step_status.is_ok())
+    m_body_side.commit();
+  else
+    m_body_side.roll_back();
+}
+
+StepStatus Simulation::deliver(HandSide& hand) {
+  if (m_step_status.is_ok()) hand.receive(m_result);
+  return m_step_status;
+}
+
+StepStatus Simulation::find_equilibrium() {
+  ARGIL_TRY(m_body_side.find_equilibrium());
   m_hand.place_surface(surface_now());
   return StepStatus::ok();
 }

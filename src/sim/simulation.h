@@ -4,36 +4,37 @@
 
 #include "sim/body_side.h"
 #include "sim/hand_side.h"
+#include "sim/tick.h"
 
 namespace argil::sim {
 
 /// One body, one tool, one loop. Feed it a device sample a tick; read records and frames between ticks.
 /// Same parameters and samples give the same bits on any number of threads.
-class Simulation {
+class Simulation final : private BodySteps {
  public:
   /// `tool`: closed surface in the tool frame; `start`: pose and mode before the first tick.
   Simulation(Body body, const mesh::TriangleMesh& tool, const Params& params,
              const device::DeviceSample& start);
 
   /// One haptic tick: the tool goes to `sample`, the paper's loop runs, the hand gets its force. A physics
-  /// step takes no time.
+  /// step takes no time. After a tick that fails all is as before it.
   StepStatus tick(const device::DeviceSample& sample);
-  /// The same with steps that the hand does not wait for: what a step finds is seen in the tick that `plan`
-  /// says. A step that failed is told when it is seen.
+  /// The same with steps that the hand does not wait for: it receives what a step finds in the tick that
+  /// `plan` says. A step that failed is told then.
   StepStatus tick(const device::DeviceSample& sample, const TickPlan& plan);
 
-  /// Of the last step under a plan, also when its answer has not been seen.
+  /// Of the last step, also when its result has not been received.
   const StepStatus& step_status() const { return m_step_status; }
 
   /// Takes the body to its elastic equilibrium under its loads, without the tool. Kinematics, records and
   /// frames are those of the equilibrium then.
-  StepStatus settle();
-
-  /// True when the tool touches or lies in the body now; a run must not start so.
+  StepStatus find_equilibrium();
+  /// Does the tool touch or lie in the body as it is now? A run must not start so.
   bool tool_overlaps_body() const;
 
   /// The two sides, for a loop that runs each in a thread of its own.
   HandSide& hand() { return m_hand; }
+  const HandSide& hand() const { return m_hand; }
   BodySide& body_side() { return m_body_side; }
   const BodySide& body_side() const { return m_body_side; }
   const HandState& hand_state() const { return m_hand.state(); }
@@ -68,14 +69,16 @@ class Simulation {
   }
 
  private:
-  void exchange_state(Archive& archive);
+  void begin(HandSide& hand) override;
+  StepStatus deliver(HandSide& hand) override;
+  void serialize(Archive& archive);
   Points surface_now() const;  // 3×vertices of the touched surface
 
   Params m_params;
   BodySide m_body_side;
   HandSide m_hand;
-  ContactLoad m_load;  // given to the body
-  BodyAnswer m_answer;
+  ContactLoad m_load;  // of the last step
+  StepResult m_result;
   StepStatus m_step_status = StepStatus::ok();
 };
 

@@ -9,93 +9,84 @@ Snapshot Simulation::take_snapshot() {
   ARGIL_ASSERT(m_hand.is_between_steps(), clock().tick);
   Snapshot snapshot;
   Archive archive = Archive::make_saving(snapshot);
-  exchange_state(archive);
+  serialize(archive);
   return snapshot;
 }
 
 void Simulation::restore(const Snapshot& snapshot, const std::string& origin) {
   Archive archive = Archive::make_restoring(snapshot, origin);
-  exchange_state(archive);
-  m_hand.see_again(m_body_side.state());
+  serialize(archive);
+  m_hand.restore_surface();
 }
 
-void Simulation::exchange_state(Archive& archive) {
-  m_hand.exchange_state(archive);
-  m_body_side.exchange_state(archive);
+void Simulation::serialize(Archive& archive) {
+  m_hand.serialize(archive);
+  m_body_side.serialize(archive);
 }
 
-void HandSide::exchange_state(Archive& archive) {
-  archive.number("tick", m_clock.tick);
-  archive.number("steps_begun", m_steps_begun);
+void HandSide::serialize(Archive& archive) {
+  archive.number("tick", m_state.clock.tick);
+  archive.number("steps_begun", m_state.steps_begun);
   archive.array("tool/position", m_state.tool.position);
   archive.quaternion("tool/orientation", m_state.tool.orientation);
   archive.number("tool/mode", m_state.mode);
   archive.array("tool/path", m_state.motion.path);
   archive.array("tool/turn", m_state.motion.turn);
-  exchange_contacts(archive);
+  serialize_contacts(archive);
   archive.number("ledger/port_energy", m_state.port_energy);
   archive.number("ledger/passivity_energy", m_state.passivity_energy);
 }
 
-void HandSide::see_again(const BodyState& body) {
-  const bool has_moved = m_state.has_moved;
-  forget_motion();
-  m_is_surface_known = false;
-  if (has_moved) move_surface(body.solid.x);
+void HandSide::restore_surface() {
+  m_touched.restore(m_body.state().solid.x);
+  commit();
 }
 
-/// Moduli and kinematics are functions of what was saved and are found again.
-void BodySide::exchange_state(Archive& archive) {
+/// Kinematics are a function of what was saved and are found again.
+void BodySide::serialize(Archive& archive) {
   archive.number("steps", m_state.steps);
-  archive.number("tick_of_step", m_hand.ticks);
+  archive.number("tick_of_step", m_state.hand.ticks);
   archive.array("solid/x", m_state.solid.x);
   archive.array("solid/v", m_state.solid.v);
   archive.array("solid/plastic_strain", m_state.solid.plastic_strain);
   archive.any_size("solid/x_before", m_state.solid.x_before);
   archive.any_size("solid/v_before", m_state.solid.v_before);
   archive.number("solid/is_at_rest", m_state.is_at_rest);
-  archive.number("solid/slow_steps", m_state.slow_steps);
-  archive.number("solid/rest_energy", m_rest_strain.elastic_energy);
-  archive.number("solid/rest_plastic_strain", m_rest_strain.largest_plastic_strain);
+  m_economy.serialize_rest(archive);
   m_solid.exchange_state(archive);
-  exchange_water(archive);
+  serialize_water(archive);
   archive.number("ledger/plastic_dissipation", m_state.plastic_dissipation);
   archive.number("ledger/contact_work", m_state.contact_work);
   archive.number("ledger/energy_given", m_state.energy_given);
-  if (archive.is_restoring())
-    for (int t = 0; t < m_body.mesh.num_tets(); ++t) refresh_material(t, m_water.state().collected(t));
+  m_materials.serialize(archive);
   m_solid.exchange_frames(archive);
-  if (!m_fidelity.is_full()) {
-    archive.array("fidelity/held_back", m_held_back);
-    archive.number("fidelity/held_back_squares", m_held_back_squares);
-    archive.number("fidelity/flows", m_flows);
-    m_fidelity.exchange_state(archive);
-  }
+  m_flow.serialize(archive);
+  m_economy.serialize(archive);
   if (!archive.is_restoring()) return;
-  const StepStatus status = m_solid.restore_kinematics(m_state.solid.x, m_hand.ticks);
+  const StepStatus status = m_solid.restore_kinematics(m_state.solid.x, m_state.hand.ticks);
   ARGIL_ASSERT(status.is_ok());
+  commit();
 }
 
-void HandSide::exchange_contacts(Archive& archive) {
+void HandSide::serialize_contacts(Archive& archive) {
   archive.array("contact/tool_position", m_state.contact_tool.position);
   archive.quaternion("contact/tool_orientation", m_state.contact_tool.orientation);
-  archive.array("contact/x", m_state.contact_x);
-  archive.number("contact/has_moved", m_state.has_moved);
+  m_touched.serialize(archive);
   archive.number("contact/num_contacts", m_state.num_contacts);
   archive.number("contact/force_age", m_state.force_age);
   archive.array("hand/force", m_state.hand_force);
   archive.array("hand/torque", m_state.hand_torque);
   archive.array("hand/withheld_force", m_state.withheld.force);
   archive.array("hand/withheld_torque", m_state.withheld.torque);
-  archive.array("hand/gated_force", m_gated.force);
-  archive.array("hand/gated_torque", m_gated.torque);
-  archive.number("hand/gate_events", m_gated.events);
-  m_chatter.exchange_state(archive);
-  Tick gate_count = m_gate.count();
-  Vec3 gate_force = m_gate.last_force();
+  archive.array("hand/gated_force", m_state.gated.force);
+  archive.array("hand/gated_torque", m_state.gated.torque);
+  archive.number("hand/gate_events", m_state.gated.events);
+  m_state.chatter.exchange_state(archive);
+  Tick gate_count = m_state.gate.count();
+  Vec3 gate_force = m_state.gate.last_force();
   archive.number("hand/gate_count", gate_count);
   archive.array("hand/gate_last_force", gate_force);
-  Tick gate_withdrawn = m_gate.withdrawn();
+  Tick gate_withdrawn = m_state.gate.withdrawn();
   archive.number("hand/gate_withdrawn", gate_withdrawn);
 
   contact::ContactState inside = m_detector.state();
@@ -113,17 +104,17 @@ void HandSide::exchange_contacts(Archive& archive) {
   archive.list("contact/tool_edge", tool_edge);
   archive.list("contact/body_edge", body_edge);
   archive.list("contact/edge_stretch", inside.edge_stretch);
-  exchange_springs(archive);
-  m_compliance.exchange_state(archive, m_surface);
+  serialize_springs(archive);
+  m_compliance.serialize(archive, m_surface);
   if (!archive.is_restoring()) return;
-  m_gate.restore(gate_count, gate_force, gate_withdrawn);
+  m_state.gate.restore(gate_count, gate_force, gate_withdrawn);
   inside.edges.clear();
   for (std::size_t i = 0; i < tool_edge.size(); ++i) inside.edges.emplace_back(tool_edge[i], body_edge.at(i));
   m_detector.restore(inside);
 }
 
 /// A spring is a column: vertices, weights, normal, stiffness, force, point.
-void HandSide::exchange_springs(Archive& archive) {
+void HandSide::serialize_springs(Archive& archive) {
   Eigen::Matrix<double, 14, Eigen::Dynamic> table(14, m_springs.size());
   for (std::size_t i = 0; i < m_springs.size(); ++i) {
     const ContactSpring& s = m_springs[i];
@@ -154,17 +145,15 @@ void HandSide::exchange_springs(Archive& archive) {
   }
 }
 
-void BodySide::exchange_water(Archive& archive) {
+void BodySide::serialize_water(Archive& archive) {
   water::WaterState water = m_water.state();
   archive.array("water/saturation", water.saturation);
   archive.array("water/carry", water.carry);
-  archive.array("water/collected", water.collected);
   archive.number("water/initial", water.initial);
   archive.number("water/added", water.added.sum);
   archive.number("water/added_error", water.added.error);
   archive.number("water/removed", water.removed.sum);
   archive.number("water/removed_error", water.removed.error);
-  archive.number("water/nothing_collected", water.nothing_collected);
   if (archive.is_restoring()) m_water.restore(water);
 }
 

@@ -1,16 +1,20 @@
 #pragma once
 
 #include "contact/contact.h"
+#include "device/chatter_watch.h"
 #include "device/gate.h"
 #include "device/passivity.h"
 #include "device/sample.h"
 #include "embed/embedding.h"
 #include "mesh/topology.h"
+#include "sim/clock.h"
 #include "solid/loads.h"
 #include "solid/solid.h"
 #include "water/water.h"
 
 namespace argil::sim {
+
+struct Params;
 
 /// The body as a scene gives it; nothing in it changes during a run.
 struct Body {
@@ -25,18 +29,30 @@ struct Body {
   embed::Embedding skin_embedding;
 };
 
-/// All that the hand's side changes. A checkpoint holds every field of both sides (snapshot.cpp).
+/// The hand as it is known outside: what a picture and its hash take from it.
+struct HandPose {
+  Tick ticks = 0;  ///< that it has made
+  contact::Pose tool;
+  device::Wrench felt;  ///< before passivity and gate
+};
+
+/// What the hand's side changes in every tick. The touched surface, the contacts and the gathered load, whose
+/// size is the scene's, keep their own.
 struct HandState {
+  Clock clock;
+  Tick steps_begun = 0;        ///< of the body
+  int ticks_since_step = 0;    ///< since the last of these began
+  bool has_felt_anew = false;  ///< some detection since then
   // device
   contact::Pose tool;  ///< at the end of the last tick
   device::ToolMode mode = device::ToolMode::push;
   device::TickMotion motion;  ///< of the hand in the last tick
   device::Wrench withheld;    ///< what the passivity controller took off the last force
+  device::ChatterWatch chatter;
+  device::OutputGate gate;
+  device::GatedForce gated;
   // contact
   contact::Pose contact_tool;       ///< tool at the end of the last detection
-  Points contact_x;                 ///< touched surface at the end of the last detection [m]
-  Points surface_x;                 ///< and where it has moved to since; as long as has_moved
-  bool has_moved = false;           ///< else it is still at contact_x
   Vec3 hand_force = Vec3::Zero();   ///< [N] that the hand feels
   Vec3 hand_torque = Vec3::Zero();  ///< [N m] about the hand's point
   int force_age = 0;                ///< [ticks] since it was computed
@@ -44,18 +60,23 @@ struct HandState {
   // ledgers
   double port_energy = 0.0;       ///< [J] work of the device's force on the hand since the start
   double passivity_energy = 0.0;  ///< [J] that the passivity controller has kept from the hand
+
+  explicit HandState(const Params& params);
 };
 
-/// All that the body's side changes, but for the water.
-struct BodyState {
-  Tick steps = 0;  ///< since the start
-  solid::SolidState solid;
-  bool is_at_rest = false;  ///< nothing acts on the body and it does not move: no need to solve
-  int slow_steps = 0;       ///< physics steps in a row that were slower than rest_speed
-  // ledgers
+/// How far the body's side has come, and its ledgers.
+struct BodyProgress {
+  Tick steps = 0;                    ///< since the start
+  HandPose hand;                     ///< when it handed over the load of the last step
+  bool is_at_rest = false;           ///< nothing acts on the body and it does not move: no need to solve
   double plastic_dissipation = 0.0;  ///< [J] since the start
   double contact_work = 0.0;         ///< [J] done on the body since the start
   double energy_given = 0.0;         ///< [J] to the body by hand, loads and supports, recoils not taken off
+};
+
+/// What the body's side changes in a step. Water and materials keep their own.
+struct BodyState : BodyProgress {
+  solid::SolidState solid;
 };
 
 }  // namespace argil::sim

@@ -28,7 +28,7 @@ Kinematics::Kinematics(const Elements& elements, StrainModel model, int threads)
     : m_model(model), m_threads(threads) {
   const Eigen::Index num_points = elements.num_points();
   const bool is_linear_tet = elements.nodes_per_tet == 4;
-  if (!is_linear_tet || model == StrainModel::neo_hookean) m_deformation.resize(3, 3 * num_points);
+  if (!is_linear_tet || !find_law(model).is_quadratic) m_deformation.resize(3, 3 * num_points);
   m_rotation.resize(3, 3 * num_points);
   m_strain.setZero(6, num_points);
   m_volume_ratio.setOnes(num_points);
@@ -39,21 +39,23 @@ Kinematics::Kinematics(const Elements& elements, StrainModel model, int threads)
   m_group_volume_ratio.setOnes((num_batches + kBatchGroup - 1) / kBatchGroup);
 }
 
-void Kinematics::update(const Elements& elements, const Points& x, const Update& how) {
+void Kinematics::update(const Elements& elements, const Eigen::Matrix3Xd& gradient, const Points& x,
+                        const Update& how) {
   if (elements.nodes_per_tet == 4) {
-    set_tets(elements, x, how);
-    m_min_volume_ratio = find_least_of_groups(how.batches);
+    set_tets(elements, gradient, x, how);
+    m_min_volume_ratio = find_least_of_groups(how.batches.visited());
   } else {
-    set_quadratic(elements, x, how.keeps_frames);
+    set_quadratic(elements, gradient, x, how.keeps_frames);
     m_min_volume_ratio = find_least(m_volume_ratio);
   }
 }
 
-void Kinematics::set_tets(const Elements& elements, const Points& x, const Update& how) {
+void Kinematics::set_tets(const Elements& elements, const Eigen::Matrix3Xd& gradient, const Points& x,
+                          const Update& how) {
   const TetArrays tets{x.data(),
                        elements.nodes.data(),
-                       elements.gradient.data(),
-                       m_model == StrainModel::linear,
+                       gradient.data(),
+                       find_law(m_model).is_linear,
                        keeps_deformation() ? m_deformation.data() : nullptr,
                        m_rotation.data(),
                        how.keeps_frames ? nullptr : m_turned_gradient.data(),
@@ -67,17 +69,15 @@ void Kinematics::set_tets(const Elements& elements, const Points& x, const Updat
     m_batch_volume_ratio(begin / kLanes) = find_least(m_volume_ratio.segment(begin, end - begin));
     how.is_moved[static_cast<std::size_t>(begin / kLanes)] = 1;
   };
-  if (how.batches)
-    for_batches(*how.batches, elements.num_tets(), m_threads, set);
-  else
-    for_batches(elements.num_tets(), m_threads, set);
+  how.batches.each(elements.num_tets(), set);
 }
 
-void Kinematics::set_quadratic(const Elements& elements, const Points& x, bool keeps_frames) {
+void Kinematics::set_quadratic(const Elements& elements, const Eigen::Matrix3Xd& rest_gradient,
+                               const Points& x, bool keeps_frames) {
   constexpr int N = 10;
   parallel_for(elements.num_points(), m_threads, [&](std::ptrdiff_t p) {
     const int tet = elements.tet_of_point(static_cast<int>(p));
-    const Eigen::Matrix<double, 3, N> gradient = elements.gradient.middleCols<N>(N * p);
+    const Eigen::Matrix<double, 3, N> gradient = rest_gradient.middleCols<N>(N * p);
     Eigen::Matrix<double, 3, N> corners;
     for (int i = 0; i < N; ++i) corners.col(i) = x.col(elements.nodes(i, tet));
     const Mat3 F = corners * gradient.transpose();

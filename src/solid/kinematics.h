@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "base/ordered_runs.h"
 #include "solid/elements.h"
 #include "solid/law.h"
 
@@ -16,14 +17,14 @@ class Kinematics {
 
   /// Which tets an update looks at, and what it does with their frames.
   struct Update {
-    const std::vector<int>* batches = nullptr;  ///< runs of kLanes tets that may have moved; null: all
-    bool keeps_frames = false;                  ///< Q ∇N stays as it is
-    double frame_tolerance = 0.0;               ///< on ‖R − Q‖, beyond which Q becomes R (4-node tets)
-    std::vector<char>& is_turned;               ///< set to 1 for tets whose Q changed
-    std::vector<char>& is_moved;                ///< set to 1 for runs of kLanes tets that were looked at
+    const OrderedRuns& batches;    ///< runs of kLanes tets that may have moved
+    bool keeps_frames = false;     ///< Q ∇N stays as it is
+    double frame_tolerance = 0.0;  ///< on ‖R − Q‖, beyond which Q becomes R (4-node tets)
+    std::vector<char>& is_turned;  ///< set to 1 for tets whose Q changed
+    std::vector<char>& is_moved;   ///< set to 1 for runs of kLanes tets that were looked at
   };
-  /// Of the same elements at each call; x: 3×n nodes [m].
-  void update(const Elements& elements, const Points& x, const Update& how);
+  /// Of the same elements at each call. gradient: ∇N [1/m] of the shape at rest; x: 3×n nodes [m].
+  void update(const Elements& elements, const Eigen::Matrix3Xd& gradient, const Points& x, const Update& how);
   /// A tet's frame is made anew at the next update.
   void drop_frame(int tet);
 
@@ -43,8 +44,10 @@ class Kinematics {
 
  private:
   bool keeps_deformation() const { return m_deformation.size() > 0; }
-  void set_tets(const Elements& elements, const Points& x, const Update& how);
-  void set_quadratic(const Elements& elements, const Points& x, bool keeps_frames);
+  void set_tets(const Elements& elements, const Eigen::Matrix3Xd& gradient, const Points& x,
+                const Update& how);
+  void set_quadratic(const Elements& elements, const Eigen::Matrix3Xd& gradient, const Points& x,
+                     bool keeps_frames);
   double find_least_of_groups(const std::vector<int>* batches);
 
   StrainModel m_model;

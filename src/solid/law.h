@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "base/mandel.h"
-#include "solid/parameters.h"
+#include "base/types.h"
 
 namespace argil::solid {
 
@@ -12,7 +15,7 @@ struct Elasticity {
   double lambda = 0.0;         ///< [Pa]
   double mu = 0.0;             ///< [Pa]
   const Mat6* C = nullptr;     ///< [Pa], Mandel; takes the place of both where it is given
-  double excess_bulk = 0.0;    ///< part of the bulk modulus that acts on `pressure_ratio` instead [Pa]
+  double excess_bulk = 0.0;    ///< part of the bulk modulus that acts on `volume_change` instead [Pa]
   double volume_change = 0.0;  ///< mean relative volume change around, which excess_bulk multiplies [–]
 };
 
@@ -21,6 +24,60 @@ struct PointMotion {
   Mat3 F = Mat3::Identity();
   Mat3 R = Mat3::Identity();
 };
+
+/// How plastic strain enters a law.
+enum class PlasticSplit {
+  additive,        ///< ε_e = ε − ε_p
+  multiplicative,  ///< Fₑ = F F_p⁻¹ with F_p = 1 + ε_p, scaled; no eigenvalue of ε_p may reach −1
+  none,            ///< the law has no plastic flow: ε_p = 0, and no flow_drive
+};
+
+/// An elastic law at a point: its traits, by which the body chooses how to work with it, and its functions.
+/// Each law is one file law_*.cpp; kElasticLaws below lists all of them.
+struct ElasticLaw {
+  /// Of a point, its plastic strain (6, Mandel) and its elastic constants.
+  template <class Value>
+  using Function = Value (*)(const PointMotion& motion, const Vec6& plastic_strain, const Elasticity& e);
+
+  const char* name;     ///< as in JSON
+  const char* about;    ///< what the law is for, in the list of parameters
+  const char* summary;  ///< its line in the summary of a model
+  bool is_simplified;   ///< the summary counts it among the simplifications
+
+  /// The strain is linear in the displacement: R = 1, the stiffness never turns, inversion means nothing.
+  bool is_linear;
+  /// W = ½ ε_e:C:ε_e in the strain ε of the frame R. ε and R say all of the motion then, 4-node tets go eight
+  /// at a time (tet_lanes.h), and the matrix of a one-step solve keeps its rotation. Any other law keeps F
+  /// and takes ∂P/∂F.
+  bool is_quadratic;
+  bool takes_full_stiffness;  ///< C (6×6) may take the place of λ and μ
+  bool bears_inversion;  ///< W is finite where det F ≤ 0; else it is infinite there, P and ∂P/∂F are NaN
+  bool has_cancelling_energy;  ///< W near rest is what is left of terms of the size of the moduli
+  PlasticSplit plastic_split;
+
+  Function<double> energy_density;  ///< see compute_energy_density, and so on below
+  Function<Mat3> piola;
+  Function<Mat9> tangent;
+  Vec6 (*flow_drive)(const PointMotion& motion, const Vec6& plastic_strain, const Elasticity& e,
+                     double shape_stiffness);
+  double (*volume_change)(const PointMotion& motion, const Vec6& plastic_strain);
+  Mat3 (*volume_gradient)(const PointMotion& motion, const Vec6& plastic_strain);
+};
+
+extern const ElasticLaw kCorotationalLaw, kLinearLaw, kNeoHookeanLaw, kHenckyLaw;
+
+/// The laws; kElasticLaws is in the same order.
+enum class StrainModel {
+  corotational,  ///< small strain in the frame turned by the polar decomposition
+  linear,        ///< the paper's Cauchy strain
+  neo_hookean,   ///< stable neo-Hookean law, isotropic: the reference for large strain [Smith2018]
+  hencky,        ///< large strain, isotropic, linear in the logarithmic strain [Hencky1928]
+};
+inline constexpr std::array kElasticLaws{&kCorotationalLaw, &kLinearLaw, &kNeoHookeanLaw, &kHenckyLaw};
+
+inline const ElasticLaw& find_law(StrainModel model) {
+  return *kElasticLaws[static_cast<std::size_t>(model)];
+}
 
 PointMotion make_motion(StrainModel model, const Mat3& F);
 
@@ -35,9 +92,6 @@ Mat6 make_isotropic_stiffness(double lambda, double mu);
 Vec6 compute_stress(const Elasticity& e, const Vec6& elastic_strain);
 
 /// Energy per rest volume [J/m³] without the excess bulk modulus.
-/// linear, corotational: ½ ε_e:C:ε_e with ε_e = ε − ε_p. neo_hookean [Smith2018, without the logarithm]:
-/// ½μ(tr FₑᵀFₑ − 3) − μ(J − 1) + ½(λ + μ)(J − 1)², J = det Fₑ, Fₑ = F F_p⁻¹, F_p = 1 + ε_p scaled to det F_p
-/// = exp(tr ε_p).
 double compute_energy_density(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
                               const Elasticity& e);
 
@@ -54,12 +108,11 @@ Mat9 compute_tangent(StrainModel model, const PointMotion& motion, const Vec6& p
 Mat9 make_positive(const Mat9& tangent);
 
 /// What drives plastic flow that keeps the volume: −dev ∂W/∂ε_p over 2μ* [–], along which flow loses energy;
-/// dev ε_e in an isotropic linear law. With the Mandel stress M = Fₑᵀ ∂W/∂Fₑ the neo-Hookean law has −∂W/∂ε_p
-/// = sym(dev M (1 + ε_p)⁻¹) for a change without trace. shape_stiffness: 2μ* [Pa].
+/// dev ε_e in an isotropic quadratic law. shape_stiffness: 2μ* [Pa].
 Vec6 compute_flow_drive(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
                         const Elasticity& e, double shape_stiffness);
 
-/// Relative volume change θ: tr(ε − ε_p), or J − 1 for the neo-Hookean law; and its derivative ∂θ/∂F.
+/// Relative volume change θ as the law measures it, tr ε_e, det Fₑ − 1 or ln det F, and its derivative ∂θ/∂F.
 double compute_volume_change(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain);
 Mat3 compute_volume_gradient(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain);
 

@@ -2,14 +2,9 @@
 
 #include "base/types.h"
 #include "linear/solver.h"
+#include "solid/law.h"
 
 namespace argil::solid {
-
-enum class StrainModel {
-  corotational,  ///< small strain in the frame turned by the polar decomposition
-  linear,        ///< the paper's Cauchy strain
-  neo_hookean,   ///< stable neo-Hookean law, isotropic: the reference for large strain [Smith2018]
-};
 
 enum class ElementKind {
   p1,        ///< 4-node tets (eq. 1)

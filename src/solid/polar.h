@@ -12,6 +12,10 @@ Mat3 compute_rotation(const Mat3& F);
 /// Cofactor matrix: ∂ det a/∂a, and det(a) a⁻ᵀ where a is regular.
 Mat3 compute_cofactor(const Mat3& a);
 
+inline Mat3 compute_symmetric_part(const Mat3& a) {
+  return 0.5 * (a + a.transpose());
+}
+
 /// [a]×: the matrix with [a]× b = a × b.
 inline Mat3 make_cross_matrix(const Vec3& a) {
   return (Mat3() << 0.0, -a(2), a(1), a(2), 0.0, -a(0), -a(1), a(0), 0.0).finished();

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <limits>
-#include <numeric>
 #include <utility>
 
-#include "base/check.h"
-#include "base/ordered_sum.h"
-#include "base/parallel.h"
-#include "mesh/order.h"
-#include "solid/tet_lanes.h"
+#include "solid/active_region.h"
+#include "solid/frame_lag.h"
+#include "solid/move.h"
+#include "solid/response.h"
+#include "solid/solve.h"
+#include "solid/statics.h"
+#include "solid/step_solver.h"
 
 namespace argil::solid {
 
@@ -20,268 +19,301 @@ Solid::Solid(Solid&&) noexcept = default;
 
 Solid::Solid(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vector<Support> supports,
              const SolidParams& params, int threads)
-    : m_params(params),
-      m_threads(threads),
-      m_elements(make_elements(mesh, topology, params.element)),
-      m_supports(std::move(supports)),
-      m_constraints(find_constraints(m_elements.rest, m_supports)),
-      m_mass(params.density * m_elements.node_volume),
-      m_static_mass(params.density * m_elements.shape_volume),
-      m_kinematics(m_elements, params.model, threads),
-      m_rows(threads),
-      m_near_rows(threads),
-      m_nodes(threads),
-      m_solver(linear::make_solver(
-          params.iteration == Iteration::newton ? make_exact(params.solver) : params.solver, threads)) {
-  const Eigen::Index num_nodes = m_elements.num_nodes();
-  m_material.resize(static_cast<std::size_t>(m_elements.num_tets()));
-  m_lambda.setZero(m_elements.num_tets());
-  m_mu.setZero(m_elements.num_tets());
-  m_excess_bulk.setZero(m_elements.num_tets());
-  m_is_tet_changed.resize(m_material.size(), 1);
-  const Eigen::Index num_batches = (m_elements.num_tets() + kLanes - 1) / kLanes;
-  m_is_batch_new.resize(static_cast<std::size_t>(num_batches), 1);
-  m_batch_energy.setZero(num_batches);
-  m_batch_plastic_strain.setZero(num_batches);
-  m_group_energy.setZero((num_batches + kBatchGroup - 1) / kBatchGroup);
-  m_group_plastic_strain.setZero(m_group_energy.size());
-  m_corner_force.setZero(3, m_elements.nodes.size() + 1);
-  m_internal_force.setZero(3, num_nodes);
-  m_product.setZero(3, num_nodes);
-  number_rows();
-  m_x_hat = m_x = m_held_x = m_x_start = m_elements.rest;
-  m_v_hat.setZero(3, num_nodes);
-  m_v = m_v_base = m_v_start = m_zero = m_v_hat;
-  m_is_row_stale.resize(m_node_of_row.size(), 1);
-  m_rows.prepare(num_free());
-  m_near_rows.prepare(num_free());
-  m_nodes.prepare(num_nodes);
-  m_rhs.setZero(3, num_free());
-  m_delta.setZero(3, num_free());
-  m_left.resize(3, num_free());
-  m_correction.resize(3, num_free());
-  m_point_sums.reserve(static_cast<std::size_t>((m_elements.num_points() + kLanes - 1) / kLanes));
-  if (may_lag_further()) {
-    m_direction.resize(3, num_nodes);
-    m_change.strain.resize(6, m_elements.num_tets());
-    m_change.corner_force.resize(3, m_corner_force.cols());
-    if (m_nodal) {
-      m_change.volume.resize(m_elements.num_tets());
-      m_change.pressure.resize(m_elements.num_tets());
-    }
-  }
-  constexpr int kLarge = 1500;  // rows; with fewer, keeping the lists costs what a smaller solve saves
-  if (m_params.extent == Extent::local || (m_params.extent == Extent::automatic && num_free() >= kLarge))
-    make_region();
-}
-
-/// Must a step be told where this support is? Backward Euler's leaves what does not move where it is.
-bool Solid::is_placed(int support) const {
-  return m_params.integrator != Integrator::backward_euler ||
-         !m_supports[static_cast<std::size_t>(support)].displacement.isZero(0.0);
-}
-
-/// Rows of the free nodes and the matrix's pattern.
-void Solid::number_rows() {
-  m_row_of_node.assign(static_cast<std::size_t>(m_elements.num_nodes()), -1);
-  for (int n = 0; n < m_elements.num_nodes(); ++n)
-    for (int k = 0; k < 3; ++k)
-      if (const int support = m_constraints.support(k, n); support >= 0 && is_placed(support))
-        m_placed_components.push_back({n, k});
-  m_nodes_along_curve.resize(m_row_of_node.size());
-  std::iota(m_nodes_along_curve.begin(), m_nodes_along_curve.end(), 0);
-  mesh::sort_along_curve(m_elements.rest, m_nodes_along_curve);
-  std::copy_if(m_nodes_along_curve.begin(), m_nodes_along_curve.end(), std::back_inserter(m_node_of_row),
-               [this](int n) { return !m_constraints.is_held(n); });
-  for (int row = 0; row < num_free(); ++row) {
-    const int n = m_node_of_row[static_cast<std::size_t>(row)];
-    m_row_of_node[static_cast<std::size_t>(n)] = row;
-    if (!m_constraints.is_free(n)) m_held_rows.push_back(row);
-  }
-  if (m_params.element == ElementKind::p1_nodal)
-    m_nodal = std::make_unique<NodalVolume>(m_elements, m_row_of_node, m_threads);
-  if (m_nodal && keeps_nodal_factors())
-    m_nodal_product =
-        std::make_unique<NodalProduct>(*m_nodal, m_node_of_row, m_row_of_node, m_constraints,
-                                       m_params.solver.tolerance >= linear::kRoomForFloats, m_threads);
-  make_pattern();
-}
-
-void Solid::make_pattern() {
-  const int N = m_elements.nodes_per_tet;
-  const bool only_diagonal = m_params.solver.kind == linear::SolverKind::pcg_matrix_free;
-  std::vector<std::vector<int>> rows(m_node_of_row.size());
-  if (only_diagonal) {
-    for (std::size_t row = 0; row < rows.size(); ++row) rows[row] = {static_cast<int>(row)};
-  } else if (m_nodal && !m_nodal_product) {
-    rows = m_nodal->find_row_neighbours();
-  } else {
-    const auto neighbours = find_node_neighbours(m_elements);
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      for (const int node : neighbours[static_cast<std::size_t>(m_node_of_row[row])])
-        if (m_row_of_node[static_cast<std::size_t>(node)] >= 0)
-          rows[row].push_back(m_row_of_node[static_cast<std::size_t>(node)]);
-      std::sort(rows[row].begin(), rows[row].end());
-    }
-  }
-  m_matrix = linear::make_block_matrix(rows);
-  if (m_nodal && !m_nodal_product && !only_diagonal) m_nodal->connect(m_matrix);
-  m_block_of_corner_pair.clear();
-  m_block_of_corner_pair.reserve(static_cast<std::size_t>(N * N) * m_material.size());
-  for (int t = 0; t < m_elements.num_tets(); ++t)
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j) {
-        const int row = m_row_of_node[static_cast<std::size_t>(m_elements.nodes(i, t))];
-        const int column = m_row_of_node[static_cast<std::size_t>(m_elements.nodes(j, t))];
-        m_block_of_corner_pair.push_back(row < 0 || column < 0 ? -1
-                                                               : linear::find_block(m_matrix, row, column));
-      }
-}
+    : m_body(std::make_unique<Body>(mesh, topology, std::move(supports), params, threads)),
+      m_region(std::make_unique<ActiveRegion>(*m_body)) {}
 
 SolidState Solid::make_rest_state() const {
-  SolidState state;
-  state.x = m_elements.rest;
-  state.v.setZero(3, m_elements.num_nodes());
-  state.plastic_strain.setZero(6, m_elements.num_points());
-  return state;
+  return solid::make_rest_state(m_body->model);
 }
 
 void Solid::set_material(int tet, const TetMaterial& material) {
-  if (m_region)
-    for (const int node : m_elements.nodes.col(tet)) m_region->wake_node(node);
-  m_material[static_cast<std::size_t>(tet)] = material;
-  m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
-  m_is_batch_new[static_cast<std::size_t>(tet / kLanes)] = 1;
-  if (!m_stiffness.empty())
-    m_stiffness[static_cast<std::size_t>(tet)] = make_isotropic_stiffness(material.lambda, material.mu);
-  const Elasticity e = elasticity(tet);
-  m_lambda(tet) = e.lambda;
-  m_mu(tet) = e.mu;
-  m_excess_bulk(tet) = e.excess_bulk;
-  if (m_nodal) m_nodal->set_excess(tet, e.excess_bulk, m_elements.weight(tet));
+  m_region->wake_tet(tet);
+  m_body->materials.set_moduli(tet, material);
+  m_body->system.is_tet_changed[static_cast<std::size_t>(tet)] = 1;
+  m_body->energies.is_batch_new[static_cast<std::size_t>(tet / kLanes)] = 1;
 }
 
 void Solid::set_anisotropic_stiffness(int tet, const Mat6& C) {
-  ARGIL_ASSERT(m_params.model != StrainModel::neo_hookean && !m_nodal);
-  if (m_stiffness.empty()) {
-    m_stiffness.resize(m_material.size());
-    for (std::size_t t = 0; t < m_material.size(); ++t)
-      m_stiffness[t] = make_isotropic_stiffness(m_material[t].lambda, m_material[t].mu);
-  }
-  m_stiffness[static_cast<std::size_t>(tet)] = C;
-  m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
+  m_body->materials.set_stiffness(tet, C);
+  m_body->system.is_tet_changed[static_cast<std::size_t>(tet)] = 1;
 }
 
 void Solid::set_swelling(int tet, double volume_ratio) {
-  ARGIL_ASSERT(volume_ratio > 0.0, tet, volume_ratio);
-  if (m_dry.weight.size() == 0) {
-    m_dry.gradient = m_elements.gradient;
-    m_dry.weight = m_elements.weight;
-  }
-  const Eigen::Index Q = m_elements.points_per_tet;
-  const Eigen::Index columns = Q * m_elements.nodes_per_tet;
-  m_elements.gradient.middleCols(columns * tet, columns) =
-      m_dry.gradient.middleCols(columns * tet, columns) / std::cbrt(volume_ratio);
-  m_kinematics.drop_frame(tet);
-  m_is_tet_changed[static_cast<std::size_t>(tet)] = 1;
-  m_elements.weight.segment(Q * tet, Q) = volume_ratio * m_dry.weight.segment(Q * tet, Q);
-  if (m_nodal) m_nodal->set_excess(tet, elasticity(tet).excess_bulk, m_elements.weight(tet));
+  m_body->materials.set_swelling(tet, volume_ratio);
+  m_body->kinematics.drop_frame(tet);
+  m_body->system.is_tet_changed[static_cast<std::size_t>(tet)] = 1;
 }
 
-/// Sums each of the tet's nodes anew, so that masses are a function of the water alone, not of its history.
 void Solid::set_water_mass(int tet, double mass) {
-  if (m_water_mass.size() == 0) m_water_mass.setZero(m_elements.num_tets());
-  m_water_mass(tet) = mass;
-  const int N = m_elements.nodes_per_tet;
-  for (const int node : m_elements.nodes.col(tet)) {
-    double moving = 0.0, at_rest = 0.0;
-    for (int c = m_elements.node_begin[static_cast<std::size_t>(node)];
-         c < m_elements.node_begin[static_cast<std::size_t>(node) + 1]; ++c) {
-      const int corner = m_elements.node_corners[static_cast<std::size_t>(c)];
-      moving += m_water_mass(corner / N) * m_elements.mass_share(corner % N);
-      at_rest += m_water_mass(corner / N) * m_elements.shape_share(corner % N);
-    }
-    m_mass(node) = m_params.density * m_elements.node_volume(node) + moving;
-    if (const int row = m_row_of_node[static_cast<std::size_t>(node)]; row >= 0)
-      m_is_row_stale[static_cast<std::size_t>(row)] = 1;
-    m_static_mass(node) = m_params.density * m_elements.shape_volume(node) + at_rest;
-  }
-}
-
-bool Solid::is_strained(int tet, const TensorField& plastic_strain) const {
-  constexpr double kRounding = 1e-12;  // of a strain; a body at rest has some 1e-16
-  const Eigen::Index Q = m_elements.points_per_tet;
-  for (Eigen::Index p = Q * tet; p < Q * (tet + 1); ++p)
-    if (!((m_kinematics.strain().col(p) - plastic_strain.col(p)).norm() <= kRounding)) return true;
-  return false;
-}
-
-/// Moduli of a tet; for p1_nodal split into its own part and what acts on the nodes' mean volume change.
-Elasticity Solid::elasticity(int tet) const {
-  const TetMaterial& material = m_material[static_cast<std::size_t>(tet)];
-  Elasticity e{material.lambda, material.mu};
-  if (!m_stiffness.empty()) e.C = &m_stiffness[static_cast<std::size_t>(tet)];
-  if (!m_nodal) return e;
-  const double own_bulk = NodalVolume::kOwnBulkOverShear * e.mu;
-  e.excess_bulk = std::max(0.0, e.lambda + 2.0 / 3.0 * e.mu - own_bulk);
-  e.lambda -= e.excess_bulk;
-  if (m_volume_change.size() > 0) e.volume_change = m_volume_change(tet);
-  return e;
-}
-
-/// How far the frames of the matrix may lag behind R: a step that is solved to a tolerance may as well have a
-/// matrix that is off by as much. Its residual is always that of R.
-double Solid::frame_tolerance() const {
-  constexpr double kLargest = 0.01;
-  if (is_newton() || linear::is_direct(m_params.solver.kind)) return 0.0;
-  return std::min(kLargest, std::max(m_params.solver.tolerance, m_frame_slack));
-}
-
-/// May they lag more than that where a step has slack? Only where what it leaves is known all the same.
-bool Solid::may_lag_further() const {
-  return has_plain_tets() && frame_tolerance() > 0.0;
+  m_body->materials.set_water_mass(tet, mass);
+  for (const int node : m_body->model.elements.nodes.col(tet))
+    if (const int row = m_body->model.row_of_node[static_cast<std::size_t>(node)]; row >= 0)
+      m_body->system.is_row_stale[static_cast<std::size_t>(row)] = 1;
 }
 
 StepStatus Solid::update_kinematics(const Points& x, Tick tick) {
-  return update_motion(x, tick, false);
+  const FrameUpdate frames{find_frame_tolerance(*m_body), false};
+  return solid::update_kinematics(*m_body, m_region->start_part(), x, frames, tick);
 }
 
-StepStatus Solid::update_motion(const Points& x, Tick tick, bool keeps_frames) {
-  const std::vector<int>* batches = m_region && !m_has_old_nodes ? &m_region->batches() : nullptr;
-  m_kinematics.update(m_elements, x,
-                      {batches, keeps_frames, frame_tolerance(), m_is_tet_changed, m_is_batch_new});
-  const double least = m_kinematics.min_volume_ratio();
-  // Strain of the linear model has no inside to turn out; in statics its solution is what was asked for.
-  const bool may_invert = m_is_static && m_params.model == StrainModel::linear;
-  if (std::isfinite(least) && (may_invert || least > m_params.min_volume_ratio)) return StepStatus::ok();
-  const int worst = m_kinematics.find_worst_point();
-  return StepStatus::failed({tick, "solid", m_elements.number_of_point(worst), "volume ratio det F of a tet",
-                             m_kinematics.volume_ratio(worst), m_params.min_volume_ratio});
+StepStatus Solid::restore_kinematics(const Points& x, Tick tick) {
+  const FrameUpdate frames{find_frame_tolerance(*m_body), has_lagging_frames(*m_body)};
+  return solid::update_kinematics(*m_body, m_region->start_part(), x, frames, tick);
 }
 
-void Solid::compute_volume_changes(const TensorField& plastic_strain, Field& change) const {
-  change.resize(m_elements.num_tets());
-  m_rows.each(change.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    for (std::ptrdiff_t t = begin; t < end; ++t)
-      change(t) = m_params.model == StrainModel::neo_hookean
-                      ? compute_volume_change(m_params.model, m_kinematics.at(static_cast<int>(t)),
-                                              plastic_strain.col(t))
-                      : (m_kinematics.strain().col(t) - plastic_strain.col(t)).head<3>().sum();
+/// Where the step begins. Of nodes that sleep all is as it was in the last step.
+void Solid::take_up(const SolidState& state) {
+  SolidState& start = m_body->committed;
+  const Part& part = m_region->start_part();
+  part.nodes.each(state.x.cols(), [&](std::ptrdiff_t n) {
+    start.x.col(n) = state.x.col(n);
+    start.v.col(n) = state.v.col(n);
   });
+  start.x_before = state.x_before;
+  start.v_before = state.v_before;
+  m_body->plastic_strain = &state.plastic_strain;
+  start_from_committed(*m_body, part);
+  m_region->set_start_known();
 }
 
-/// p1_nodal: the nodes' mean volume change at the present kinematics.
-void Solid::update_volume_change(const TensorField& plastic_strain) {
-  if (!m_nodal) return;
-  m_nodal->update_stiffness();
-  compute_volume_changes(plastic_strain, m_tet_volume_change);
-  m_nodal->average(m_tet_volume_change, m_volume_change);
-  m_nodal_pressure = m_excess_bulk.cwiseProduct(m_volume_change);
+StepStatus Solid::begin_step(const SolidState& state, const StepLoads& loads, double step_s, double time,
+                             Tick tick) {
+  take_up(state);
+  const bool has_moved = predict(*m_body, m_region->part(), loads, step_s, time);
+  return has_moved ? update_kinematics(m_body->trial.x, tick) : StepStatus::ok();
+}
+
+bool Solid::assemble(const StepLoads& loads) {
+  return solid::assemble(*m_body, *m_region, loads);
+}
+
+StepStatus Solid::solve(const StepLoads& loads, Tick tick, bool& solved) {
+  return solid::solve(*m_body, *m_region, loads, tick, solved);
+}
+
+Vec3 Solid::find_free_part(const Vec3& force, Eigen::Index node) const {
+  return solid::find_free_part(m_body->model, force, node);
+}
+
+Vec3 Solid::find_imbalance(const StepLoads& loads, Eigen::Index node) const {
+  return solid::find_imbalance(*m_body, loads, node);
+}
+
+double Solid::compute_imbalance(const StepLoads& loads) const {
+  const Field& mass = m_body->materials.mass();
+  return std::sqrt(moving_nodes().sum(mass.size(), [&](std::ptrdiff_t n) {
+    if (!is_awake(n)) return 0.0;
+    const Vec3 momentum_rate = mass(n) / m_body->prediction.tau * m_body->committed.v.col(n);
+    return (find_imbalance(loads, n) + momentum_rate).squaredNorm();
+  }));
+}
+
+void Solid::finish_step(SolidState& state) const {
+  take_velocity(*m_body, m_region->part(), state);
+}
+
+void Solid::move(SolidState& state) const {
+  solid::move(*m_body, m_region->part(), state);
+}
+
+void Solid::keep_start(SolidState& state) const {
+  if (m_body->model.params.integrator != Integrator::bdf2) return;
+  state.x_before = m_body->committed.x;
+  state.v_before = m_body->committed.v;
+}
+
+void Solid::settle_region(SolidState& state, const std::vector<char>& is_flowing) {
+  m_region->put_to_sleep(state, is_flowing);
+}
+
+void Solid::wake_all() {
+  m_region->wake_all();
+}
+
+void Solid::sleep_all() {
+  m_region->sleep_all();
+}
+
+void Solid::make_ready(const SolidState& state, const Points& force) {
+  take_up(state);
+  m_region->make_ready(force);
+  if (!m_body->is_explicit()) m_body->history.solver->prepare(m_body->system.matrix);
+}
+
+bool Solid::is_awake(Eigen::Index node) const {
+  return m_region->is_awake(node);
+}
+
+bool Solid::has_any_moving(const std::vector<char>& of_batch) const {
+  const auto is_set = [&](int batch) { return of_batch[static_cast<std::size_t>(batch)] != 0; };
+  const std::vector<int>* batches = moving_batches().visited();
+  if (batches) return std::any_of(batches->begin(), batches->end(), is_set);
+  return std::any_of(of_batch.begin(), of_batch.end(), [](char c) { return c != 0; });
+}
+
+double Solid::held_back() const {
+  return m_region->held_back();
+}
+
+int Solid::num_active() const {
+  return m_region->num_active();
+}
+
+Vec3 Solid::compute_contact_change(std::span<const PointStiffness> contacts, std::size_t i) const {
+  const SolidParams& params = m_body->model.params;
+  if (!params.implicit_contact || m_body->is_explicit()) return Vec3::Zero();
+  // Newmark's step takes the mean of both ends.
+  const double share = params.integrator == Integrator::newmark ? 0.5 : 1.0;
+  return -share * m_body->step_contacts(contacts).compute_fall(i, m_body->trial.x, m_body->contacts);
+}
+
+bool Solid::acts(int group) const {
+  return m_body->contacts.is_acting(group);
+}
+
+void Solid::apply_contact_stiffness(std::span<const PointStiffness> contacts, Points& force) const {
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    spread(contacts[i], compute_contact_change(contacts, i), force);
+}
+
+StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
+  wake_all();
+  m_body->plastic_strain = &state.plastic_strain;
+  return solid::find_equilibrium(*m_body, m_region->whole(), loads, state);
+}
+
+void Solid::prepare_response(const SolidState& state, double step_s) {
+  m_body->plastic_strain = &state.plastic_strain;
+  solid::prepare_response(*m_body, m_region->part(), state, step_s);
+}
+
+StepStatus Solid::find_response(const Points& force, Tick tick, Points& displacement) {
+  return solid::find_response(*m_body, m_region->part(), force, tick, displacement);
+}
+
+Mat3 Solid::compute_local_response(int node) const {
+  return solid::compute_local_response(*m_body, node);
+}
+
+void Solid::exchange_state(Archive& archive) {
+  SolverHistory& history = m_body->history;
+  System& system = m_body->system;
+  archive.number("solid/newton_iterations", history.counters.newton_iterations);
+  archive.number("solid/linear_iterations", history.counters.linear_iterations);
+  archive.number("solid/residual", history.counters.residual);
+  bool stores_nodal = system.has_nodal_blocks(m_body->materials);
+  archive.number("solid/stores_nodal", stores_nodal);
+  if (stores_nodal) store_nodal_stiffness(m_body->model, m_body->materials, system);
+  history.solver->exchange_state(archive, "solver/", system.matrix);
+  m_region->serialize_use(archive);
+  bool has_response_solver = history.response_solver != nullptr;
+  archive.number("response/is_known", has_response_solver);
+  if (!has_response_solver) return;
+  const SolidParams& params = m_body->model.params;
+  if (!history.response_solver)
+    history.response_solver = linear::make_solver(make_exact(params.solver), m_body->model.threads);
+  history.response_solver->exchange_state(archive, "response/", system.matrix);
+}
+
+void Solid::exchange_frames(Archive& archive) {
+  m_region->serialize(archive);
+  if (archive.is_restoring()) {
+    m_region->forget();
+    m_body->system.mark_all_changed();
+    std::fill(m_body->energies.is_batch_new.begin(), m_body->energies.is_batch_new.end(), char{1});
+  }
+  FrameLag& lag = m_body->history.frame_lag;
+  archive.number("solid/frame_slack", lag.slack);
+  archive.number("solid/frame_error", lag.left);
+  archive.number("solid/frame_error_way", lag.lag_speed);
+  archive.number("solid/frame_error_steps", lag.steps);
+  if (has_lagging_frames(*m_body)) m_body->kinematics.exchange_frames(archive);
+}
+
+const Elements& Solid::elements() const {
+  return m_body->model.elements;
+}
+
+const Constraints& Solid::constraints() const {
+  return m_body->model.constraints;
+}
+
+const TensorField& Solid::strain() const {
+  return m_body->kinematics.strain();
+}
+
+const Field& Solid::mass() const {
+  return m_body->materials.mass();
+}
+
+const Field& Solid::weight() const {
+  return m_body->materials.weight();
+}
+
+TetMaterial Solid::material(int tet) const {
+  return m_body->materials.of(tet);
+}
+
+const StepCounters& Solid::counters() const {
+  return m_body->history.counters;
+}
+
+const linear::SolverCost& Solid::solver_cost() const {
+  return m_body->history.solver->cost();
+}
+
+bool Solid::is_strained(int tet, const TensorField& plastic_strain) const {
+  return solid::is_strained(m_body->strained(plastic_strain), tet);
+}
+
+double Solid::min_volume_ratio() const {
+  return m_body->kinematics.min_volume_ratio();
+}
+
+int Solid::num_free() const {
+  return m_body->model.num_free();
+}
+
+const OrderedItems& Solid::moving_nodes() const {
+  return m_region->part().nodes;
+}
+
+const OrderedRuns& Solid::moving_batches() const {
+  return m_region->part().batches;
+}
+
+const Points& Solid::x_start() const {
+  return m_body->committed.x;
+}
+
+const Points& Solid::v_start() const {
+  return m_body->committed.v;
+}
+
+const Points& Solid::internal_force() const {
+  return m_body->forces.internal;
+}
+
+double Solid::compute_elastic_energy(int point, const Vec6& plastic_strain) const {
+  return solid::compute_elastic_energy(m_body->strained(), point, plastic_strain);
 }
 
 Vec6 Solid::compute_flow_drive(int point, const Vec6& plastic_strain, double shape_stiffness) const {
-  return solid::compute_flow_drive(m_params.model, m_kinematics.at(point), plastic_strain,
-                                   elasticity(m_elements.tet_of_point(point)), shape_stiffness);
+  const Strained body = m_body->strained();
+  return solid::compute_flow_drive(body.law(), body.kinematics.at(point), plastic_strain,
+                                   body.elasticity(body.model.elements.tet_of_point(point)), shape_stiffness);
+}
+
+double Solid::compute_elastic_energy(const TensorField& plastic_strain) const {
+  return solid::compute_elastic_energy(m_body->strained(plastic_strain), m_body->scratch.nodal.change);
+}
+
+StrainSummary Solid::summarise(const TensorField& plastic_strain) const {
+  return solid::summarise(m_body->strained(plastic_strain), m_body->energies, m_body->scratch.nodal.change);
+}
+
+double Solid::compute_kinetic_energy(const SolidState& state) const {
+  return solid::compute_kinetic_energy(m_body->materials, m_region->part(), state.v);
 }
 
 }  // namespace argil::solid

@@ -1,58 +1,83 @@
-// Equilibrium: the limit of a step without mass, by Newton's method and shares of the load.
+#include "solid/statics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "base/check.h"
-#include "solid/solid.h"
+#include "solid/body.h"
+#include "solid/move.h"
+#include "solid/newton.h"
+#include "solid/solve.h"
 
 namespace argil::solid {
+namespace {
 
 constexpr double kEnd = std::numeric_limits<double>::infinity();  // of time: supports at their full way
 
-StepStatus Solid::iterate_static(const SolidState& state, const StepLoads& loads) {
-  m_x = state.x;
-  m_x_hat = m_x;
-  m_v.setZero();
-  m_iterations = 0;
-  place_supports(kEnd, m_load_share);
-  ARGIL_TRY(update_kinematics(m_x, 0));
-  for (bool solved = false; !solved;) {
-    solved = assemble(loads);
-    if (!solved) ARGIL_TRY(solve(loads, 0, solved));
-  }
+/// Under the present share of the load, from state.x on.
+StepStatus iterate(Body& body, const Part& whole, const StepLoads& loads, const SolidState& state) {
+  body.trial.x = state.x;
+  body.prediction.x_hat = body.trial.x;
+  body.trial.v.setZero();
+  body.newton.iterations = 0;
+  place_supports(body, kEnd, body.prediction.load_share);
+  ARGIL_TRY(update_kinematics(body, whole, body.trial.x, {}, 0));
+  while (!assemble_newton(body, whole, loads))
+    ARGIL_TRY(solve_newton(body, whole, loads, *body.history.static_solver, 0));
   return StepStatus::ok();
 }
 
-StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
-  wake_all();
-  store_nodal_stiffness();
+void begin(Body& body, const StepLoads& loads, const SolidState& state) {
+  store_nodal_stiffness(body.model, body.materials, body.system);
+  if (!body.history.static_solver)
+    body.history.static_solver =
+        linear::make_solver(make_exact(body.model.params.solver), body.model.threads);
+  body.prediction.is_static = true;
+  body.prediction.tau = 1.0;
+  body.prediction.v_hat.setZero();
+  body.committed.v.setZero();
+  body.committed.x = state.x;
+  body.history.counters = {};
+  body.newton.is_moved_by_load = false;
+  body.contacts.start(loads.contacts.size());
+}
+
+/// Positions are rounded to ε |x|: far from the origin, or under a small load, no digit of a displacement is
+/// left.
+StepStatus check_resolution(const Body& body, const SolidState& state) {
+  constexpr double kDigits = 100.0;
+  const double bound = kDigits * std::numeric_limits<double>::epsilon() * state.x.cwiseAbs().maxCoeff();
+  const double largest = std::sqrt((state.x - body.model.elements.rest).colwise().squaredNorm().maxCoeff());
+  if (!body.newton.is_moved_by_load || largest >= bound) return StepStatus::ok();
+  return StepStatus::failed(
+      {0, "solid", -1,
+       "largest displacement [m] under the loads, which the rounding of positions this far from "
+       "the origin hides: move the body there, or give a larger load",
+       largest, bound});
+}
+
+}  // namespace
+
+StepStatus find_equilibrium(Body& body, const Part& whole, const StepLoads& loads, SolidState& state) {
   constexpr double kSmallestShare = 1.0 / 1024.0;
-  m_is_static = true;
-  m_tau = 1.0;
-  m_plastic_strain = &state.plastic_strain;
-  m_v_hat.setZero();
-  m_v_start.setZero(3, m_elements.num_nodes());
-  m_x_start = state.x;
-  m_counters = {};
-  m_is_moved_by_load = false;
-  start_contacts(loads.contacts.size());
+  begin(body, loads, state);
   double done = 0.0;
   for (double step = 1.0; done < 1.0;) {
-    m_load_share = std::min(1.0, done + step);
-    const StepStatus status = iterate_static(state, loads);
+    body.prediction.load_share = std::min(1.0, done + step);
+    const StepStatus status = iterate(body, whole, loads, state);
     if (status.is_ok()) {
-      done = m_load_share;
-      state.x = m_x;
+      done = body.prediction.load_share;
+      state.x = body.trial.x;
       step *= 2.0;
       continue;
     }
     step *= 0.5;
     if (step < kSmallestShare) {
-      const StepStatus last_good = update_kinematics(state.x, 0);  // what records describe
+      const StepStatus last_good = update_kinematics(body, whole, state.x, {}, 0);  // what records describe
       ARGIL_ASSERT(last_good.is_ok());
       Failure failure = status.failure();
       char share[16];
@@ -61,21 +86,7 @@ StepStatus Solid::find_equilibrium(SolidState& state, const StepLoads& loads) {
       return StepStatus::failed(std::move(failure));
     }
   }
-  return check_resolution(state);
-}
-
-/// Positions are rounded to ε |x|: far from the origin, or under a small load, no digit of a displacement is
-/// left.
-StepStatus Solid::check_resolution(const SolidState& state) const {
-  constexpr double kDigits = 100.0;
-  const double bound = kDigits * std::numeric_limits<double>::epsilon() * state.x.cwiseAbs().maxCoeff();
-  const double largest = std::sqrt((state.x - m_elements.rest).colwise().squaredNorm().maxCoeff());
-  if (!m_is_moved_by_load || largest >= bound) return StepStatus::ok();
-  return StepStatus::failed(
-      {0, "solid", -1,
-       "largest displacement [m] under the loads, which the rounding of positions this far from "
-       "the origin hides: move the body there, or give a larger load",
-       largest, bound});
+  return check_resolution(body, state);
 }
 
 }  // namespace argil::solid

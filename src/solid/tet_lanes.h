@@ -29,22 +29,6 @@ struct TetArrays {
 /// anew only where it moved.
 inline constexpr std::ptrdiff_t kBatchGroup = 64;
 
-/// body(begin, end) for the tets in runs of kLanes; the same runs at any number of threads.
-template <class Body>
-void for_batches(std::ptrdiff_t num_tets, int threads, Body body) {
-  parallel_for((num_tets + kLanes - 1) / kLanes, threads,
-               [&](std::ptrdiff_t batch) { body(batch * kLanes, std::min((batch + 1) * kLanes, num_tets)); });
-}
-
-/// The same for some of the runs: `batches`, increasing.
-template <class Body>
-void for_batches(const std::vector<int>& batches, std::ptrdiff_t num_tets, int threads, Body body) {
-  parallel_for(static_cast<std::ptrdiff_t>(batches.size()), threads, [&](std::ptrdiff_t i) {
-    const std::ptrdiff_t batch = batches[static_cast<std::size_t>(i)];
-    body(batch * kLanes, std::min((batch + 1) * kLanes, num_tets));
-  });
-}
-
 /// F = Σ xᵢ ⊗ ∇Nᵢ, R, ε = sym(RᵀF) − 1 and det F of tets begin … end−1, at most kLanes of them.
 void compute_motions(const TetArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
 

@@ -32,6 +32,7 @@ PoreWater::PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, 
   ARGIL_ASSERT(initial_saturation.size() == num_tets);
   ARGIL_ASSERT((initial_saturation.array() >= 0.0).all() && (initial_saturation.array() <= 1.0).all());
   m_active.reserve(m_is_active.size());
+  m_dried.reserve(m_is_active.size());
   m_merged.reserve(m_is_active.size());
   m_touched.reserve(m_boundary_tet.size());
   m_once.reserve(m_boundary_tet.size());
@@ -42,17 +43,19 @@ PoreWater::PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, 
   }
   m_state.saturation = initial_saturation;
   m_state.carry.setZero(num_tets);
-  m_state.collected = initial_saturation;
   m_potential.setZero(num_tets);
   activate_all_wet();
   m_state.initial = mass();
+  m_committed = m_state;
 }
 
 void PoreWater::restore(const WaterState& state) {
   ARGIL_ASSERT(state.saturation.size() == m_capacity.size(), state.saturation.size());
   m_state = state;
+  m_committed = state;
   std::fill(m_is_active.begin(), m_is_active.end(), '\0');
   m_active.clear();
+  m_dried.clear();
   m_num_sorted = 0;
   m_potential.setZero();
   activate_all_wet();
@@ -60,8 +63,7 @@ void PoreWater::restore(const WaterState& state) {
 
 void PoreWater::activate_all_wet() {
   for (int t = 0; t < static_cast<int>(m_capacity.size()); ++t) {
-    // A change that the moduli have not followed yet must stay in sight of collect_changed.
-    if (m_state.saturation(t) > 0.0 || m_state.carry(t) != 0.0 || m_state.collected(t) != 0.0) activate(t);
+    if (m_state.saturation(t) > 0.0 || m_state.carry(t) != 0.0) activate(t);
     set_potential(t, m_state.saturation(t));
     if (m_state.saturation(t) > kTrace) activate_around(t);
   }
@@ -102,10 +104,11 @@ void PoreWater::leave_dry() {
     }
     return true;
   };
+  m_dried.clear();
   std::erase_if(m_active, [&](int t) {
-    // A change that the moduli have not followed yet must stay in sight of collect_changed.
-    const bool leaves = is_dry(t) && m_state.collected(t) == 0.0;
+    const bool leaves = is_dry(t);
     if (leaves) {
+      m_dried.push_back(t);
       m_is_active[static_cast<std::size_t>(t)] = 0;
       m_change(t) = 0.0;
     }
@@ -160,11 +163,10 @@ void PoreWater::exchange(std::span<const int> triangle, std::span<const double> 
                          double step_s) {
   m_touched.clear();
   for (const int face : triangle) m_touched.push_back(m_boundary_tet[static_cast<std::size_t>(face)]);
-  exchange_tets(m_touched, area, sign, step_s);
+  transfer(m_touched, area, sign, step_s);
 }
 
-void PoreWater::exchange_tets(std::span<const int> tet, std::span<const double> area, int sign,
-                              double step_s) {
+void PoreWater::transfer(std::span<const int> tet, std::span<const double> area, int sign, double step_s) {
   ARGIL_ASSERT(tet.size() == area.size() || m_params.uptake == UptakeForm::increment);
   if (m_params.uptake == UptakeForm::flux) {
     const double flux = sign > 0 ? m_params.wetting_flux : -m_params.drying_flux;
@@ -179,16 +181,15 @@ void PoreWater::exchange_tets(std::span<const int> tet, std::span<const double> 
   if (sign < 0) leave_dry();
 }
 
-void PoreWater::collect_changed(double tolerance, std::vector<int>& tets) {
-  tets.clear();
-  if (m_state.nothing_collected) {
-    for (int t = 0; t < static_cast<int>(m_capacity.size()); ++t) tets.push_back(t);
-    m_state.nothing_collected = false;
-  } else {
-    for (const int t : m_active)
-      if (std::abs(m_state.saturation(t) - m_state.collected(t)) > tolerance) tets.push_back(t);
-  }
-  for (const int t : tets) m_state.collected(t) = m_state.saturation(t);
+void PoreWater::commit() {
+  const auto keep = [this](int t) {
+    m_committed.saturation(t) = m_state.saturation(t);
+    m_committed.carry(t) = m_state.carry(t);
+  };
+  std::for_each(m_active.begin(), m_active.end(), keep);
+  std::for_each(m_dried.begin(), m_dried.end(), keep);
+  m_committed.added = m_state.added;
+  m_committed.removed = m_state.removed;
 }
 
 double PoreWater::mass() const {

@@ -29,10 +29,8 @@ struct WaterState {
   Field saturation;  ///< S per tet [–]
   Field carry;  ///< what rounding kept out of S so far [–]: half a unit in the last place of S, or what an
                 ///< implicit solve missed the bounds 0 and 1 by
-  Field collected;  ///< S when collect_changed last named the tet
   double initial = 0.0;
   CompensatedSum added, removed;  ///< [kg]
-  bool nothing_collected = true;
 };
 
 struct ImplicitSystem;
@@ -54,7 +52,7 @@ class PoreWater {
   /// = 1, empties down to 0; what the tet cannot take stays with the tool. Every gram is booked.
   void exchange(std::span<const int> triangle, std::span<const double> area, int sign, double step_s);
   /// The same for tets, each as often as it is touched, with `area` [m²] of each touch.
-  void exchange_tets(std::span<const int> tet, std::span<const double> area, int sign, double step_s);
+  void transfer(std::span<const int> tet, std::span<const double> area, int sign, double step_s);
 
   /// Diffuses for `step_s`; the boundary is sealed. Conservative to round-off. S stays between the smallest
   /// and the largest S around: in explicit substeps bit for bit, in an implicit step to the solver's
@@ -65,9 +63,10 @@ class PoreWater {
   /// Explicit substeps that `diffuse(step_s)` takes with the present water.
   double num_substeps(double step_s) const;
 
-  /// Replaces `tets` by those whose saturation moved by more than `tolerance` since they were last collected,
-  /// in increasing order; the first call collects all.
-  void collect_changed(double tolerance, std::vector<int>& tets);
+  /// Tets that hold water, or are next to such, or were since the last drying, increasing: in no others has
+  /// the saturation changed, but in those that the last drying left dry.
+  std::span<const int> active() const { return m_active; }
+  std::span<const int> dried() const { return m_dried; }
 
   const Field& saturation() const { return m_state.saturation; }
   double capacity(int tet) const { return m_capacity(tet); }  ///< mass at S = 1 [kg]
@@ -77,12 +76,14 @@ class PoreWater {
 
   /// Longest substep [s] that keeps the maximum principle where D = D₀.
   double monotone_step() const { return m_stencil.monotone_step; }
-  /// Tets that hold water, or are next to such, or were since the last drying.
   int num_active() const { return static_cast<int>(m_active.size()); }
 
   const WaterState& state() const { return m_state; }
   /// Goes on from `state`, made by a PoreWater of the same mesh and parameters.
   void restore(const WaterState& state);
+  /// What has moved since the last commit stays so; or is where it was.
+  void commit();
+  void roll_back() { restore(m_committed); }
 
  private:
   // water.cpp
@@ -124,9 +125,10 @@ class PoreWater {
   std::vector<int> m_boundary_tet;
   Stencil m_stencil;
   Field m_capacity;  // [kg]
-  WaterState m_state;
+  WaterState m_state, m_committed;
   std::vector<char> m_is_active;
   std::vector<int> m_active;           // sorted between calls
+  std::vector<int> m_dried;            // that the last drying took from these
   std::vector<int> m_merged;           // scratch of sort_active
   std::size_t m_num_sorted = 0;        // how many of m_active are in order
   std::vector<int> m_touched, m_once;  // scratch of exchange

@@ -41,14 +41,12 @@ void touch(benchmark::State& state) {
   water::PoreWater water(cube.mesh, cube.topology, params, Field::Zero(cube.mesh.num_tets()));
   const int triangle[] = {0, 1, 2, 3};
   const double area[] = {1e-6, 1e-6, 1e-6, 1e-6};
-  std::vector<int> changed;
-  water.collect_changed(1e-4, changed);
   int step = 0, substeps = 0;
   for (auto _ : state) {
     water.exchange(triangle, area, (step++ / 100) % 2 == 0 ? 1 : -1, kStep);
     substeps = water.diffuse(kStep);
-    water.collect_changed(1e-4, changed);
-    benchmark::DoNotOptimize(changed.data());
+    water.commit();
+    benchmark::DoNotOptimize(water.saturation().data());
   }
   state.counters["tets"] = cube.mesh.num_tets();
   state.counters["active"] = water.num_active();

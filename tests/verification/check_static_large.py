@@ -4,6 +4,8 @@ Usage: check_static_large.py ARGIL
 
 The laws, with F = R S by singular value decomposition, J = det F, W per rest volume [J/m³] and P = ∂W/∂F [Pa]:
   corotational  P = 2μ (F − R) + λ tr(S − 1) R
+  hencky        W = μ Σ εᵢ² + ½λ (Σ εᵢ)² in the logarithms εᵢ of the stretches sᵢ, F = U diag(s) Vᵀ,
+                P = U diag((2μ εᵢ + λ Σ εⱼ)/sᵢ) Vᵀ
   neo_hookean   W = ½μ (tr FᵀF − 3) − μ (J − 1) + ½(λ + μ)(J − 1)²,  P = μ F + ((λ + μ)(J − 1) − μ) ∂J/∂F
 Loads grow in equal shares, each solved by Newton's method with central differences of P as its tangent, and
 without line search: it follows the path from rest, which argil need not do.
@@ -69,7 +71,14 @@ def neo_hookean(F, lame):
     return lame[:, 1, None, None] * F + pressure[:, None, None] * cofactor
 
 
-LAWS = {"corotational": corotational, "neo_hookean": neo_hookean}
+def hencky(F, lame):
+    U, s, V = np.linalg.svd(F)
+    strain = np.log(s)
+    tau = 2.0 * lame[:, 1, None] * strain + (lame[:, 0] * strain.sum(axis=-1))[:, None]
+    return U * (tau / s)[:, None, :] @ V
+
+
+LAWS = {"corotational": corotational, "neo_hookean": neo_hookean, "hencky": hencky}
 
 
 def find_motion(points, x):

@@ -103,7 +103,8 @@ TEST_P(StaticModel, ShiftedSupportTakesTheBodyAlong) {
   expect_near(u, Vec3(0.04, 0.0, -0.03).replicate(1, u.cols()));
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryModel, StaticModel, testing::Values("linear", "corotational", "neo_hookean"));
+INSTANTIATE_TEST_SUITE_P(EveryModel, StaticModel,
+                         testing::Values("linear", "corotational", "neo_hookean", "hencky"));
 
 TEST_F(StaticMode, SupportsThatLeaveAShiftAreRefused) {
   expect_refused(make_box(hold_plane("[0, 0, 1]", 0.0, R"(, "fixes_x": false)"), ""),

@@ -38,6 +38,8 @@ TEST_F(ModelSummary, EveryKeyThatItAsksForIsInAResolvedScenario) {
 TEST_F(ModelSummary, NamesLawElementStepAndSolver) {
   expect_line({"/dynamics/model=linear"}, "simplified  strain: linear");
   expect_line({"/dynamics/model=neo_hookean"}, "in full     strain: large");
+  expect_line({"/dynamics/model=hencky", "/material/plasticity/enabled=false"},
+              "in full     strain: large (logarithmic");
   expect_line({"/dynamics/element=p1_nodal"}, "simplified  elements: one strain a tet, volume averaged");
   expect_line({"/dynamics/element=p2"}, "in full     elements: linear strain");
   expect_line({"/dynamics/iteration=newton", "/dynamics/newton/tolerance=1e-9"},

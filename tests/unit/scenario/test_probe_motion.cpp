@@ -191,7 +191,8 @@ TEST(ProbeElement, StiffnessHasRankSixAndTheLinearModelsForceIsItTimesTheDisplac
 }
 
 TEST(ProbeElement, StiffnessIsTheForcesSlope) {
-  // At a turned rest shape, and for neo_hookean also where it is strained, against central differences.
+  // At a turned rest shape, and for laws of large strain also where it is strained, against central
+  // differences.
   const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(2, -1, 2) / 3.0).toRotationMatrix();
   const Mat3 strained = turn * Vec3(1.1, 1.05, 0.97).asDiagonal();
   Eigen::Matrix<double, 3, 4> rest;
@@ -204,6 +205,8 @@ TEST(ProbeElement, StiffnessIsTheForcesSlope) {
   };
   for (const auto& [model, F] : {std::pair<std::string, Mat3>{"corotational", turn},
                                  {"neo_hookean", turn},
+                                 {"hencky", turn},
+                                 {"hencky", strained},
                                  {"neo_hookean", strained}}) {
     const Eigen::Matrix<double, 3, 4> x = F * rest;
     const Json K = probe(model, x)["stiffness"];
@@ -223,6 +226,16 @@ TEST(ProbeElement, StiffnessIsTheForcesSlope) {
 void expect_refused(const std::string& kernel, const std::string& cases, std::vector<std::string> parts) {
   for (const std::string& part : parts)
     ARGIL_EXPECT_THROW_WITH(run_probe(kernel, "{\"cases\": [" + cases + "]}"), InputError, part);
+}
+
+TEST(ProbeElement, HenckyTakesNoPlasticStrainAndNoInvertedTet) {
+  const std::string hencky = std::string("{") + kUnitTet + R"("model": "hencky", "deformed": )";
+  expect_refused("element", hencky + R"([[0,0,0], [1.01,0,0], [0,1,0], [0,0,1]],
+                             "plastic_strain": [[0.01,0,0],[0,0,0],[0,0,0]]})",
+                 {"cases[0].plastic_strain", "hencky"});
+  for (const char* corner : {"[0,0,-1]", "[0.3,0.3,0]"})
+    expect_refused("element", hencky + "[[0,0,0], [1,0,0], [0,1,0], " + corner + "]}",
+                   {"cases[0].deformed", "hencky"});
 }
 
 TEST(RunProbe, NamesCaseAndKeyOfWhatItRefuses) {

@@ -55,14 +55,16 @@ TEST_F(ScenarioFile, PortableOneIsTheSameWhereverTheFolderLies) {
 TEST_F(ScenarioFile, LocalExtentIsRefusedWhereAStepNeedsTheWholeBody) {
   const std::string local = "/dynamics/extent=local";
   EXPECT_EQ(load({local}).params.solid.extent, solid::Extent::local);
-  const std::vector<std::vector<std::string>> needs_whole = {{"/dynamics/element=p2"},
-                                                             {"/dynamics/model=neo_hookean"},
-                                                             {"/dynamics/integrator=newmark"},
-                                                             {"/dynamics/iteration=newton"},
-                                                             {"/dynamics/solver/kind=cholesky"},
-                                                             {"/dynamics/solver/tolerance=1e-6"},
-                                                             {"/haptics/between_frames=compliant"},
-                                                             {"/water/swelling=0.02"}};
+  const std::vector<std::vector<std::string>> needs_whole = {
+      {"/dynamics/element=p2"},
+      {"/dynamics/model=neo_hookean"},
+      {"/dynamics/model=hencky", "/material/plasticity/enabled=false"},
+      {"/dynamics/integrator=newmark"},
+      {"/dynamics/iteration=newton"},
+      {"/dynamics/solver/kind=cholesky"},
+      {"/dynamics/solver/tolerance=1e-6"},
+      {"/haptics/between_frames=compliant"},
+      {"/water/swelling=0.02"}};
   for (std::vector<std::string> settings : needs_whole) {
     SCOPED_TRACE(settings.front());
     settings.push_back(local);
@@ -225,6 +227,28 @@ TEST_F(ScenarioFile, PlasticStretchOfNeoHookeanClayMustKeepItsDimensions) {
   EXPECT_NO_THROW(load(with("5", "corotational", "frobenius")));
 }
 
+TEST_F(ScenarioFile, HenckyClayHasNoPlasticFlow) {
+  const std::string model = "/dynamics/model=hencky";
+  const std::string flows = "/material/plasticity/enabled=true";
+  ARGIL_EXPECT_THROW_WITH(load({model, flows}), InputError, "/material/plasticity/enabled: true");
+  ARGIL_EXPECT_THROW_WITH(load({model, flows}), InputError, "hencky is an elastic law");
+  ARGIL_EXPECT_THROW_WITH(load({model, flows}), InputError, "set it to false");
+  EXPECT_EQ(load({model, "/material/plasticity/enabled=false"}).params.solid.model,
+            solid::StrainModel::hencky);
+  EXPECT_NO_THROW(load({model, flows, "/dynamics/mode=static"}));  // an equilibrium is elastic
+}
+
+TEST_F(ScenarioFile, HenckyClayStopsWhereATetIsInverted) {
+  const auto with = [](const std::string& model, const std::string& least) {
+    return std::vector<std::string>{"/dynamics/model=" + model, "/material/plasticity/enabled=false",
+                                    "/dynamics/min_volume_ratio=" + least};
+  };
+  ARGIL_EXPECT_THROW_WITH(load(with("hencky", "-0.5")), InputError, "/dynamics/min_volume_ratio: -0.5");
+  ARGIL_EXPECT_THROW_WITH(load(with("hencky", "-0.5")), InputError, "outside [0, 1] for hencky");
+  EXPECT_NO_THROW(load(with("hencky", "0")));
+  EXPECT_NO_THROW(load(with("corotational", "-0.5")));
+}
+
 TEST_F(ScenarioFile, IntegratorsThatDoNotServeAreWarnedOf) {
   const std::string newton = "/dynamics/iteration=newton";
   const auto integrator = [](const char* name) { return std::string("/dynamics/integrator=") + name; };
@@ -248,10 +272,14 @@ TEST_F(ScenarioFile, J2IsALawOfIsotropicClay) {
   EXPECT_NO_THROW(load({flat[0], flat[1], flat[2]}));
 }
 
-TEST_F(ScenarioFile, LawOfIsotropicClayTakesEverySchemeThatLeavesItIsotropic) {
-  const std::vector<std::string> flat = {"/dynamics/model=neo_hookean", "/material/plasticity/enabled=false",
-                                         "/material/effective_medium/aspect=0.1",
-                                         "/material/effective_medium/orientation=aligned"};
+class IsotropicLaw : public ScenarioFile, public testing::WithParamInterface<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Every, IsotropicLaw, testing::Values("neo_hookean", "hencky"));
+
+TEST_P(IsotropicLaw, TakesEverySchemeThatLeavesClayIsotropic) {
+  const std::vector<std::string> flat = {
+      std::string("/dynamics/model=") + GetParam(), "/material/plasticity/enabled=false",
+      "/material/effective_medium/aspect=0.1", "/material/effective_medium/orientation=aligned"};
   ARGIL_EXPECT_THROW_WITH(load(flat), InputError, "takes isotropic stiffness only");
   for (const char* other :
        {"/material/effective_medium/scheme=voigt",  // knows no shape

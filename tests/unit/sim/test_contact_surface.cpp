@@ -75,7 +75,8 @@ TEST_P(EverySurface, CarriesForceAndTorqueToTheNodesToRounding) {
   ASSERT_GT(contacts.resistance_on_tool.head<2>().norm(), 0.001);
 
   NodalForce on_body(x.cols());
-  for (const contact::Contact& c : contacts.contacts) surface.add_force(c, c.force + c.resistance, on_body);
+  for (const contact::Contact& c : contacts.contacts)
+    surface.add_force({c.vertex, c.weight, c.force + c.resistance}, on_body);
   const Points& force = on_body.at;
   Vec3 torque = Vec3::Zero();
   for (Eigen::Index v = 0; v < x.cols(); ++v) torque += (x.col(v) - aside.position).cross(Vec3(force.col(v)));

@@ -112,6 +112,11 @@ const Case kCases[] = {
     {"p2", [](Params& p) { p.solid.element = solid::ElementKind::p2; }},
     {"linear", [](Params& p) { p.solid.model = solid::StrainModel::linear; }},
     {"neo_hookean", [](Params& p) { p.solid.model = solid::StrainModel::neo_hookean; }},
+    {"hencky",
+     [](Params& p) {
+       p.solid.model = solid::StrainModel::hencky;
+       p.plasticity.enabled = false;
+     }},
     {"p1_nodal", [](Params& p) { p.solid.element = solid::ElementKind::p1_nodal; }},
     {"p1_nodal_bdf2",
      [](Params& p) {

@@ -80,7 +80,7 @@ TEST(LateSteps, FreeBodyTakesUpTheMeanForceOfTheTicksForOneStep) {
   const std::vector<int> lengths = {4, 7, 4, 1, 2, 11, 4, 5, 4, 4};  // of the steps in ticks
   for (int k = 0; steps < 10; ++k) {
     TickPlan plan;
-    plan.sees_step = steps > 0 && ticks == 0;
+    plan.receives_step = steps > 0 && ticks == 0;
     plan.begins_step = ticks + 1 == lengths[static_cast<std::size_t>(steps)];
     ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k), plan).is_ok());
     gathered -= simulation.hand_state().hand_force;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/mandel.h"
+#include "base/ordered_runs.h"
 #include "base/rng.h"
 #include "solid/element.h"
 
@@ -58,8 +59,8 @@ struct Tets {
     const TetArrays arrays{x.data(),  nodes.data(),  gradient.data(),     model == StrainModel::linear,
                            F.data(),  R.data(),      turned.data(),       frame.data(),
                            tolerance, strain.data(), volume_ratio.data(), is_turned.data()};
-    for_batches(kTets, 1,
-                [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_motions(arrays, begin, end); });
+    OrderedRuns(1).each(
+        kTets, [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_motions(arrays, begin, end); });
   }
   void press(StrainModel model, bool with_pressure) {
     const ForceArrays arrays{gradient.data(),
@@ -72,8 +73,8 @@ struct Tets {
                              with_pressure ? pressure.data() : nullptr,
                              model == StrainModel::linear,
                              force.data()};
-    for_batches(kTets, 1,
-                [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_corner_forces(arrays, begin, end); });
+    OrderedRuns(1).each(
+        kTets, [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_corner_forces(arrays, begin, end); });
   }
 };
 
@@ -119,8 +120,8 @@ TEST_P(Lanes8, StrainBySmallDisplacementsInTheTurnedFrame) {
   for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = rng.uniform(-1.0, 1.0);
   const StrainArrays strains{u.data(), tets.nodes.data(), tets.gradient.data(), tets.R.data(),
                              tets.strain.data()};
-  for_batches(kTets, 1,
-              [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_strains(strains, begin, end); });
+  OrderedRuns(1).each(
+      kTets, [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_strains(strains, begin, end); });
   const ForceArrays forces{tets.gradient.data(),
                            tets.R.data(),
                            tets.strain.data(),
@@ -131,8 +132,8 @@ TEST_P(Lanes8, StrainBySmallDisplacementsInTheTurnedFrame) {
                            nullptr,
                            GetParam() == StrainModel::linear,
                            tets.force.data()};
-  for_batches(kTets, 1,
-              [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_corner_forces(forces, begin, end); });
+  OrderedRuns(1).each(
+      kTets, [&](std::ptrdiff_t begin, std::ptrdiff_t end) { compute_corner_forces(forces, begin, end); });
   for (int t = 0; t < kTets; ++t) {
     const Mat34 gradient = tets.gradient.middleCols<4>(4 * t);
     const Mat3 R = tets.R.middleCols<3>(3 * t);

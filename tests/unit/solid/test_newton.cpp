@@ -1,4 +1,5 @@
 // Solvers against each other, and Newton's method: its order, its line search, its refusals.
+#include "support/laws.h"
 #include "support/solid_scene.h"
 
 namespace argil::solid {
@@ -65,8 +66,7 @@ TEST_P(Solvers, AgreeOnEveryStep) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Solvers,
-                         testing::Combine(testing::Values(StrainModel::linear, StrainModel::corotational,
-                                                          StrainModel::neo_hookean),
+                         testing::Combine(testing::ValuesIn(test::every_model()),
                                           testing::Values(ElementKind::p1, ElementKind::p1_nodal,
                                                           ElementKind::p2),
                                           testing::Values(Iteration::one, Iteration::newton)));
@@ -119,11 +119,17 @@ double find_residual_near(SolidParams params, History history, double distance) 
   return status.is_ok() ? 0.0 : status.failure().value;
 }
 
+/// Hencky's law has no equilibrium above a pull of E/e over the rest area, where a bar necks; the 25 nodes of
+/// a p2 bar's end pull by 0.45 E at a load of 6.
+double find_bearable_load(const SolidParams& params) {
+  return params.model == StrainModel::hencky ? 3.0 : 6.0;
+}
+
 /// Relative residuals before each of Newton's steps: what is reported when it may take no more.
 std::vector<double> find_residuals(SolidParams params, bool is_static) {
   std::vector<double> residuals;
   for (params.newton_max_iterations = 0; params.newton_max_iterations < 30; ++params.newton_max_iterations) {
-    Scene scene = make_bar(params, 6.0);
+    Scene scene = make_bar(params, find_bearable_load(params));
     // Statics would go on in shares of the load; one long step of a light body is the same task without.
     const StepStatus status = is_static ? scene.step(1e4) : scene.step(0.05);
     if (status.is_ok()) break;
@@ -143,7 +149,7 @@ void expect_quadratic(const std::vector<double>& r) {
 }
 
 TEST(Newton, ConvergesQuadratically) {
-  for (const StrainModel model : {StrainModel::corotational, StrainModel::neo_hookean})
+  for (const StrainModel model : test::every_nonlinear_model())
     for (const ElementKind element : {ElementKind::p1, ElementKind::p1_nodal, ElementKind::p2})
       for (const bool is_static : {true, false}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(model) << static_cast<int>(element) << is_static);
@@ -156,12 +162,14 @@ TEST(Newton, ConvergesQuadratically) {
 }
 
 TEST(Newton, ConvergesQuadraticallyWithPlasticStrainAndAnisotropicStiffness) {
-  for (const StrainModel model : {StrainModel::corotational, StrainModel::neo_hookean})
+  for (const StrainModel model : test::every_nonlinear_model())
     for (const ElementKind element : {ElementKind::p1, ElementKind::p1_nodal, ElementKind::p2})
       for (const History history : {History::plastic, History::anisotropic}) {
         if (history == History::anisotropic &&
-            (model == StrainModel::neo_hookean || element == ElementKind::p1_nodal))
+            (!find_law(model).takes_full_stiffness || element == ElementKind::p1_nodal))
           continue;  // isotropic only
+        if (history == History::plastic && find_law(model).plastic_split == PlasticSplit::none)
+          continue;  // elastic only
         SCOPED_TRACE(testing::Message()
                      << static_cast<int>(model) << static_cast<int>(element) << static_cast<int>(history));
         SolidParams params;
@@ -175,7 +183,7 @@ TEST(Newton, ConvergesQuadraticallyWithPlasticStrainAndAnisotropicStiffness) {
 }
 
 TEST(Newton, FindsTheSameEquilibriumFromABadStart) {
-  for (const StrainModel model : {StrainModel::corotational, StrainModel::neo_hookean})
+  for (const StrainModel model : test::every_nonlinear_model())
     for (const ElementKind element : {ElementKind::p1, ElementKind::p1_nodal, ElementKind::p2}) {
       SolidParams params;
       params.model = model;
@@ -195,7 +203,7 @@ TEST(Newton, FindsTheSameEquilibriumFromABadStart) {
 
 TEST(Newton, DampedTurningBodyConverges) {
   // Damping turns with the body; in a step its frame is that of the start, or there is no potential to fall.
-  for (const StrainModel model : {StrainModel::corotational, StrainModel::neo_hookean}) {
+  for (const StrainModel model : test::every_nonlinear_model()) {
     SolidParams params;
     params.model = model;
     params.element = ElementKind::p1_nodal;
@@ -214,7 +222,7 @@ TEST(Newton, DampedTurningBodyConverges) {
 }
 
 TEST(Newton, FindsABodyAtRestAtRest) {
-  for (const StrainModel model : {StrainModel::linear, StrainModel::corotational, StrainModel::neo_hookean}) {
+  for (const StrainModel model : test::every_model()) {
     SolidParams params;
     params.model = model;
     Scene scene = make_bar(params, 0.0);

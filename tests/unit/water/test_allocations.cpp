@@ -20,8 +20,6 @@ TEST(PoreWater, AllocatesNothingOnceItIsMade) {
     params.wetting_flux = 1.0;
     params.saturation_increment = 0.1;
     PoreWater water(mesh, topology, params, Field::Zero(mesh.num_tets()));
-    std::vector<int> changed;
-    water.collect_changed(1e-4, changed);  // names every tet: as long as the list can get
     const int triangle[] = {5, 17};
     const double area[] = {1e-4, 1e-4};
     double mass = 0.0;
@@ -29,7 +27,7 @@ TEST(PoreWater, AllocatesNothingOnceItIsMade) {
     for (int i = 0; i < 200; ++i) {
       water.exchange(triangle, area, i < 100 ? 1 : -1, 0.01);
       water.diffuse(2.0);
-      water.collect_changed(1e-4, changed);
+      water.commit();
       mass += water.mass() + water.ledger_error();
     }
     EXPECT_EQ(test::count_allocations() - before, 0U);

@@ -1,0 +1,84 @@
+#include "sim/body_materials.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "material/plasticity.h"
+
+namespace argil::sim {
+
+BodyMaterials::BodyMaterials(const Body& body, const Params& params, const water::PoreWater& water,
+                             solid::Solid& solid)
+    : m_body(body),
+      m_params(params),
+      m_water(water),
+      m_solid(solid),
+      m_moisture(params.elastic, params.plasticity.yield, params.moisture, params.water.porosity),
+      m_saturation(water.saturation()) {
+  m_yield.setZero(solid.elements().num_points());
+  if (!m_moisture.is_isotropic() && params.plasticity.enabled && params.plasticity.deviatoric)
+    m_shape_stiffness.resize(static_cast<std::size_t>(body.mesh.num_tets()));
+  m_changed.reserve(static_cast<std::size_t>(body.mesh.num_tets()));
+  m_before.reserve(m_changed.capacity());
+}
+
+void BodyMaterials::set_all() {
+  for (int t = 0; t < m_body.mesh.num_tets(); ++t) set(t, m_water.saturation()(t));
+}
+
+double BodyMaterials::shape_stiffness(int tet) const {
+  return m_shape_stiffness.empty() ? 2.0 * m_solid.material(tet).mu
+                                   : m_shape_stiffness[static_cast<std::size_t>(tet)];
+}
+
+void BodyMaterials::set(int tet, double S) {
+  m_saturation(tet) = S;
+  const bool has_own_modulus = m_body.youngs_modulus.size() > 0;
+  const double E = has_own_modulus ? m_body.youngs_modulus(tet) : m_params.elastic.youngs_modulus;
+  const material::WetState wet = has_own_modulus ? m_moisture.at(S, E) : m_moisture.at(S);
+  m_solid.set_material(tet, {wet.lambda, wet.mu, wet.yield});
+  const int Q = m_solid.elements().points_per_tet;
+  m_yield.segment(static_cast<Eigen::Index>(Q) * tet, Q).setConstant(wet.yield);
+  if (m_params.water.swelling > 0.0) m_solid.set_swelling(tet, 1.0 + m_params.water.swelling * S);
+  if (m_params.water.adds_mass) m_solid.set_water_mass(tet, m_water.capacity(tet) * S);
+  if (m_moisture.is_isotropic()) return;
+  const Vec3 axis =
+      m_body.pore_axis.cols() > 0 ? Vec3(m_body.pore_axis.col(tet)) : m_params.moisture.medium.axis;
+  const Mat6 C = has_own_modulus ? m_moisture.stiffness_at(S, axis, E) : m_moisture.stiffness_at(S, axis);
+  m_solid.set_anisotropic_stiffness(tet, C);
+  if (!m_shape_stiffness.empty())
+    m_shape_stiffness[static_cast<std::size_t>(tet)] = material::compute_shape_stiffness(C);
+}
+
+std::span<const int> BodyMaterials::refresh(double tolerance) {
+  const std::size_t first = m_changed.size();
+  const auto collect = [&](std::span<const int> tets) {
+    for (const int t : tets)
+      if (std::abs(m_water.saturation()(t) - m_saturation(t)) > tolerance) m_changed.push_back(t);
+  };
+  collect(m_water.active());
+  collect(m_water.dried());
+  const auto begin = m_changed.begin() + static_cast<std::ptrdiff_t>(first);
+  std::sort(begin, m_changed.end());
+  m_changed.erase(std::unique(begin, m_changed.end()), m_changed.end());  // dried, and wet again
+  const std::span<const int> changed = std::span(m_changed).subspan(first);
+  m_before.resize(first);
+  for (const int t : changed) {
+    m_before.push_back(m_saturation(t));
+    set(t, m_water.saturation()(t));
+  }
+  return changed;
+}
+
+void BodyMaterials::roll_back() {
+  for (std::size_t i = m_changed.size(); i-- > 0;) set(m_changed[i], m_before[i]);
+  m_changed.clear();
+}
+
+void BodyMaterials::serialize(Archive& archive) {
+  archive.array("water/collected", m_saturation);
+  if (archive.is_restoring())
+    for (int t = 0; t < m_body.mesh.num_tets(); ++t) set(t, m_saturation(t));
+}
+
+}  // namespace argil::sim

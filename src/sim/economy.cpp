@@ -1,0 +1,154 @@
+#include "sim/economy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace argil::sim {
+
+Economy::Economy(const Params& params, const Body& body, solid::Solid& solid)
+    : m_params(params),
+      m_solid(solid),
+      m_fidelity(params.fidelity,
+                 params.solid.rayleigh_stiffness /
+                     solid::compute_tau(params.solid.integrator, params.rates.step_seconds())),
+      m_committed_fidelity(m_fidelity) {
+  m_held_back.setZero(3, solid.elements().num_nodes());
+  m_is_moved = std::any_of(body.supports.begin(), body.supports.end(),
+                           [](const solid::Support& s) { return s.displacement.norm() > 0.0; });
+}
+
+void Economy::begin(BodyState& state, bool is_loaded) {
+  find_reach(state, OrderedItems(m_params.threads));
+  if (!m_is_moved && !is_loaded) fall_asleep(state);
+  commit();
+}
+
+void Economy::fall_asleep(BodyState& state) {
+  state.is_at_rest = true;
+  m_slow_steps = 0;
+  state.solid.v.setZero();
+  state.solid.v_before.setZero();
+  if (state.solid.x_before.size() > 0) state.solid.x_before = state.solid.x;
+  m_solid.sleep_all();
+  m_rest_strain = m_solid.summarise(state.solid.plastic_strain);
+}
+
+/// It falls asleep when nothing has touched it and it has been slower than rest_speed for two steps, and
+/// wakes when anything acts.
+bool Economy::rests(BodyState& state, const ContactLoad& load, const NodalForce& contacts) {
+  if (!m_fidelity.is_full()) return sleeps_on(state, load, contacts);
+  if (load.patch.is_touched || m_is_moved) {
+    state.is_at_rest = false;
+    m_slow_steps = 0;
+    return false;
+  }
+  if (state.is_at_rest || m_params.rest_speed == 0.0) return state.is_at_rest;
+  const double speed = std::sqrt(state.solid.v.colwise().squaredNorm().maxCoeff());
+  m_slow_steps = speed <= m_params.rest_speed ? m_slow_steps + 1 : 0;
+  if (m_slow_steps >= 2) fall_asleep(state);
+  return state.is_at_rest;
+}
+
+void Economy::find_reach(const BodyState& state, const OrderedItems& nodes) {
+  m_fidelity.find_reach(state.solid.x, m_solid.elements().rest, nodes);
+}
+
+/// fidelity: does the body still sleep under this load? A surface that deflects between frames asks for a
+/// step after each frame in which it was touched.
+bool Economy::sleeps_on(BodyState& state, const ContactLoad& load, const NodalForce& contacts) {
+  m_fidelity.begin_step(load.hand.felt.force);
+  if (load.patch.is_touched && m_params.rates.between_frames == BetweenFrames::compliant)
+    state.is_at_rest = false;
+  if (!state.is_at_rest) {
+    find_reach(state, m_solid.moving_nodes());
+    return false;
+  }
+  double squares = m_held_back_squares;
+  for (const int n : contacts.nodes) {
+    const Vec3 force = m_solid.find_free_part(contacts.at.col(n), n);
+    squares += force.dot(2.0 * m_held_back.col(n) + force);
+  }
+  state.is_at_rest = m_fidelity.sleeps_on(std::sqrt(std::max(0.0, squares)), m_solid.held_back());
+  return state.is_at_rest;
+}
+
+void Economy::set_budget(solid::StepLoads& loads) const {
+  loads.slack = m_fidelity.solve_slack();
+  loads.limit = m_fidelity.solve_limit();
+  loads.region_slack = m_fidelity.region_slack();
+}
+
+bool Economy::stops(BodyState& state, const solid::StepLoads& loads, const NodalForce& contacts, bool flows) {
+  if (m_fidelity.is_full() || m_solid.counters().newton_iterations > 0) return false;
+  if (m_is_moved || m_params.rates.between_frames == BetweenFrames::compliant) return false;
+  if (!m_fidelity.falls_asleep(m_solid.compute_imbalance(loads), m_solid.held_back(), flows)) return false;
+  const OrderedItems& nodes = m_solid.moving_nodes();
+  m_held_back.setZero();
+  m_held_back_squares = nodes.sum(m_held_back.cols(), [&](std::ptrdiff_t n) {
+    if (!m_solid.is_awake(n)) return 0.0;
+    m_held_back.col(n) = m_solid.find_imbalance(loads, n) - m_solid.find_free_part(contacts.at.col(n), n);
+    return m_held_back.col(n).squaredNorm();
+  });
+  for (const int n : contacts.nodes) {  // in balance where the body slept before
+    if (m_solid.is_awake(n)) continue;
+    m_held_back.col(n) = -m_solid.find_free_part(contacts.at.col(n), n);
+    m_held_back_squares += m_held_back.col(n).squaredNorm();
+  }
+  find_reach(state, nodes);
+  fall_asleep(state);
+  return true;
+}
+
+void Economy::finish_step(const BodyState& state) {
+  watch_strain(state);
+  m_fidelity.set_made(m_solid.counters().has_solved, m_solid.counters().imbalance, m_solid.held_back());
+}
+
+/// fidelity: the mean strain of the points that move, each by its elastic energy. Laws of elasticity agree
+/// for small strain and differ in the next power, so that the force of another one may be off by about as
+/// much.
+void Economy::watch_strain(const BodyState& state) {
+  constexpr int kSteps = 16;  // between two looks
+  if (m_fidelity.is_full() || state.steps % kSteps != 0) return;
+  const auto weigh = [&](std::ptrdiff_t begin, std::ptrdiff_t end, bool by_strain) {
+    double sum = 0.0;
+    for (auto p = static_cast<int>(begin); p < static_cast<int>(end); ++p) {
+      const Vec6 strain = m_solid.strain().col(p);
+      const Vec6 elastic = strain - state.solid.plastic_strain.col(p);
+      sum += m_solid.material(m_solid.elements().tet_of_point(p)).mu * m_solid.weight()(p) *
+             elastic.squaredNorm() * (by_strain ? strain.norm() : 1.0);
+    }
+    return sum;
+  };
+  const auto sum = [&](bool by_strain) {
+    return m_solid.sum_moving_points(
+        [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return weigh(begin, end, by_strain); });
+  };
+  const double energy = sum(false);
+  m_fidelity.set_large_strain(energy > 0.0 ? sum(true) / energy : 0.0);
+}
+
+void Economy::commit() {
+  m_committed_fidelity = m_fidelity;
+  m_committed_slow_steps = m_slow_steps;
+}
+
+void Economy::roll_back() {
+  m_fidelity = m_committed_fidelity;
+  m_slow_steps = m_committed_slow_steps;
+}
+
+void Economy::serialize_rest(Archive& archive) {
+  archive.number("solid/slow_steps", m_slow_steps);
+  archive.number("solid/rest_energy", m_rest_strain.elastic_energy);
+  archive.number("solid/rest_plastic_strain", m_rest_strain.largest_plastic_strain);
+}
+
+void Economy::serialize(Archive& archive) {
+  if (m_fidelity.is_full()) return;
+  archive.array("fidelity/held_back", m_held_back);
+  archive.number("fidelity/held_back_squares", m_held_back_squares);
+  m_fidelity.exchange_state(archive);
+}
+
+}  // namespace argil::sim

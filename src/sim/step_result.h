@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "device/gate.h"
+
+namespace argil::sim {
+
+/// What a step of the body tells the hand.
+struct StepResult {
+  Tick step = 0;           ///< number of the step, from 1
+  bool has_moved = false;  ///< the body has; else its surface is where it was
+  bool is_whole = true;    ///< all of its surface may have moved; else only these vertices have:
+  std::vector<int> moved;
+  Points surface_x;  ///< places of all vertices of the touched surface, or of these [m], where it has moved
+  device::Wrench felt;  ///< what the hand felt, less what the body's deflection has taken from it
+
+  /// Takes storage for a touched surface of `num_vertices`.
+  explicit StepResult(Eigen::Index num_vertices) : surface_x(3, num_vertices) {
+    moved.reserve(static_cast<std::size_t>(num_vertices));
+  }
+};
+
+}  // namespace argil::sim

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solid/step_loads.h"
+
+namespace argil::solid {
+
+/// Which contacts act in the present step. Lists: at the number of each group's first entry.
+struct ContactActivity {
+  std::vector<char> acts;
+  std::vector<double> force;  ///< Σ n·f − k n·(x − x₀) [N]
+  int num_updates = 0;        ///< of the step
+
+  /// Of a step with so many contacts, all of which act.
+  void start(std::size_t count);
+  bool is_acting(int group) const { return group < 0 || acts[static_cast<std::size_t>(group)] != 0; }
+};
+
+/// Contacts of a step that began at x_start (3×n) [m].
+struct StepContacts {
+  std::span<const PointStiffness> list;
+  const Points& x_start;
+
+  /// Mean displacement since then of the nodes that contact i presses [m].
+  Vec3 displacement(std::size_t i, const Points& x) const;
+  /// How much less than f contact i exerts at x [N].
+  Vec3 compute_fall(std::size_t i, const Points& x, const ContactActivity& activity) const;
+  /// Potential of what compute_fall is the force of [J].
+  double compute_potential(std::size_t i, const Points& x, const ContactActivity& activity) const;
+};
+
+/// Lets go what would draw at x and takes back what would press again: Newton's method on the potential
+/// ½ Σ max(0, n·f − k n·(x − x₀))²/k, which is convex. After some rounds contacts are only let go, so that
+/// this ends. False when all is as it was.
+bool update_active_contacts(const StepContacts& contacts, const Points& x, ContactActivity& activity);
+
+/// force += scale · Σ k n n·u of the contacts that act.
+void add_contact_product(const StepContacts& contacts, const ContactActivity& activity, const Points& u,
+                         double scale, Points& force);
+
+/// force += f, shared among the nodes that the contact presses.
+void spread(const PointStiffness& contact, const Vec3& f, Points& force);
+
+}  // namespace argil::solid

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+
+#include "solid/part.h"
+#include "solid/step_loads.h"
+#include "solid/system.h"
+
+namespace argil::solid {
+
+struct Body;
+
+/// Does the matrix need ∂P/∂F? The one-step linear and corotational models keep their rotation instead.
+bool needs_tangents(const Body& body);
+
+/// Of the present step.
+MatrixShares compute_shares(const Body& body);
+
+/// Frame of the stiffness whose rotation is kept: the present one, or that of the step's start.
+Mat3 kept_rotation(const Body& body, int point);
+
+/// A of the present iterate with the contacts that act, in the rows of `part` and those next to them.
+void assemble_matrix(Body& body, const Part& part, std::span<const PointStiffness> contacts);
+
+}  // namespace argil::solid

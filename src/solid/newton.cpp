@@ -1,0 +1,69 @@
+#include "solid/newton.h"
+
+#include "solid/body.h"
+#include "solid/matrix.h"
+#include "solid/product.h"
+#include "solid/solve.h"
+
+namespace argil::solid {
+namespace {
+
+linear::SolveReport solve_system(Body& body, const Part& part, const StepLoads& loads, linear::Solver& solver,
+                                 bool is_first) {
+  if (body.model.num_free() == 0) return {true, 0, 0.0};
+  guess(body, part, is_first);
+  Product product(body, part, loads.contacts);
+  solver.set_goal(0.0);
+  const linear::SolveReport report =
+      solver.solve(body.system.matrix, product, body.system.rhs, body.system.delta);
+  if (is_first) body.newton.first_residual = report.first;
+  count_solve(body, report);
+  return report;
+}
+
+}  // namespace
+
+bool assemble_newton(Body& body, const Part& part, const StepLoads& loads) {
+  NewtonMeasures& newton = body.newton;
+  assemble_residual(body, part, loads);
+  // At least one solve where something acts: what it does may be small beside the rounding of stiffer parts.
+  const bool may_end = newton.iterations > 0 || !newton.is_driven;
+  if (may_end && compute_excess(body) <= body.model.params.newton_tolerance * newton.residual_scale) {
+    const bool has_changed =
+        body.has_implicit_contact() &&
+        update_active_contacts(body.step_contacts(loads.contacts), body.trial.x, body.contacts);
+    if (!has_changed) return true;
+    newton.iterations = 1;  // of the next round; not the step's first
+    assemble_residual(body, part, loads);
+  }
+  newton.is_moved_by_load = true;
+  newton.potential = compute_potential(body, part, loads);
+  body.system.is_projected = false;
+  assemble_matrix(body, part, loads.contacts);
+  return false;
+}
+
+StepStatus solve_newton(Body& body, const Part& part, const StepLoads& loads, linear::Solver& solver,
+                        Tick tick) {
+  NewtonMeasures& newton = body.newton;
+  const bool is_first = newton.iterations++ == 0;
+  ++body.history.counters.newton_iterations;
+  linear::SolveReport report = solve_system(body, part, loads, solver, is_first);
+  const auto leads_downhill = [&] {
+    return report.converged && body.system.rhs.cwiseProduct(body.system.delta).sum() >= 0.0;
+  };
+  if (needs_tangents(body) && !leads_downhill()) {
+    // The true matrix has negative modes here, so that its step need not lead downhill.
+    body.system.is_projected = true;
+    assemble_matrix(body, part, loads.contacts);
+    report = solve_system(body, part, loads, solver, is_first);
+  }
+  const SolidParams& params = body.model.params;
+  if (!report.converged) return describe_failure(report, make_exact(params.solver).tolerance, tick);
+  if (newton.iterations > params.newton_max_iterations)
+    return StepStatus::failed({tick, "solid", -1, "Newton's relative residual",
+                               compute_excess(body) / newton.residual_scale, params.newton_tolerance});
+  return search_line(body, part, loads, tick);
+}
+
+}  // namespace argil::solid

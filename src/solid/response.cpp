@@ -1,0 +1,60 @@
+#include "solid/response.h"
+
+#include <Eigen/LU>
+
+#include "base/check.h"
+#include "solid/body.h"
+#include "solid/matrix.h"
+#include "solid/product.h"
+#include "solid/solve.h"
+
+namespace argil::solid {
+
+void prepare_response(Body& body, const Part& part, const SolidState& state, double step_s) {
+  ARGIL_ASSERT(!body.is_explicit());
+  store_nodal_stiffness(body.model, body.materials, body.system);  // its solves are exact ones
+  body.prediction.is_static = false;
+  body.prediction.tau = find_tau(body.model, state, step_s);
+  body.system.is_projected = true;
+  keep_damping_frame(body);
+  update_volume_change(body.strained(), body.forces.volume);
+  assemble_matrix(body, part, {});
+}
+
+StepStatus find_response(Body& body, const Part& part, const Points& force, Tick tick, Points& displacement) {
+  const Model& model = body.model;
+  System& system = body.system;
+  const linear::SolverParams exact = make_exact(model.params.solver);
+  displacement = force;
+  clear_held(model, displacement);
+  if (!body.history.response_solver) body.history.response_solver = linear::make_solver(exact, model.threads);
+  const double tau = body.prediction.tau;
+  for (int r = 0; r < model.num_free(); ++r)
+    system.rhs.col(r) = tau * tau * displacement.col(model.node_of_row[static_cast<std::size_t>(r)]);
+  displacement.setZero();
+  if (system.rhs.isZero(0.0)) return StepStatus::ok();
+  system.delta.setZero();
+  Product product(body, part, {});
+  const linear::SolveReport report =
+      body.history.response_solver->solve(system.matrix, product, system.rhs, system.delta);
+  if (!report.converged)
+    return StepStatus::failed({tick, "solid", -1, "relative residual of the compliance's solve",
+                               report.relative_residual, exact.tolerance});
+  for (int r = 0; r < model.num_free(); ++r)
+    displacement.col(model.node_of_row[static_cast<std::size_t>(r)]) = system.delta.col(r);
+  clear_held(model, displacement);
+  return StepStatus::ok();
+}
+
+Mat3 compute_local_response(const Body& body, int node) {
+  const int row = body.model.row_of_node[static_cast<std::size_t>(node)];
+  if (row < 0) return Mat3::Zero();
+  const double tau = body.prediction.tau;
+  const linear::BlockMatrix& matrix = body.system.matrix;
+  Mat3 response = tau * tau * Mat3(matrix.block(matrix.diagonal[static_cast<std::size_t>(row)])).inverse();
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    if (body.model.constraints.support(axis, node) >= 0) response(axis, axis) = 0.0;
+  return response;
+}
+
+}  // namespace argil::solid

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "base/status.h"
+#include "solid/part.h"
+#include "solid/state.h"
+#include "solid/step_loads.h"
+
+namespace argil::solid {
+
+struct Body;
+
+/// Static equilibrium of the whole body under `loads` from state.x on: the limit of a step without mass, by
+/// Newton's method. Loads and prescribed displacements are applied in shares where they do not converge at
+/// once; state.x then holds the last share that did.
+StepStatus find_equilibrium(Body& body, const Part& whole, const StepLoads& loads, SolidState& state);
+
+}  // namespace argil::solid

@@ -1,0 +1,129 @@
+// How exactly a step is solved, and for which part of the body.
+
+#include "solid/step_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solid/frame_lag.h"
+#include "solid/matrix.h"
+#include "solid/newton.h"
+#include "solid/solve.h"
+
+namespace argil::solid {
+namespace {
+
+/// The solves of a step with one linearisation.
+class OneStep {
+ public:
+  OneStep(Body& body, ActiveRegion& region, const StepLoads& loads, bool is_first)
+      : m_body(body),
+        m_region(region),
+        m_loads(loads),
+        m_product(body, region.part(), loads.contacts),
+        m_is_first(is_first) {}
+
+  linear::SolveReport solve() {
+    if (m_body.model.num_free() == 0) return {true, 0, 0.0};
+    guess(m_body, m_region.part(), m_is_first);
+    linear::Solver& solver = *m_body.history.solver;
+    const double slack = m_body.prediction.tau * m_loads.slack;
+    // With other contacts the same step goes on: to where its first solve was to end.
+    const double goal = m_body.model.params.solver.tolerance * m_body.newton.first_residual;
+    solver.set_goal(m_is_first ? slack : std::max(slack, goal));
+    const bool follows_force = m_region.is_used() && m_loads.region_slack > 0.0;
+    if (follows_force) m_region.grow_by_force(m_loads);
+    linear::SolveReport report = solve_once();
+    if (m_is_first) m_body.newton.first_residual = report.first;
+    solver.set_goal(slack);
+    if (follows_force) follow_force(report);
+    const bool is_number = report.iterations > 0 || !std::isnan(report.relative_residual);
+    if (!report.converged && is_number && m_region.is_used()) {  // of the whole, where a factor may do
+      m_region.leave(m_loads);
+      solve_anew(report);
+    }
+    if (report.wants_stored) {
+      store_nodal_stiffness(m_body.model, m_body.materials, m_body.system);
+      assemble_matrix(m_body, m_region.part(), m_loads.contacts);
+      solve_anew(report);
+    }
+    count_solve(m_body, report);
+    return report;
+  }
+
+ private:
+  linear::SolveReport solve_once() {
+    System& system = m_body.system;
+    return m_body.history.solver->solve(system.matrix, m_product, system.rhs, system.delta);
+  }
+  /// What the solution pulls at and the hand would feel moves, too: some layers of it in a blow, none as a
+  /// rule.
+  void follow_force(linear::SolveReport& report) {
+    constexpr int kMostLayers = 16;
+    for (int i = 0; i < kMostLayers && report.converged && m_region.grow_by_force(m_loads); ++i) {
+      const int before = report.iterations;
+      report = solve_once();
+      report.iterations += before;
+    }
+  }
+  void solve_anew(linear::SolveReport& report) {
+    const int before = report.iterations;
+    guess(m_body, m_region.part(), true);
+    report = solve_once();
+    report.iterations += before;
+    if (m_is_first) m_body.newton.first_residual = report.first;
+  }
+
+  Body& m_body;
+  ActiveRegion& m_region;
+  const StepLoads& m_loads;
+  Product m_product;
+  bool m_is_first;
+};
+
+StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loads, Tick tick, bool& solved) {
+  const bool is_first = body.newton.iterations++ == 0;
+  ++body.history.counters.newton_iterations;
+  const linear::SolveReport report = OneStep(body, region, loads, is_first).solve();
+  if (!report.converged) return describe_failure(report, body.model.params.solver.tolerance, tick);
+  const auto are_contacts_settled = [&] {
+    return !body.has_implicit_contact() ||
+           !update_active_contacts(body.step_contacts(loads.contacts), body.trial.x, body.contacts);
+  };
+  set_iterate(body, region.part(), 1.0);
+  solved = are_contacts_settled();
+  if (solved && loads.slack > 0.0 && correct_solution(body, region.part(), loads)) {
+    set_iterate(body, region.part(), 1.0);
+    solved = are_contacts_settled();
+  }
+  if (!solved) set_iterate(body, region.part(), 0.0);  // the same step anew
+  return StepStatus::ok();
+}
+
+}  // namespace
+
+bool assemble(Body& body, ActiveRegion& region, const StepLoads& loads) {
+  if (body.is_newton() && !body.is_explicit()) return assemble_newton(body, region.part(), loads);
+  region.wake(loads);
+  assemble_residual(body, region.part(), loads);
+  if (body.is_explicit()) return false;
+  body.system.is_projected = true;
+  assemble_matrix(body, region.part(), loads.contacts);
+  region.grow_by_speed(loads);
+  return false;
+}
+
+StepStatus solve(Body& body, ActiveRegion& region, const StepLoads& loads, Tick tick, bool& solved) {
+  const Part& part = region.part();
+  part.nodes.each(body.trial.v.cols(),
+                  [&](std::ptrdiff_t n) { body.system.v_base.col(n) = body.trial.v.col(n); });
+  solved = !body.is_newton() || body.is_explicit();
+  if (body.is_explicit()) {
+    solve_explicit(body, part);
+    return StepStatus::ok();
+  }
+  if (body.is_newton()) return solve_newton(body, part, loads, *body.history.solver, tick);
+  return solve_one_step(body, region, loads, tick, solved);
+}
+
+}  // namespace argil::solid
