@@ -121,6 +121,15 @@ TEST(ReadTraceCsv, RefusesAGapOfMoreThanTenMedianIntervalsAndAcceptsOneOfTen) {
   expect_refused(start + "13.01,0,0,0\n", "line 6", "gap of 10.01 s");
 }
 
+TEST(ReadTraceCsv, RefusesAPlaceBeyondAKilometreByItsLine) {
+  EXPECT_EQ(read("t,x,y,z\n0,0,0,0\n1,1000,0,0\n").samples.size(), 2U);
+  for (const std::string far : {"1000.1", "-1e155", "1e308"})
+    expect_refused("t,x,y,z\n0,0,0,0\n1,0," + far + ",0\n", "line 3", "m from the origin, more than 1000 m");
+  TraceOptions options;
+  options.device_to_world.scale = 1e6;
+  expect_refused("t,x,y,z\n0,0,0,0\n1,0,0.01,0\n", "line 3", "place 10000 m from the origin", options);
+}
+
 TEST(ReadTraceCsv, RefusesBadNumbersByLineAndColumn) {
   expect_refused("t,x,y,z\n0,0,0,0\n1,0,oops,0\n", "line 3, column 3", "'oops' is not a number");
   expect_refused("t,x,y,z\n0,0,0,0\n1,0,1.5m,0\n", "line 3, column 3", "'1.5m' is not a number");
