@@ -114,8 +114,8 @@ void ContactDetector::Impl::place_tool(const Pose& pose_t0, const Pose& pose_t1)
 
 /// Box around the bounding sphere on its way. Vertices move linearly between places within the spheres at
 /// both ends, and the box is convex.
-Bounds ContactDetector::Impl::tool_bounds() const {
-  Bounds bounds;
+mesh::Box ContactDetector::Impl::tool_bounds() const {
+  mesh::Box bounds;
   bounds.include(centre_t0);
   bounds.include(centre_t1);
   return bounds.grown(tool_radius);
@@ -152,7 +152,7 @@ void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, cons
 
   impl.centre_t0 = pose_t0.position + pose_t0.orientation * impl.tool_centre;
   impl.centre_t1 = pose_t1.position + pose_t1.orientation * impl.tool_centre;
-  const Bounds tool_bounds = impl.tool_bounds();
+  const mesh::Box tool_bounds = impl.tool_bounds();
   const bool is_carrying = !impl.tool_vertices.inside.empty() || !impl.body_vertices.inside.empty();
   if (!is_carrying &&
       !tool_bounds.overlaps(impl.workers.front().body_tree.bounds(), impl.params.minimum_separation)) {
@@ -187,7 +187,7 @@ bool ContactDetector::overlaps(const Points& x, const Pose& pose) const {
   std::vector<int> tool_faces;
   body_tree.find_overlaps(tool_tree.bounds(), x, x, body_faces);
   for (const int f : body_faces) {
-    Bounds box;
+    mesh::Box box;
     for (int k = 0; k < 3; ++k) box.include(body.corner(f, k));
     tool_faces.clear();
     tool_tree.find_overlaps(box, placed, placed, tool_faces);

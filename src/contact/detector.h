@@ -173,7 +173,7 @@ struct ContactDetector::Impl {
   void copy_state(ContactState& out) const;
   void place_tool(const Pose& pose, Points& out) const;
   void place_tool(const Pose& pose_t0, const Pose& pose_t1);
-  Bounds tool_bounds() const;
+  mesh::Box tool_bounds() const;
   VertexFaceMotion tool_vertex_motion(const Motion& m) {
     return {tool_vertices, m.tool_t0, m.tool_t1, {body, m.body_t0, m.body_t1, 1.0}, true};
   }
@@ -182,7 +182,7 @@ struct ContactDetector::Impl {
   }
 
   // entries.cpp
-  void find_entries(const Motion& motion, const Bounds& tool_bounds);
+  void find_entries(const Motion& motion, const mesh::Box& tool_bounds);
   void test_face(int body_face, double reach, const Motion& motion, Worker& worker);
   void test_vertices(int body_face, const Motion& motion, Worker& worker);
   void test_edges(int body_face, double reach, const Motion& motion, Worker& worker);

@@ -14,8 +14,8 @@ struct EdgePath {
 
   EdgePath(const Points& x_t0, const Points& x_t1, const Eigen::Vector2i& v)
       : t0{x_t0.col(v(0)), x_t0.col(v(1))}, t1{x_t1.col(v(0)), x_t1.col(v(1))} {}
-  Bounds swept() const {
-    Bounds box;
+  mesh::Box swept() const {
+    mesh::Box box;
     for (std::size_t k = 0; k < 2; ++k) {
       box.include(t0[k]);
       box.include(t1[k]);
@@ -96,7 +96,7 @@ void sort_entries(std::vector<Entry>& entries) {
 
 }  // namespace
 
-void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& tool_bounds) {
+void ContactDetector::Impl::find_entries(const Motion& motion, const mesh::Box& tool_bounds) {
   tool_vertices.entries.clear();
   body_vertices.entries.clear();
   edge_pairs.clear();
@@ -126,7 +126,7 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const Bounds& too
 
 /// A body's face with its vertices and edges against those of the tool's faces near it.
 void ContactDetector::Impl::test_face(int body_face, double reach, const Motion& motion, Worker& worker) {
-  Bounds swept;
+  mesh::Box swept;
   for (int k = 0; k < 3; ++k) {
     swept.include(Vec3(motion.body_t0.col(body.triangles(k, body_face))));
     swept.include(Vec3(motion.body_t1.col(body.triangles(k, body_face))));

@@ -177,7 +177,7 @@ bool is_nearer(const SurfacePoint& a, const SurfacePoint& b) {
 
 SurfacePoint find_nearest(const SurfaceAt& surface, BoundingTree& tree, const Vec3& p, int face) {
   SurfacePoint nearest = compute_nearest_on_face(surface, face, p);
-  tree.visit_near(p, nearest.squared_distance, surface.x_t0, surface.x_t1, [&](int candidate) {
+  tree.measure_near(p, nearest.squared_distance, surface.x_t0, surface.x_t1, [&](int candidate) {
     const SurfacePoint found = compute_nearest_on_face(surface, candidate, p);
     if (is_nearer(found, nearest)) nearest = found;
     return found.squared_distance;

@@ -82,7 +82,7 @@ double ContactDetector::Impl::compute_overlap(int body_face, const Motion& m, Wo
   const Eigen::Vector3i corner = body.triangles.col(body_face);
   const std::array<Vec3, 3> x = {m.body_t1.col(corner(0)), m.body_t1.col(corner(1)),
                                  m.body_t1.col(corner(2))};
-  Bounds box;
+  mesh::Box box;
   for (const Vec3& p : x) box.include(p);
   if (!box.overlaps(worker.tool_tree.bounds())) return 0.0;
   if (compute_nearest_on_triangle(centre_t1, x[0], x[1], x[2]).squared_distance > tool_radius * tool_radius)

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <vector>
+#include <span>
 
+#include "mesh/box_tree.h"
 #include "mesh/tet_mesh.h"
 
 namespace argil::embed {
@@ -34,25 +35,23 @@ class TriangleTree {
   double compute_winding_number(const Vec3& x) const;
 
  private:
-  struct Node {
-    Vec3 lower;
-    Vec3 upper;
-    int first = 0;        // of m_order
-    int count = 0;        // triangles below
-    int right = -1;       // second child, −1: a leaf; the first child is the next node
-    double radius = 0.0;  // largest below
-    Vec3 centre;          // area-weighted
-    Vec3 area_normal;     // Σ area × normal
-    double reach = 0.0;   // largest distance of a corner from the centre
+  /// What is kept of the triangles below a node.
+  struct Group {
+    double radius = 0.0;              ///< largest
+    Vec3 centre = Vec3::Zero();       ///< area-weighted
+    Vec3 area_normal = Vec3::Zero();  ///< Σ area × normal
+    double reach = 0.0;               ///< largest distance of a corner from the centre
   };
-  int build(int first, int count);
-  void summarise(Node& node) const;
+  using Tree = mesh::BoxTree<Group>;
+
+  void summarise(Tree::Node& node, std::span<const int> triangles) const;
+  /// Adds to `sum` the solid angle [steradian] of what lies below a node.
+  void add_solid_angle(int index, const Vec3& x, double& sum) const;
 
   mesh::TriangleMesh m_surface;
   Field m_radius;
-  std::vector<int> m_order;
   Points m_centroid;  // of each triangle
-  std::vector<Node> m_nodes;
+  Tree m_tree;
 };
 
 }  // namespace argil::embed
