@@ -17,11 +17,11 @@ from pathlib import Path
 PROGRAM = Path(__file__).resolve().parent.parent / "build/bin/bench_step"
 STEPS = 200  # as many as the benchmark measures
 STAGES = {
-    "contact": "argil::sim::HandSide::contact_step",
-    "assemble": "argil::solid::Solid::assemble(",
-    "solve": "argil::solid::Solid::solve(",
-    "kinematics": "argil::solid::Solid::update_kinematics",
-    "plasticity": "argil::sim::BodySide::apply_plastic_flow",
+    "contact": "argil::sim::HandSide::find_contact_force",
+    "assemble": "argil::sim::BodySide::assemble(",
+    "solve": "argil::sim::BodySide::solve(",
+    "kinematics": "argil::sim::BodySide::update_kinematics",
+    "plasticity": "argil::sim::BodySide::flow(",
 }
 
 
