@@ -17,7 +17,6 @@ using internal::RawTrace;
 
 namespace {
 
-constexpr double kFarthest = 1e3;          // [m] from the origin: no device reaches as far
 constexpr double kMaxGapIntervals = 10.0;  // a longer pause than this many median intervals is a lost piece
 constexpr double kMaxUnitError =
     1e-3;  // three printed digits of a quaternion; beyond, it is another quantity
@@ -128,12 +127,12 @@ Trace read_trace(const std::string& file, const TraceOptions& options) {
     if (!raw.orientation.empty()) sample.orientation = checked_orientation(file, raw, i);
     sample.mode = raw.mode.empty() ? options.default_mode : raw.mode[i];
     move_to_world(raw.device_to_world, sample);
-    move_to_world(options.device_to_world, sample);
-    if (const double distance = sample.position.stableNorm(); !(distance <= kFarthest))
+    if (const double distance = sample.position.stableNorm(); !(distance <= kFarthestPlace))
       throw InputError(
           file, place(raw, i),
-          "place " + print(distance) + " m from the origin, more than " + print(kFarthest) + " m",
-          "correct the unit of length, or device_to_world");
+          "place " + print(distance) + " m from the origin, more than " + print(kFarthestPlace) + " m",
+          "correct the unit of length");
+    move_to_world(options.device_to_world, sample);
     trace.samples.push_back(sample);
   }
   return trace;

@@ -7,6 +7,9 @@
 
 namespace argil::device {
 
+/// No place of a trace may be farther from the origin [m]: no device reaches as far.
+inline constexpr double kFarthestPlace = 1e3;
+
 /// How a trace file is read when its header does not say.
 struct TraceOptions {
   DeviceToWorld device_to_world;           ///< applied after the header's own transform
@@ -30,8 +33,8 @@ struct Trace {
 };
 
 /// Reads a CSV (header row names columns) or HDF5 trace; the formats are in this folder's README. Throws
-/// InputError (file, line, value, remedy) for gaps, unsorted times, NaN, zero quaternions, unknown modes;
-/// IoError when the file cannot be read.
+/// InputError (file, line, value, remedy) for gaps, unsorted times, NaN, places beyond kFarthestPlace before
+/// device_to_world of the options, zero quaternions, unknown modes; IoError when the file cannot be read.
 Trace read_trace(const std::string& file, const TraceOptions& options);
 
 /// The sample at `time` seconds after the trace's first: position linear, orientation slerp along the shorter

@@ -216,6 +216,13 @@ void check_skin(const Scenario& s, const mesh::TriangleMesh& skin) {
 }
 
 void check_trace(const Scenario& s, const device::Trace& trace) {
+  for (const device::DeviceSample& sample : trace.samples)
+    if (const double distance = sample.position.stableNorm(); !(distance <= device::kFarthestPlace)) {
+      std::ostringstream problem;
+      problem << "takes the motion to " << distance << " m from the origin, more than "
+              << device::kFarthestPlace << " m";
+      throw InputError(s.file, "/trace/device_to_world", problem.str(), "correct scale and translation_m");
+    }
   if (!(s.trace.start < trace.duration()))
     throw InputError(s.file, "/trace/start_s",
                      "lies past the trace's end, " + std::to_string(trace.duration()) + " s",

@@ -125,9 +125,8 @@ TEST(ReadTraceCsv, RefusesAPlaceBeyondAKilometreByItsLine) {
   EXPECT_EQ(read("t,x,y,z\n0,0,0,0\n1,1000,0,0\n").samples.size(), 2U);
   for (const std::string far : {"1000.1", "-1e155", "1e308"})
     expect_refused("t,x,y,z\n0,0,0,0\n1,0," + far + ",0\n", "line 3", "m from the origin, more than 1000 m");
-  TraceOptions options;
-  options.device_to_world.scale = 1e6;
-  expect_refused("t,x,y,z\n0,0,0,0\n1,0,0.01,0\n", "line 3", "place 10000 m from the origin", options);
+  expect_refused("# argil-trace: 1\n# units: mm\nt,x,y,z\n0,0,0,0\n1,0,2000000,0\n", "line 5",
+                 "place 2000 m from the origin");
 }
 
 TEST(ReadTraceCsv, RefusesBadNumbersByLineAndColumn) {
