@@ -67,17 +67,6 @@ bool are_boxes_apart(PairKind kind, const PairPath& path, double separation) {
   return ((low[0] - high[1]).array() > least).any() || ((low[1] - high[0]).array() > least).any();
 }
 
-/// The coplanarity cubic on a part of [0, 1], and how far from 0 it can be while the features meet.
-struct Coplanarity {
-  std::array<double, 4> c = {};
-  double bound = 0.0;
-
-  /// One sign throughout: never in one plane.
-  bool has_root() const {
-    return *std::min_element(c.begin(), c.end()) <= bound && *std::max_element(c.begin(), c.end()) >= -bound;
-  }
-};
-
 /// None when products leave the range of double. Points of two features that are no more than `separation`
 /// apart have n·(p − q) = c, so that |c| ≤ |n| separation, and |n(t)| is a mean of its Bernstein
 /// coefficients.
@@ -236,18 +225,16 @@ double coplanarity_error_bound(const PairPath& path) {
   return 2048.0 * kUnitRoundoff * extent * extent * extent + kUnderflow;
 }
 
-bool can_meet(PairKind kind, const PairPath& path, double separation) {
-  if (!is_finite(path)) return true;
-  if (are_boxes_apart(kind, path, separation)) return false;
+FilteredPair filter_pair(PairKind kind, const PairPath& path, double separation) {
+  if (are_boxes_apart(kind, path, separation)) return {.can_meet = false};
   const std::optional<Coplanarity> coplanarity = find_coplanarity(kind, path, separation);
-  return !coplanarity || coplanarity->has_root();
+  return {!coplanarity || coplanarity->has_root(), coplanarity};
 }
 
 std::optional<double> find_time_of_impact(PairKind kind, const PairPath& path, double separation) {
   if (!is_finite(path)) return 0.0;
-  if (are_boxes_apart(kind, path, separation)) return {};
-  const std::optional<Coplanarity> coplanarity = find_coplanarity(kind, path, separation);
-  if (coplanarity && !coplanarity->has_root()) return {};
+  const auto [can_meet, coplanarity] = filter_pair(kind, path, separation);
+  if (!can_meet) return {};
 
   // Seen from the first point, coordinates are at most L; shifting, interpolating, subtracting and the
   // product with d make fewer than 12 roundings of at most 2L|d|∞ each.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -30,10 +31,29 @@ enum class PairKind { vertex_face, edge_edge };
 std::optional<double> find_time_of_impact(PairKind kind, const PairPath& path,
                                           double minimum_separation = 0.0);
 
-/// The non-penetration filter: false only for features that cannot meet, because their swept boxes are apart
-/// or because the coplanarity cubic's Bernstein coefficients have one sign throughout, beyond their rounding,
-/// so that the four points are never in one plane [Tang2010]. The README derives the signs.
-bool can_meet(PairKind kind, const PairPath& path, double minimum_separation = 0.0);
+/// The coplanarity cubic (compute_coplanarity) on a part of [0, 1], and how far from 0 it can be while the
+/// features meet.
+struct Coplanarity {
+  std::array<double, 4> c = {};
+  double bound = 0.0;
+
+  /// One sign throughout: never in one plane.
+  bool has_root() const {
+    return *std::min_element(c.begin(), c.end()) <= bound && *std::max_element(c.begin(), c.end()) >= -bound;
+  }
+};
+
+/// What the non-penetration filter tells of a pair.
+struct FilteredPair {
+  /// False only for features that cannot meet, because their swept boxes are apart or because the cubic's
+  /// Bernstein coefficients have one sign throughout, beyond their rounding, so that the four points are
+  /// never in one plane [Tang2010]. The README derives the signs.
+  bool can_meet = true;
+  std::optional<Coplanarity> coplanarity = {};  ///< none where products leave the range of double
+};
+
+/// Applies the filter to a pair whose coordinates are finite.
+FilteredPair filter_pair(PairKind kind, const PairPath& path, double minimum_separation = 0.0);
 
 /// Coefficients c₀…c₃ in Bernstein form of det(p₁−p₀, p₂−p₀, p₃−p₀)(t): 0 where the four points are coplanar.
 /// With n₀, n₁ the normals at the ends, m = (n₀+n₁−(v_b−v_a)×(v_c−v_a))/2 the middle one and w the vectors

@@ -238,28 +238,4 @@ std::string require_usable(const QualityReport& report, const std::string& file)
   return line;
 }
 
-SurfaceReport compute_surface_report(const TriangleMesh& surface) {
-  SurfaceReport report;
-  report.num_vertices = surface.num_vertices();
-  report.num_triangles = surface.num_triangles();
-  for (Eigen::Index t = 0; t < surface.triangles.cols(); ++t) {
-    const Vec3 a = surface.vertices.col(surface.triangles(0, t));
-    const Vec3 b = surface.vertices.col(surface.triangles(1, t));
-    const Vec3 c = surface.vertices.col(surface.triangles(2, t));
-    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    const double farthest = std::max({a.norm(), b.norm(), c.norm()});
-    const double area = 0.5 * (b - a).cross(c - a).norm();
-    if (!(area > kRoundOff * (farthest + longest) * longest)) ++report.num_degenerate;
-  }
-  const std::vector<std::array<int, 3>> edges = make_sorted_edges(surface.triangles);
-  for_each_edge(edges, [&](std::size_t begin, std::size_t end) {
-    if (end - begin == 1) {
-      ++report.num_boundary_edges;
-    } else if (end - begin > 2 || edges[begin][2] == edges[begin + 1][2]) {
-      ++report.num_non_manifold_edges;
-    }
-  });
-  return report;
-}
-
 }  // namespace argil::mesh

@@ -39,17 +39,4 @@ QualityReport compute_quality(const TetMesh& mesh);
 /// empty.
 std::string require_usable(const QualityReport& report, const std::string& file);
 
-/// What a surface lacks of being closed and clean.
-struct SurfaceReport {
-  int num_vertices = 0;
-  int num_triangles = 0;
-  int num_boundary_edges = 0;      ///< edges of one triangle
-  int num_non_manifold_edges = 0;  ///< edges of three or more, or of two with the same direction
-  int num_degenerate = 0;          ///< triangles with area below round-off of their size
-  bool is_closed() const { return num_boundary_edges == 0 && num_non_manifold_edges == 0; }
-};
-
-/// Triangles that name a vertex twice count as degenerate and have no edges.
-SurfaceReport compute_surface_report(const TriangleMesh& surface);
-
 }  // namespace argil::mesh

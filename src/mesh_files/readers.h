@@ -16,15 +16,12 @@ namespace argil::mesh_files {
 mesh::TetMesh read_tet_mesh(const std::string& file, double scale = 1.0);
 
 /// Reads a triangle surface: OBJ (polygons are fanned, negative indices allowed), STL (ASCII, binary; equal
-/// corners merged), PLY (ASCII, binary both ways). Not closed or not manifold is no error here:
-/// compute_surface_report tells. Throws InputError or IoError.
+/// corners merged), PLY (ASCII, binary both ways). Not closed or not manifold is no error here.
+/// Throws InputError or IoError.
 mesh::TriangleMesh read_triangle_mesh(const std::string& file, double scale = 1.0);
 
 /// Writes Gmsh 4.1 ASCII with 17 digits, cell fields as $ElementData; reading it back gives the same bits.
 /// Throws IoError.
 void write_gmsh(const mesh::TetMesh& mesh, const std::string& file);
-
-/// Writes OBJ with 17 digits. Throws IoError.
-void write_obj(const mesh::TriangleMesh& mesh, const std::string& file);
 
 }  // namespace argil::mesh_files

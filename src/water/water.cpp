@@ -22,7 +22,6 @@ PoreWater::PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, 
                      const Field& initial_saturation, int threads)
     : m_params(params),
       m_threads(threads),
-      m_boundary_tet(topology.boundary_tet),
       m_stencil(make_stencil(mesh, topology, params.diffusivity, params.flux)),
       m_capacity(params.density * params.porosity * m_stencil.volume),
       m_is_active(static_cast<std::size_t>(mesh.num_tets()), 0),
@@ -34,8 +33,7 @@ PoreWater::PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, 
   m_active.reserve(m_is_active.size());
   m_dried.reserve(m_is_active.size());
   m_merged.reserve(m_is_active.size());
-  m_touched.reserve(m_boundary_tet.size());
-  m_once.reserve(m_boundary_tet.size());
+  m_once.reserve(topology.boundary_tet.size());
   if (params.flux == FluxForm::corrected) {
     m_gradient.setZero(3, num_tets);
     m_correction.setZero(4, num_tets);
@@ -157,13 +155,6 @@ void PoreWater::give(int tet, double mass) {
   m_state.carry(tet) = 0.0;
   set_potential(tet, limit);
   if (limit > kTrace) activate_around(tet);
-}
-
-void PoreWater::exchange(std::span<const int> triangle, std::span<const double> area, int sign,
-                         double step_s) {
-  m_touched.clear();
-  for (const int face : triangle) m_touched.push_back(m_boundary_tet[static_cast<std::size_t>(face)]);
-  transfer(m_touched, area, sign, step_s);
 }
 
 void PoreWater::transfer(std::span<const int> tet, std::span<const double> area, int sign, double step_s) {

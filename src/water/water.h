@@ -49,10 +49,9 @@ class PoreWater {
   PoreWater& operator=(PoreWater&&) noexcept;
 
   /// Takes up (sign > 0) or gives off (sign < 0) water through touched boundary triangles during `step_s`:
-  /// `triangle` are boundary faces of the topology, `area` [m²] what the tool touches of each. Fills up to S
-  /// = 1, empties down to 0; what the tet cannot take stays with the tool. Every gram is booked.
-  void exchange(std::span<const int> triangle, std::span<const double> area, int sign, double step_s);
-  /// The same for tets, each as often as it is touched, with `area` [m²] of each touch.
+  /// `tet` are those behind the triangles, each as often as it is touched, `area` [m²] what the tool touches
+  /// of each triangle. Fills up to S = 1, empties down to 0; what the tet cannot take stays with the tool.
+  /// Every gram is booked.
   void transfer(std::span<const int> tet, std::span<const double> area, int sign, double step_s);
 
   /// Diffuses for `step_s`; the boundary is sealed. Conservative to round-off. S stays between the smallest
@@ -122,19 +121,18 @@ class PoreWater {
 
   WaterParams m_params;
   int m_threads;
-  std::vector<int> m_boundary_tet;
   Stencil m_stencil;
   Field m_capacity;  // [kg]
   WaterState m_state, m_committed;
   std::vector<char> m_is_active;
-  std::vector<int> m_active;           // sorted between calls
-  std::vector<int> m_dried;            // that the last drying took from these
-  std::vector<int> m_merged;           // scratch of sort_active
-  std::size_t m_num_sorted = 0;        // how many of m_active are in order
-  std::vector<int> m_touched, m_once;  // scratch of exchange
-  Field m_potential;                   // u(S) of D(S): expm1(βS)/β, S itself where β = 0
-  Field m_change;                      // change of S in a substep
-  std::vector<char> m_is_newly_wet;    // in a substep
+  std::vector<int> m_active;         // sorted between calls
+  std::vector<int> m_dried;          // that the last drying took from these
+  std::vector<int> m_merged;         // scratch of sort_active
+  std::size_t m_num_sorted = 0;      // how many of m_active are in order
+  std::vector<int> m_once;           // scratch of transfer
+  Field m_potential;                 // u(S) of D(S): expm1(βS)/β, S itself where β = 0
+  Field m_change;                    // change of S in a substep
+  std::vector<char> m_is_newly_wet;  // in a substep
   Points m_gradient;              // ∇u of each active tet [1/m]; this and the next two: corrected flux only
   Eigen::Matrix4Xd m_correction;  // unlimited change of S times volume by the correction across each face
   Eigen::Matrix2Xd m_share;  // of the correction that raises (0) or lowers (1) S, how much is let through

@@ -60,7 +60,7 @@ void run(benchmark::State& state, PairKind kind, Set set, bool only_passed, Quer
   const auto all = static_cast<double>(paths.size());
   std::vector<PairPath> passed;
   for (const PairPath& path : paths)
-    if (can_meet(kind, path)) passed.push_back(path);
+    if (filter_pair(kind, path).can_meet) passed.push_back(path);
   state.counters["passed"] = static_cast<double>(passed.size()) / all;
   if (only_passed) paths = passed;
   std::size_t i = 0;
@@ -77,7 +77,7 @@ void all(benchmark::State& state, PairKind kind, Set set) {
 
 void filter(benchmark::State& state, PairKind kind, Set set) {
   run(state, kind, set, false,
-      [kind](const PairPath& path) { benchmark::DoNotOptimize(can_meet(kind, path)); });
+      [kind](const PairPath& path) { benchmark::DoNotOptimize(filter_pair(kind, path).can_meet); });
 }
 
 void after_filter(benchmark::State& state, PairKind kind, Set set) {

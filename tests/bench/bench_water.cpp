@@ -5,10 +5,12 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
 #include "support/block_mesh.h"
+#include "support/touched_tets.h"
 
 namespace argil {
 namespace {
@@ -39,11 +41,11 @@ void touch(benchmark::State& state) {
   params.diffusivity = 1e-9;
   params.scheme = static_cast<water::DiffusionScheme>(state.range(1));
   water::PoreWater water(cube.mesh, cube.topology, params, Field::Zero(cube.mesh.num_tets()));
-  const int triangle[] = {0, 1, 2, 3};
+  const std::vector<int> tets = test::find_tets_behind(cube.topology, std::array{0, 1, 2, 3});
   const double area[] = {1e-6, 1e-6, 1e-6, 1e-6};
   int step = 0, substeps = 0;
   for (auto _ : state) {
-    water.exchange(triangle, area, (step++ / 100) % 2 == 0 ? 1 : -1, kStep);
+    water.transfer(tets, area, (step++ / 100) % 2 == 0 ? 1 : -1, kStep);
     substeps = water.diffuse(kStep);
     water.commit();
     benchmark::DoNotOptimize(water.saturation().data());

@@ -133,7 +133,7 @@ TEST_P(CcdFilter, NeverRejectsATrueMeetingNorReportsItLate) {
     if (i % 4 == 3) {
       ASSERT_EQ(find_coplanar(GetParam(), four.pairs()), 15U) << i;
     }
-    rejected += can_meet(GetParam(), meeting.path) ? 0 : 1;
+    rejected += filter_pair(GetParam(), meeting.path).can_meet ? 0 : 1;
     const auto found = find_time_of_impact(GetParam(), meeting.path);
     missed += found ? 0 : 1;
     late += found && *found > meeting.time ? 1 : 0;
@@ -178,7 +178,7 @@ TEST_P(CcdFilter, RejectsExactlyWhatTheSignsOfTheCubicTell) {
       EXPECT_EQ(find_coplanar(GetParam(), four.pairs()), 15U & ~have_one_sign) << trial;
       have_one_sign = 0;
     }
-    const bool rejected = !can_meet(GetParam(), path);
+    const bool rejected = !filter_pair(GetParam(), path).can_meet;
     if (one_sign) {
       EXPECT_TRUE(rejected) << trial;
     }
@@ -218,7 +218,7 @@ TEST_P(CcdFilter, OfFourPairsKeepsAllThatOfOneKeeps) {
         path.t0[static_cast<std::size_t>(i)] = four.t0.col(4 * pair + i);
         path.t1[static_cast<std::size_t>(i)] = four.t1.col(4 * pair + i);
       }
-      EXPECT_TRUE(has(kept, pair) || !can_meet(GetParam(), path, separation)) << trial;
+      EXPECT_TRUE(has(kept, pair) || !filter_pair(GetParam(), path, separation).can_meet) << trial;
       left_out += has(kept, pair) ? 0 : 1;
     }
   }

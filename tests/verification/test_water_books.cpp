@@ -6,6 +6,7 @@
 
 #include "base/rng.h"
 #include "support/shaken_block.h"
+#include "support/touched_tets.h"
 #include "water/water.h"
 
 namespace argil::water {
@@ -41,9 +42,10 @@ TEST_P(Books, CloseThroughALongSequenceOfTools) {
   for (int i = 0; i < c.steps; ++i) {
     const int triangle[] = {static_cast<int>(rng.uniform() * num_triangles),
                             static_cast<int>(rng.uniform() * num_triangles)};
+    const std::vector<int> tets = test::find_tets_behind(topology, triangle);
     const double area[] = {1e-4 * rng.uniform(), 1e-9 * rng.uniform()};
     const int turn = (i / 5000) % 3;  // wet, dry, rest
-    if (turn < 2) water.exchange(triangle, area, turn == 0 ? 1 : -1, 0.01);
+    if (turn < 2) water.transfer(tets, area, turn == 0 ? 1 : -1, 0.01);
     water.diffuse(c.scheme == DiffusionScheme::implicit_euler ? 10.0 : 0.01);
     if (i % 1000 == 0) worst = std::max(worst, std::abs(water.ledger_error()));
     if (i % 1000 == 0) {

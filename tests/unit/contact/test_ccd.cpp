@@ -221,7 +221,7 @@ TEST(MinimumSeparation, NoPairThatComesSoNearIsMissedOrLate) {
     }
     const double separation = std::pow(10.0, rng.uniform(-3.0, -0.3));
     const auto found = find_time_of_impact(kind, path, separation);
-    EXPECT_TRUE(!found || can_meet(kind, path, separation)) << round;
+    EXPECT_TRUE(!found || filter_pair(kind, path, separation).can_meet) << round;
     constexpr int kSamples = 400;
     double least = 1e300;
     for (int i = 0; i <= kSamples; ++i) {

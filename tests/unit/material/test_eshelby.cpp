@@ -12,7 +12,7 @@
 
 #include "base/mandel.h"
 #include "base/rng.h"
-#include "material/eshelby_integral.h"
+#include "eshelby_integral.h"
 #include "material/orientation.h"
 
 namespace argil::material {

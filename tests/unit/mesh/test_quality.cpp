@@ -12,6 +12,7 @@
 #include "base/rng.h"
 #include "support/block_mesh.h"
 #include "support/mesh_measures.h"
+#include "support/surface_report.h"
 #include "support/temp_folder.h"
 #include "support/two_tets.h"
 
@@ -226,27 +227,31 @@ TriangleMesh make_surface(const std::vector<std::array<int, 3>>& triangles) {
 }
 
 TEST(SurfaceReport, ATetrahedronIsClosedAndAnOpenOneIsNot) {
-  EXPECT_TRUE(compute_surface_report(make_surface({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}})).is_closed());
-  const SurfaceReport open = compute_surface_report(make_surface({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}));
+  EXPECT_TRUE(
+      test::compute_surface_report(make_surface({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}})).is_closed());
+  const test::SurfaceReport open =
+      test::compute_surface_report(make_surface({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}));
   EXPECT_EQ(open.num_boundary_edges, 3);
   EXPECT_FALSE(open.is_closed());
 }
 
 TEST(SurfaceReport, ATurnedTriangleAndAThirdOneMakeEdgesNonManifold) {
-  const SurfaceReport turned =
-      compute_surface_report(make_surface({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 3, 2}}));
+  const test::SurfaceReport turned =
+      test::compute_surface_report(make_surface({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 3, 2}}));
   EXPECT_EQ(turned.num_non_manifold_edges, 3);
   EXPECT_EQ(turned.num_boundary_edges, 0);
-  const SurfaceReport third = compute_surface_report(make_surface({{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}));
+  const test::SurfaceReport third =
+      test::compute_surface_report(make_surface({{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}));
   EXPECT_EQ(third.num_non_manifold_edges, 1);
   EXPECT_EQ(third.num_boundary_edges, 4 + 2);
 }
 
 TEST(SurfaceReport, TrianglesWithoutAreaAreCounted) {
-  const SurfaceReport line = compute_surface_report(make_surface({{0, 1, 4}}));  // three places on the x axis
+  const test::SurfaceReport line =
+      test::compute_surface_report(make_surface({{0, 1, 4}}));  // three places on the x axis
   EXPECT_EQ(line.num_degenerate, 1);
   EXPECT_EQ(line.num_boundary_edges, 3);
-  const SurfaceReport point = compute_surface_report(make_surface({{0, 1, 1}}));
+  const test::SurfaceReport point = test::compute_surface_report(make_surface({{0, 1, 1}}));
   EXPECT_EQ(point.num_degenerate, 1);
   EXPECT_EQ(point.num_boundary_edges, 0);
 }

@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "base/rng.h"
-#include "mesh/quality.h"
 #include "mesh_files/readers.h"
 #include "sample_files.h"
+#include "support/surface_report.h"
 #include "support/temp_folder.h"
 
 namespace argil::mesh_files {
@@ -37,7 +37,7 @@ TEST(ReadSurfaces, EveryFormatAndEncodingGivesTheSameSurface) {
   for (const SampleFile& sample : test::make_surface_samples()) {
     const mesh::TriangleMesh mesh = read_text(folder, sample.name, sample.content);
     expect_tetrahedron(mesh, sample.name);
-    EXPECT_TRUE(mesh::compute_surface_report(mesh).is_closed()) << sample.name;
+    EXPECT_TRUE(test::compute_surface_report(mesh).is_closed()) << sample.name;
   }
 }
 

@@ -6,6 +6,7 @@
 #include "mesh/quality.h"
 #include "mesh_files/readers.h"
 #include "support/shared_data.h"
+#include "support/surface_report.h"
 #include "support/temp_folder.h"
 
 namespace argil::mesh_files {
@@ -73,8 +74,8 @@ TEST(SharedSurfaces, CountsAndClosednessAreThoseOfTheirSource) {
         Skin{"surface/igl_cube_with_fold.ply", 26, 48, true, 0},
         Skin{"tets/turtle.obj", 1961, 3654, false, 0}}) {
     SCOPED_TRACE(skin.file);
-    const mesh::SurfaceReport report =
-        mesh::compute_surface_report(read_triangle_mesh(test::shared_data(skin.file)));
+    const test::SurfaceReport report =
+        test::compute_surface_report(read_triangle_mesh(test::shared_data(skin.file)));
     EXPECT_EQ(report.num_vertices, skin.num_vertices);
     EXPECT_EQ(report.num_triangles, skin.num_triangles);
     EXPECT_EQ(report.is_closed(), skin.is_closed);
@@ -85,7 +86,7 @@ TEST(SharedSurfaces, CountsAndClosednessAreThoseOfTheirSource) {
 TEST(SharedSurfaces, TheStegosaurusHasEightNonManifoldEdgesAndTheMoebiusStripCannotBeOriented) {
   ARGIL_NEED_SHARED_DATA("surface/gc_moebius.obj");
   const auto report = [](const char* file) {
-    return mesh::compute_surface_report(read_triangle_mesh(test::shared_data(file)));
+    return test::compute_surface_report(read_triangle_mesh(test::shared_data(file)));
   };
   EXPECT_EQ(report("surface/Stegosaurus.obj").num_non_manifold_edges, 8);
   EXPECT_GT(report("surface/gc_moebius.obj").num_non_manifold_edges, 0);

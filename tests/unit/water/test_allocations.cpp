@@ -20,12 +20,12 @@ TEST(PoreWater, AllocatesNothingOnceItIsMade) {
     params.wetting_flux = 1.0;
     params.saturation_increment = 0.1;
     PoreWater water(mesh, topology, params, Field::Zero(mesh.num_tets()));
-    const int triangle[] = {5, 17};
+    const std::vector<int> tets = {topology.boundary_tet[5], topology.boundary_tet[17]};
     const double area[] = {1e-4, 1e-4};
     double mass = 0.0;
     const std::size_t before = test::count_allocations();
     for (int i = 0; i < 200; ++i) {
-      water.exchange(triangle, area, i < 100 ? 1 : -1, 0.01);
+      water.transfer(tets, area, i < 100 ? 1 : -1, 0.01);
       water.diffuse(2.0);
       water.commit();
       mass += water.mass() + water.ledger_error();

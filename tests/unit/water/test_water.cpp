@@ -13,6 +13,7 @@
 #include "support/block_mesh.h"
 #include "support/mirrored_mesh.h"
 #include "support/shaken_block.h"
+#include "support/touched_tets.h"
 
 namespace argil::water {
 namespace {
@@ -51,9 +52,10 @@ void play_tools(const Body& body, PoreWater& water, int steps, std::uint64_t see
     const std::array<int, 3> triangle = {static_cast<int>(rng.uniform() * num_triangles),
                                          static_cast<int>(rng.uniform() * num_triangles),
                                          static_cast<int>(rng.uniform() * num_triangles)};
+    const std::vector<int> tets = test::find_tets_behind(body.topology, triangle);
     const std::array<double, 3> area = {1e-4 * rng.uniform(), 1e-5 * rng.uniform(), 1e-9 * rng.uniform()};
     const double kind = rng.uniform();
-    if (kind < 0.7) water.exchange(triangle, area, (i / 5000) % 2 == 0 ? 1 : -1, 0.01);
+    if (kind < 0.7) water.transfer(tets, area, (i / 5000) % 2 == 0 ? 1 : -1, 0.01);
     water.diffuse(0.01);
   }
 }
@@ -121,18 +123,18 @@ TEST(PoreWater, CapacityIsDensityTimesPorosityTimesVolume) {
 TEST(PoreWater, TakesUpFluxTimesAreaTimesTimeUntilFull) {
   const Body body(test::make_block(1, 1, 1, Vec3(0.1, 0.1, 0.1)));
   PoreWater water = body.make(make_params(FluxForm::two_point), 0.0);
-  const int triangle[] = {0};
+  const std::vector<int> tets = {body.topology.boundary_tet[0]};
   const double area[] = {2e-3};
   const int tet = body.topology.boundary_tet[0];
-  water.exchange(triangle, area, 1, 0.01);
+  water.transfer(tets, area, 1, 0.01);
   EXPECT_DOUBLE_EQ(water.ledger().added, 0.5 * 2e-3 * 0.01);
   EXPECT_DOUBLE_EQ(water.saturation()(tet), 1e-5 / water.capacity(tet));
-  for (int i = 0; i < 100000; ++i) water.exchange(triangle, area, 1, 0.01);
+  for (int i = 0; i < 100000; ++i) water.transfer(tets, area, 1, 0.01);
   EXPECT_EQ(water.saturation()(tet), 1.0);
   EXPECT_NEAR(water.ledger().added, water.capacity(tet), 1e-15);  // what did not fit stayed with the tool
-  water.exchange(triangle, area, -1, 0.01);
+  water.transfer(tets, area, -1, 0.01);
   EXPECT_DOUBLE_EQ(water.ledger().removed, 0.3 * 2e-3 * 0.01);  // the dry tool's own flux
-  for (int i = 0; i < 100000; ++i) water.exchange(triangle, area, -1, 0.01);
+  for (int i = 0; i < 100000; ++i) water.transfer(tets, area, -1, 0.01);
   EXPECT_EQ(water.saturation()(tet), 0.0);
   EXPECT_NEAR(water.ledger().removed, water.capacity(tet), 1e-15);
   EXPECT_EQ(water.saturation().sum(), 0.0);
@@ -144,10 +146,10 @@ TEST(PoreWater, UptakeBelowTheLastPlaceOfSaturationIsNotLost) {
   params.diffusivity = 0.0;
   params.wetting_flux = 1.0;
   PoreWater water = body.make(params, 0.75);
-  const int triangle[] = {0};
+  const std::vector<int> tets = {body.topology.boundary_tet[0]};
   const double area[] = {1e-18 *
                          water.capacity(0)};  // 1e-18 of saturation; the last place of 0.75 is 1.1e-16
-  for (int i = 0; i < 100000; ++i) water.exchange(triangle, area, 1, 1.0);
+  for (int i = 0; i < 100000; ++i) water.transfer(tets, area, 1, 1.0);
   EXPECT_NEAR(water.saturation()(body.topology.boundary_tet[0]) - 0.75, 1e-13, 1.2e-16);
   EXPECT_LT(std::abs(water.ledger_error()), 2e-16);
 }
@@ -160,12 +162,13 @@ TEST(PoreWater, InPaperFormEachTouchedTetGetsOneStepOfSaturation) {
   PoreWater water = body.make(params, 0.0);
   std::vector<int> all(static_cast<std::size_t>(body.topology.boundary.cols()));
   std::iota(all.begin(), all.end(), 0);  // 12 triangles of 6 tets: each tet twice
+  const std::vector<int> tets = test::find_tets_behind(body.topology, all);
   const std::vector<double> area(all.size(), 1e-4);
   for (const double expected : {0.3, 0.6, 0.9, 1.0, 1.0}) {
-    water.exchange(all, area, 1, 0.01);
+    water.transfer(tets, area, 1, 0.01);
     for (int t = 0; t < 6; ++t) EXPECT_NEAR(water.saturation()(t), expected, 1e-15);
   }
-  water.exchange(all, area, -1, 123.0);
+  water.transfer(tets, area, -1, 123.0);
   EXPECT_NEAR(water.saturation()(0), 0.7, 1e-15);
 }
 
@@ -313,11 +316,11 @@ TEST(PoreWater, ALocalTouchTouchesFewTetsHoweverLongTheBody) {
     WaterParams params = make_params(FluxForm::corrected);
     params.diffusivity = 1e-8;
     PoreWater water = body.make(params, 0.0);
-    const int triangle[] = {0};
+    const std::vector<int> tets = {body.topology.boundary_tet[0]};
     const double area[] = {1e-5};
     EXPECT_EQ(water.num_active(), 0);
     for (int i = 0; i < 20000; ++i) {
-      if (i < 100) water.exchange(triangle, area, 1, 0.01);
+      if (i < 100) water.transfer(tets, area, 1, 0.01);
       water.diffuse(0.01);
     }
     counts[length == 400] = water.num_active();
@@ -370,9 +373,9 @@ TEST(PoreWaterDeathTest, RefusesWhatTheScenarioShouldHaveRefused) {
   EXPECT_DEATH(body.make(make_params(FluxForm::corrected), std::nan("")), "initial_saturation");
   PoreWater water = body.make(make_params(FluxForm::corrected), 0.5);
   EXPECT_DEATH(water.diffuse(1e9), "kMostSubsteps");
-  const int triangle[] = {0};
+  const std::vector<int> tets = {body.topology.boundary_tet[0]};
   const double area[] = {std::nan("")};
-  EXPECT_DEATH(water.exchange(triangle, area, 1, 0.01), "isfinite");
+  EXPECT_DEATH(water.transfer(tets, area, 1, 0.01), "isfinite");
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // A recorded motion is read back to the bit, by way of CSV and of HDF5; recordings of real hands are read
 // whole.
-#include "device/recorder.h"
+#include "device/trace.h"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +13,7 @@
 #include "hdf5/file.h"
 #include "support/shared_data.h"
 #include "support/temp_folder.h"
+#include "support/trace_csv.h"
 
 namespace argil::device {
 namespace {
@@ -50,38 +51,26 @@ void expect_same_motion(const Trace& a, const Trace& b) {
   }
 }
 
-TEST(TraceRecorder, WritesWhatReadTraceGivesBackToTheBit) {
+TEST(ReadTraceCsv, ReadsSeventeenDigitsBackToTheBit) {
   const TempFolder folder;
   const Trace trace = random_trace(500);
-  write_trace_csv(folder / "t.csv", trace, 1000.0);
-  const Trace read = read_trace(folder / "t.csv", {});
+  const Trace read = read_trace(folder.write("t.csv", test::print_trace_csv(trace, 1000.0)), {});
   expect_same_motion(trace, read);
   EXPECT_EQ(read.device, "made up, by a test");
 }
 
-TEST(TraceRecorder, LeavesAReadableFileWhenItIsNeverFinished) {
+TEST(ReadTraceCsv, ReadsARecordingThatWasNeverFinished) {
   const TempFolder folder;
   const Trace trace = random_trace(20);
-  {
-    TraceRecorder recorder(folder / "t.csv", "hand", 1000.0);
-    for (std::size_t i = 0; i < 20; ++i) recorder.append(trace.time[i], trace.samples[i]);
-  }
-  expect_same_motion(trace, read_trace(folder / "t.csv", {}));
+  expect_same_motion(trace,
+                     read_trace(folder.write("t.csv", test::print_trace_csv(trace, 1000.0, false)), {}));
 }
 
-TEST(TraceRecorder, ChangedRecordingsAreRefused) {
+TEST(ReadTraceCsv, RefusesAChangedRecording) {
   const TempFolder folder;
-  write_trace_csv(folder / "t.csv", random_trace(20), 1000.0);
-  std::string text = TempFolder::read(folder / "t.csv");
+  std::string text = test::print_trace_csv(random_trace(20), 1000.0);
   text[text.size() - 3] ^= 1;
   ARGIL_EXPECT_THROW_WITH(read_trace(folder.write("u.csv", text), {}), InputError, "the file was changed");
-}
-
-TEST(TraceRecorder, SaysWhyItCannotWrite) {
-  ARGIL_EXPECT_THROW_WITH(TraceRecorder("/nowhere/t.csv", "", 1.0), IoError,
-                          "cannot be written: No such file");
-  ARGIL_EXPECT_THROW_WITH(write_trace_csv("/dev/full", random_trace(5000), 1000.0), IoError,
-                          "No space left on device");
 }
 
 // Writes a trace in HDF5 as its own groups or as the /haptic of a result file.

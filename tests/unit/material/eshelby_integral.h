@@ -7,7 +7,7 @@
 namespace argil::material {
 
 /// Eshelby's tensor P (6×6, Mandel; strain inside = P ε*) of an ellipsoid in a matrix of any anisotropy: the
-/// slow reference for the closed forms of eshelby.h, and the only way where they end.
+/// slow reference for the closed forms of eshelby.h.
 ///   P = (1/4π) ∫ Γ(n) dω : C,  Γ_ijkl = sym(N_ik n_j n_l),  N⁻¹_ik = n_j C_ijkl n_l,  n ∥ (ζ₁/a₁, ζ₂/a₂,
 ///   ζ₃/a₃)
 /// over the unit sphere ζ [Mura1987, eqs. 17.19–17.24]: Gauss's rule along axis 3, then the trapezoid rule

@@ -1,4 +1,4 @@
-#include "material/eshelby_integral.h"
+#include "eshelby_integral.h"
 
 #include <Eigen/LU>
 

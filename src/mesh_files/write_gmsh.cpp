@@ -1,4 +1,4 @@
-// Gmsh 4.1 and OBJ as text. 17 significant digits bring every double back to the bit.
+// Gmsh 4.1 as text. 17 significant digits bring every double back to the bit.
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
@@ -19,9 +19,8 @@ void append(std::string& text, double value) {
   text.append(digits, end.ptr);
 }
 
-void append_points(std::string& text, const char* prefix, const Points& points) {
+void append_points(std::string& text, const Points& points) {
   for (Eigen::Index v = 0; v < points.cols(); ++v) {
-    text += prefix;
     for (int c = 0; c < 3; ++c) {
       if (c > 0) text += ' ';
       append(text, points(c, v));
@@ -49,7 +48,7 @@ void write_gmsh(const mesh::TetMesh& mesh, const std::string& file) {
   std::string text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
   text += "$Nodes\n1 " + vertices + " 1 " + vertices + "\n3 1 0 " + vertices + "\n";
   for (int v = 1; v <= mesh.num_vertices(); ++v) text += std::to_string(v) + "\n";
-  append_points(text, "", mesh.vertices);
+  append_points(text, mesh.vertices);
   text += "$EndNodes\n$Elements\n1 " + tets + " 1 " + tets + "\n3 1 4 " + tets + "\n";
   for (int t = 0; t < mesh.num_tets(); ++t) {
     text += std::to_string(t + 1);
@@ -65,17 +64,6 @@ void write_gmsh(const mesh::TetMesh& mesh, const std::string& file) {
       text += '\n';
     }
     text += "$EndElementData\n";
-  }
-  write_text(text, file);
-}
-
-void write_obj(const mesh::TriangleMesh& mesh, const std::string& file) {
-  std::string text;
-  append_points(text, "v ", mesh.vertices);
-  for (int t = 0; t < mesh.num_triangles(); ++t) {
-    text += 'f';
-    for (int c = 0; c < 3; ++c) text += " " + std::to_string(mesh.triangles(c, t) + 1);
-    text += '\n';
   }
   write_text(text, file);
 }
