@@ -75,7 +75,7 @@ int run_static(const scenario::Scenario& s, scenario::Scene& scene, const RunOpt
   if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
   if (failure) return print_failure(*failure);
   if (!options.quiet) {
-    const Points moved = simulation.body_state().solid.x - simulation.solid().elements().rest;
+    const Points moved = simulation.body_state().solid.x - simulation.solid().model.elements.rest;
     std::printf("%s: equilibrium in %.2f s, largest displacement %.6g m\n", result.c_str(), seconds,
                 moved.colwise().norm().maxCoeff());
   }

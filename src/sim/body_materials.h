@@ -13,7 +13,8 @@ namespace argil::sim {
 class BodyMaterials {
  public:
   /// All are kept by reference.
-  BodyMaterials(const Body& body, const Params& params, const water::PoreWater& water, solid::Solid& solid);
+  BodyMaterials(const Body& body, const Params& params, const water::PoreWater& water, solid::Body& solid,
+                solid::ActiveRegion& region);
 
   /// Brings every tet up to date.
   void set_all();
@@ -36,7 +37,8 @@ class BodyMaterials {
   const Body& m_body;
   const Params& m_params;
   const water::PoreWater& m_water;
-  solid::Solid& m_solid;
+  solid::Body& m_solid;
+  solid::ActiveRegion& m_region;
   material::MoistureTable m_moisture;
   Field m_saturation;  // S of each tet for which it was last brought up to date
   Field m_yield;

@@ -6,26 +6,28 @@
 
 namespace argil::sim {
 
-PhysicsRecord BodySide::make_record() const {
+PhysicsRecord BodySide::make_record() {
   PhysicsRecord record;
   record.tick = m_state.hand.ticks;
   record.time = static_cast<double>(m_state.hand.ticks) * m_params.rates.haptic_period;
-  record.kinetic_energy = m_solid.compute_kinetic_energy(m_state.solid);
+  record.kinetic_energy = solid::compute_kinetic_energy(m_solid.materials, m_region.part(), m_state.solid.v);
   const bool is_at_rest = m_state.is_at_rest;
-  const solid::StrainSummary strain =
-      is_at_rest ? m_economy.rest_strain() : m_solid.summarise(m_state.solid.plastic_strain);
+  const solid::StrainSummary strain = is_at_rest
+                                          ? m_economy.rest_strain()
+                                          : solid::summarise(m_solid.strained(m_state.solid.plastic_strain),
+                                                             m_solid.energies, m_solid.scratch.nodal.change);
   record.elastic_energy = strain.elastic_energy;
   record.plastic_dissipation = m_state.plastic_dissipation;
   record.contact_work = m_state.contact_work;
   record.water_mass = m_water.mass();
   record.water_added = m_water.ledger().added;
   record.water_removed = m_water.ledger().removed;
-  record.iterations = m_solid.counters().linear_iterations;
-  record.newton_iterations = m_solid.counters().newton_iterations;
-  record.factorisations = m_solid.solver_cost().factorisations;
-  record.residual = m_solid.counters().residual;
-  record.active_nodes = is_at_rest ? 0 : m_solid.num_active();
-  record.min_volume_ratio = m_solid.min_volume_ratio();
+  record.iterations = m_solid.history.counters.linear_iterations;
+  record.newton_iterations = m_solid.history.counters.newton_iterations;
+  record.factorisations = m_solid.history.solver->cost().factorisations;
+  record.residual = m_solid.history.counters.residual;
+  record.active_nodes = is_at_rest ? 0 : m_region.num_active();
+  record.min_volume_ratio = m_solid.kinematics.min_volume_ratio();
   record.max_plastic_strain = strain.largest_plastic_strain;
   record.fidelity = m_economy.record();
   return record;
@@ -34,7 +36,7 @@ PhysicsRecord BodySide::make_record() const {
 /// ε_p of each tet: the mean of its points, whose weights are equal.
 TensorField BodySide::mean_plastic_strain() const {
   const TensorField& at_points = m_state.solid.plastic_strain;
-  const int Q = m_solid.elements().points_per_tet;
+  const int Q = m_solid.model.elements.points_per_tet;
   if (Q == 1) return at_points;
   TensorField mean(6, m_body.mesh.num_tets());
   for (Eigen::Index t = 0; t < mean.cols(); ++t)
@@ -50,7 +52,7 @@ Frame BodySide::make_frame(const HandPose& hand) const {
   frame.saturation = mesh::in_file_order(m_body.mesh, m_water.saturation());
   frame.plastic_strain = mesh::in_file_order(m_body.mesh, mean_plastic_strain());
   if (m_body.skin_embedding.num_points() > 0) {
-    embed::interpolate_positions(m_body.skin_embedding, m_solid.elements().nodes, m_state.solid.x,
+    embed::interpolate_positions(m_body.skin_embedding, m_solid.model.elements.nodes, m_state.solid.x,
                                  frame.skin_position);
     embed::interpolate_tet_field(m_body.skin_embedding, m_water.saturation(), frame.skin_saturation);
     if (m_params.kernel.form == material::KernelForm::off)

@@ -3,6 +3,9 @@
 #include <utility>
 
 #include "base/check.h"
+#include "solid/committed.h"
+#include "solid/statics.h"
+#include "solid/step_solver.h"
 
 namespace argil::sim {
 namespace {
@@ -21,40 +24,42 @@ BodySide::BodySide(Body body, const Params& params)
     : m_params(params),
       m_body(std::move(body)),
       m_solid(m_body.mesh, m_body.topology, m_body.supports, make_solid_params(params), params.threads),
+      m_region(m_solid),
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation, params.threads),
-      m_surface(params.contact_surface, m_body, m_solid.elements()),
-      m_force(solid::compute_load_force(m_solid.elements(), m_body.topology.boundary, m_body.loads)),
+      m_surface(params.contact_surface, m_body, m_solid.model.elements),
+      m_force(solid::compute_load_force(m_solid.model.elements, m_body.topology.boundary, m_body.loads)),
       m_loads{m_force.total()},
-      m_materials(m_body, params, m_water, m_solid),
-      m_flow(params, m_materials, m_solid),
-      m_economy(params, m_body, m_solid) {
+      m_materials(m_body, params, m_water, m_solid, m_region),
+      m_flow(params, m_materials, m_solid, m_region),
+      m_economy(params, m_body, m_solid, m_region) {
   m_loads.changed = &m_force.changed();
-  m_state.solid = m_solid.make_rest_state();
-  StepStatus rest = m_solid.update_kinematics(m_state.solid.x, 0);
+  m_state.solid = solid::make_rest_state(m_solid.model);
+  StepStatus rest = solid::update_kinematics(m_solid, m_region, m_state.solid.x, 0);
   ARGIL_ASSERT(rest.is_ok());
   m_economy.begin(m_state, params.solid.gravity.norm() > 0.0 || m_force.loads().norm() > 0.0);
   m_materials.set_all();
   const bool is_swollen = params.water.swelling > 0.0 && (m_water.saturation().array() != 0.0).any();
   if (is_swollen) {  // dry clay has the size that it came with
     m_state.is_at_rest = false;
-    rest = m_solid.update_kinematics(m_state.solid.x, 0);
+    rest = solid::update_kinematics(m_solid, m_region, m_state.solid.x, 0);
     ARGIL_ASSERT(rest.is_ok());
   }
-  if (m_state.is_at_rest) m_solid.sleep_all();
-  m_solid.make_ready(m_state.solid, m_force.total());
-  m_solid.commit(m_state.solid);
+  if (m_state.is_at_rest) m_region.sleep_all();
+  solid::make_ready(m_solid, m_region, m_state.solid, m_force.total());
+  solid::commit(m_solid, m_region, m_state.solid);
   commit();
 }
 
 StepStatus BodySide::find_equilibrium() {
-  ARGIL_TRY(m_solid.find_equilibrium(m_state.solid, {m_force.loads()}));
-  m_solid.commit(m_state.solid);
+  m_region.wake_all();
+  ARGIL_TRY(solid::find_equilibrium(m_solid, m_region.whole(), {m_force.loads()}, m_state.solid));
+  solid::commit(m_solid, m_region, m_state.solid);
   commit();
   return StepStatus::ok();
 }
 
 BodyBetweenSteps BodySide::between_steps(Tick tick) {
-  return {m_solid, m_surface, m_state.solid, m_params.rates.step_seconds(), tick};
+  return {m_solid, m_region.part(), m_surface, m_state.solid, m_params.rates.step_seconds(), tick};
 }
 
 StepStatus BodySide::step(const ContactLoad& load, StepResult& result) {
@@ -78,7 +83,7 @@ void BodySide::begin_step(const ContactLoad& load, StepResult& result) {
 void BodySide::commit() {
   const bool falls_asleep = m_state.is_at_rest && !m_committed.is_at_rest;
   if (m_has_begun_solid || m_has_moved_water || falls_asleep)
-    m_solid.commit(m_state.solid, m_flow.is_flowing());
+    solid::commit(m_solid, m_region, m_state.solid, m_flow.is_flowing());
   m_committed = m_state;
   if (m_has_moved_water) m_water.commit();
   m_materials.commit();
@@ -93,7 +98,7 @@ void BodySide::roll_back() {
   m_materials.roll_back();
   m_flow.roll_back();
   m_economy.roll_back();
-  const StepStatus status = m_solid.roll_back(m_state.solid, tick());
+  const StepStatus status = solid::roll_back(m_solid, m_region, m_state.solid, tick());
   ARGIL_ASSERT(status.is_ok());
   m_has_moved_water = m_has_begun_solid = false;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "base/status.h"
 #include "sim/body_materials.h"
 #include "sim/compliance.h"
 #include "sim/contact_surface.h"
@@ -38,12 +39,12 @@ class BodySide {
   const BodyState& state() const { return m_state; }
   const Body& body() const { return m_body; }
   const ContactSurface& surface() const { return m_surface; }
-  const solid::Solid& solid() const { return m_solid; }
+  const solid::Body& solid() const { return m_solid; }
   const water::PoreWater& pore_water() const { return m_water; }
-  const HandPose& hand() const { return m_state.hand; }         ///< of the last step
-  const Points& x_before() const { return m_solid.x_start(); }  ///< nodes before the last move
+  const HandPose& hand() const { return m_state.hand; }           ///< of the last step
+  const Points& x_before() const { return m_solid.committed.x; }  ///< nodes before the last move
   BodyBetweenSteps between_steps(Tick tick);
-  PhysicsRecord make_record() const;             ///< of the last step
+  PhysicsRecord make_record();                   ///< of the last step
   Frame make_frame(const HandPose& hand) const;  ///< the body as it is now, with the hand there
   /// The same with the hand of the last step, and the hash of the body's side alone: where the hand goes on
   /// meanwhile.
@@ -88,7 +89,8 @@ class BodySide {
   Body m_body;
   BodyState m_state;
   BodyProgress m_committed;
-  solid::Solid m_solid;
+  solid::Body m_solid;
+  solid::ActiveRegion m_region;
   water::PoreWater m_water;
   ContactSurface m_surface;
   ExternalForce m_force;

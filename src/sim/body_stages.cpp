@@ -5,6 +5,8 @@
 
 #include "material/plasticity.h"
 #include "sim/body_side.h"
+#include "solid/move.h"
+#include "solid/step_solver.h"
 
 namespace argil::sim {
 
@@ -23,13 +25,13 @@ StepStatus BodySide::refresh_materials() {
   const StageScope scope(m_observer, Stage::water);
   const std::span<const int> changed = m_materials.refresh(m_params.moisture.refresh_tolerance);
   for (const int tet : changed)
-    if (m_state.is_at_rest && m_solid.is_strained(tet, m_state.solid.plastic_strain))
+    if (m_state.is_at_rest && solid::is_strained(m_solid.strained(m_state.solid.plastic_strain), tet))
       m_state.is_at_rest = false;
   if (changed.empty()) return StepStatus::ok();
   if (m_params.water.adds_mass && m_params.solid.gravity.norm() > 0.0) m_state.is_at_rest = false;
   if (!(m_params.water.swelling > 0.0)) return StepStatus::ok();
   m_state.is_at_rest = false;
-  return m_solid.update_kinematics(m_state.solid.x, tick());
+  return solid::update_kinematics(m_solid, m_region, m_state.solid.x, tick());
 }
 
 StepStatus BodySide::predict(const ContactLoad& load) {
@@ -41,33 +43,35 @@ StepStatus BodySide::predict(const ContactLoad& load) {
     m_loads.mobility = [this, &load](Eigen::Index node) { return clay_factor(node, load.patch); };
   m_economy.set_budget(m_loads);
   m_has_begun_solid = true;
-  return m_solid.begin_step(m_state.solid, m_loads, m_params.rates.step_seconds(), time_at_end(), tick());
+  return solid::begin_step(m_solid, m_region, m_state.solid, m_loads,
+                           {m_params.rates.step_seconds(), time_at_end(), tick()});
 }
 
 /// True when nothing is left to solve for.
 bool BodySide::assemble() {
   const StageScope scope(m_observer, Stage::assemble);
-  const bool is_solved = m_solid.assemble(m_loads);
+  const bool is_solved = solid::assemble(m_solid, m_region, m_loads);
   return m_economy.stops(m_state, m_loads, m_force.contacts(), m_flow.is_anywhere()) || is_solved;
 }
 
 StepStatus BodySide::solve(bool& is_solved) {
   const StageScope scope(m_observer, Stage::solve);
-  return m_solid.solve(m_loads, tick(), is_solved);
+  return solid::solve(m_solid, m_region, m_loads, tick(), is_solved);
 }
 
 /// The deflection of the body under the tool lets the forces of its contacts fall: those on the body, and of
 /// the last detection those that the hand feels. With one detection a step, both are equal and opposite.
 void BodySide::apply_deflection(const ContactLoad& load, device::Wrench& felt) {
   const StageScope scope(m_observer, Stage::solve);
-  m_solid.apply_contact_stiffness(load.stiffness, m_force.contacts().at);
+  solid::apply_contact_stiffness(m_solid, load.stiffness, m_force.contacts().at);
   for (std::size_t i = load.last_detection; i < load.stiffness.size(); ++i) {
     const Vec3 at_rest = load.levers[i].force_at_rest * load.stiffness[i].normal;
-    const Vec3 change = load.detections * (at_rest + m_solid.compute_contact_change(load.stiffness, i));
+    const Vec3 change =
+        load.detections * (at_rest + solid::compute_contact_change(m_solid, load.stiffness, i));
     felt.force -= change;
     felt.torque -= (load.levers[i].point - load.hand.tool.position).cross(change);
   }
-  m_solid.finish_step(m_state.solid);
+  solid::take_velocity(m_solid, m_region.part(), m_state.solid);
 }
 
 /// v ← G_d^{h/h_ref}(r) v with r from the point of contact (eq. 9). A body that nothing presses is left free,
@@ -75,7 +79,7 @@ void BodySide::apply_deflection(const ContactLoad& load, device::Wrench& felt) {
 void BodySide::scale_velocity(const ContactPatch& patch) {
   const StageScope scope(m_observer, Stage::solve);
   if (!patch.is_pressed || m_params.kernel.form == material::KernelForm::off) return;
-  m_solid.moving_nodes().each(m_state.solid.v.cols(), [&](std::ptrdiff_t v) {
+  m_region.part().nodes.each(m_state.solid.v.cols(), [&](std::ptrdiff_t v) {
     if (!m_state.solid.v.col(v).isZero(0.0)) m_state.solid.v.col(v) *= clay_factor(v, patch);
   });
 }
@@ -92,17 +96,17 @@ StepStatus BodySide::check_energy() {
   const StageScope scope(m_observer, Stage::kinematics);
   if (m_params.energy_limit == 0.0 || m_params.water.swelling > 0.0) return StepStatus::ok();
   constexpr double kSpeed = 1e-3;  // [m/s] of a body that counts as still: below is what a loose solve leaves
-  const solid::SolidState& solid = m_state.solid;
-  const Field& mass = m_solid.mass();
-  m_state.energy_given += m_solid.moving_nodes().sum(solid.x.cols(), [&](std::ptrdiff_t n) {
-    const Vec3 path = solid.x.col(n) - m_solid.x_start().col(n);
+  const Points& x = m_state.solid.x;
+  const Field& mass = m_solid.materials.mass();
+  m_state.energy_given += m_region.part().nodes.sum(x.cols(), [&](std::ptrdiff_t n) {
+    const Vec3 path = x.col(n) - m_solid.committed.x.col(n);
     const Vec3 load = m_force.loads().col(n) + mass(n) * m_params.solid.gravity;
-    const Vec3 reaction = (m_solid.constraints().support.col(n).array() >= 0)
-                              .select(m_solid.internal_force().col(n), Vec3::Zero());
+    const Vec3 reaction = (m_solid.model.constraints.support.col(n).array() >= 0)
+                              .select(m_solid.forces.internal.col(n), Vec3::Zero());
     return std::max(0.0, path.dot(m_force.contacts().at.col(n))) + std::abs(path.dot(load)) +
            std::abs(path.dot(reaction));
   });
-  const double kinetic = m_solid.compute_kinetic_energy(solid);
+  const double kinetic = solid::compute_kinetic_energy(m_solid.materials, m_region.part(), m_state.solid.v);
   double bound = m_params.energy_limit * m_state.energy_given;
   if (kinetic <= bound) return StepStatus::ok();
   bound += 0.5 * kSpeed * kSpeed * mass.sum();
@@ -113,25 +117,25 @@ StepStatus BodySide::check_energy() {
 
 StepStatus BodySide::update_kinematics() {
   const StageScope scope(m_observer, Stage::kinematics);
-  ARGIL_TRY(m_solid.update_kinematics(m_state.solid.x, tick()));
-  m_solid.keep_start(m_state.solid);
+  ARGIL_TRY(solid::update_kinematics(m_solid, m_region, m_state.solid.x, tick()));
+  solid::keep_start(m_solid, m_state.solid);
   for (const int n : m_force.contacts().nodes)
     m_state.contact_work +=
-        m_force.contacts().at.col(n).dot(m_state.solid.x.col(n) - m_solid.x_start().col(n));
+        m_force.contacts().at.col(n).dot(m_state.solid.x.col(n) - m_solid.committed.x.col(n));
   return StepStatus::ok();
 }
 
 void BodySide::flow() {
   const StageScope scope(m_observer, Stage::plasticity);
   m_state.plastic_dissipation += m_flow.apply(m_state.solid.plastic_strain);
-  m_solid.sleep_slow_runs(m_state.solid, m_flow.is_flowing());
+  m_region.put_to_sleep(m_state.solid, m_flow.is_flowing());
 }
 
 void BodySide::find_surface(StepResult& result) {
   const StageScope scope(m_observer, Stage::plasticity);
   m_economy.finish_step(m_state);
   const Points& x = m_state.solid.x;
-  result.is_whole = !m_surface.find_moved(m_solid.moving_nodes(), x, result.moved, result.surface_x);
+  result.is_whole = !m_surface.find_moved(m_region.part().nodes, x, result.moved, result.surface_x);
   if (result.is_whole) m_surface.find_positions(x, result.surface_x);
   result.has_moved = true;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "solid/response.h"
 
 namespace argil::sim {
 
@@ -47,7 +48,7 @@ void LocalCompliance::learn(const BodyBetweenSteps& body, int vertex) {
 }
 
 void LocalCompliance::guess_columns(const BodyBetweenSteps& body, std::size_t place) {
-  if (!m_is_prepared) body.solid.prepare_response(body.state, body.step_s);
+  if (!m_is_prepared) solid::prepare_response(body.solid, body.part, body.state, body.step_s);
   m_is_prepared = true;
   const std::span<const int> nodes = body.surface.nodes(m_state.known[place]);
   const std::span<const double> weights = body.surface.weights(m_state.known[place]);
@@ -55,7 +56,7 @@ void LocalCompliance::guess_columns(const BodyBetweenSteps& body, std::size_t pl
   columns.setZero();
   for (std::size_t k = 0; k < nodes.size(); ++k)
     columns.middleRows<3>(m_row_of_node[static_cast<std::size_t>(nodes[k])]) =
-        weights[k] * m_state.guess_factor * body.solid.compute_local_response(nodes[k]);
+        weights[k] * m_state.guess_factor * solid::compute_local_response(body.solid, nodes[k]);
   update_between(body.surface, place);
 }
 
@@ -66,7 +67,7 @@ StepStatus LocalCompliance::solve_columns(const BodyBetweenSteps& body, std::siz
   const std::span<const double> weights = body.surface.weights(m_state.known[place]);
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < nodes.size(); ++k) m_load(axis, nodes[k]) = weights[k];
-    ARGIL_TRY(body.solid.find_response(m_load, body.tick, m_response));
+    ARGIL_TRY(solid::find_response(body.solid, body.part, m_load, body.tick, m_response));
     for (const int node : nodes) m_load(axis, node) = 0.0;
     auto column = m_columns.col(3 * static_cast<Eigen::Index>(place) + axis);
     for (std::size_t s = 0; s < m_nodes.size(); ++s)
@@ -133,7 +134,7 @@ StepStatus LocalCompliance::begin_frame(const BodyBetweenSteps& body, const Poin
         body.state.x.col(m_nodes[s]) - x_before.col(m_nodes[s]);
   std::fill(m_state.held.begin(), m_state.held.end(), Vec3::Zero());
   for (const auto& [spring, share, group] : m_acting) {
-    if (!body.solid.acts(group)) continue;
+    if (!body.solid.contacts.is_acting(group)) continue;
     const double yielded = spring.normal.dot(compute_mean(body.surface, spring, m_own));
     const Vec3 acted = share * (spring.force - spring.stiffness * yielded) * spring.normal;
     for (std::size_t i = 0; i < 3 && spring.vertex[i] >= 0; ++i) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "base/status.h"
 #include "sim/contact_surface.h"
 
 namespace argil::sim {
@@ -29,7 +30,8 @@ inline constexpr auto list_spring_fields = [](ContactSpring& s, auto field) {
 
 /// The body as the last physics step left it.
 struct BodyBetweenSteps {
-  solid::Solid& solid;
+  solid::Body& solid;
+  const solid::Part& part;  ///< of it, that moves
   const ContactSurface& surface;
   const solid::SolidState& state;
   double step_s = 0.0;

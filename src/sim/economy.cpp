@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solid/step_solver.h"
+
 namespace argil::sim {
 
-Economy::Economy(const Params& params, const Body& body, solid::Solid& solid)
+Economy::Economy(const Params& params, const Body& body, solid::Body& solid, solid::ActiveRegion& region)
     : m_params(params),
       m_solid(solid),
+      m_region(region),
       m_fidelity(params.fidelity,
                  params.solid.rayleigh_stiffness /
                      solid::compute_tau(params.solid.integrator, params.rates.step_seconds())),
       m_committed_fidelity(m_fidelity) {
-  m_held_back.setZero(3, solid.elements().num_nodes());
+  m_held_back.setZero(3, solid.model.elements.num_nodes());
   m_is_moved = std::any_of(body.supports.begin(), body.supports.end(),
                            [](const solid::Support& s) { return s.displacement.norm() > 0.0; });
 }
@@ -29,8 +32,9 @@ void Economy::fall_asleep(BodyState& state) {
   state.solid.v.setZero();
   state.solid.v_before.setZero();
   if (state.solid.x_before.size() > 0) state.solid.x_before = state.solid.x;
-  m_solid.sleep_all();
-  m_rest_strain = m_solid.summarise(state.solid.plastic_strain);
+  m_region.sleep_all();
+  m_rest_strain = solid::summarise(m_solid.strained(state.solid.plastic_strain), m_solid.energies,
+                                   m_solid.scratch.nodal.change);
 }
 
 /// It falls asleep when nothing has touched it and it has been slower than rest_speed for two steps, and
@@ -50,7 +54,7 @@ bool Economy::rests(BodyState& state, const ContactLoad& load, const NodalForce&
 }
 
 void Economy::find_reach(const BodyState& state, const OrderedItems& nodes) {
-  m_fidelity.find_reach(state.solid.x, m_solid.elements().rest, nodes);
+  m_fidelity.find_reach(state.solid.x, m_solid.model.elements.rest, nodes);
 }
 
 /// fidelity: does the body still sleep under this load? A surface that deflects between frames asks for a
@@ -60,15 +64,15 @@ bool Economy::sleeps_on(BodyState& state, const ContactLoad& load, const NodalFo
   if (load.patch.is_touched && m_params.rates.between_frames == BetweenFrames::compliant)
     state.is_at_rest = false;
   if (!state.is_at_rest) {
-    find_reach(state, m_solid.moving_nodes());
+    find_reach(state, m_region.part().nodes);
     return false;
   }
   double squares = m_held_back_squares;
   for (const int n : contacts.nodes) {
-    const Vec3 force = m_solid.find_free_part(contacts.at.col(n), n);
+    const Vec3 force = solid::find_free_part(m_solid.model, contacts.at.col(n), n);
     squares += force.dot(2.0 * m_held_back.col(n) + force);
   }
-  state.is_at_rest = m_fidelity.sleeps_on(std::sqrt(std::max(0.0, squares)), m_solid.held_back());
+  state.is_at_rest = m_fidelity.sleeps_on(std::sqrt(std::max(0.0, squares)), m_region.held_back());
   return state.is_at_rest;
 }
 
@@ -79,19 +83,22 @@ void Economy::set_budget(solid::StepLoads& loads) const {
 }
 
 bool Economy::stops(BodyState& state, const solid::StepLoads& loads, const NodalForce& contacts, bool flows) {
-  if (m_fidelity.is_full() || m_solid.counters().newton_iterations > 0) return false;
+  if (m_fidelity.is_full() || m_solid.history.counters.newton_iterations > 0) return false;
   if (m_is_moved || m_params.rates.between_frames == BetweenFrames::compliant) return false;
-  if (!m_fidelity.falls_asleep(m_solid.compute_imbalance(loads), m_solid.held_back(), flows)) return false;
-  const OrderedItems& nodes = m_solid.moving_nodes();
+  if (!m_fidelity.falls_asleep(solid::compute_imbalance(m_solid, m_region, loads), m_region.held_back(),
+                               flows))
+    return false;
+  const OrderedItems& nodes = m_region.part().nodes;
   m_held_back.setZero();
   m_held_back_squares = nodes.sum(m_held_back.cols(), [&](std::ptrdiff_t n) {
-    if (!m_solid.is_awake(n)) return 0.0;
-    m_held_back.col(n) = m_solid.find_imbalance(loads, n) - m_solid.find_free_part(contacts.at.col(n), n);
+    if (!m_region.is_awake(n)) return 0.0;
+    m_held_back.col(n) = solid::find_imbalance(m_solid, loads, n) -
+                         solid::find_free_part(m_solid.model, contacts.at.col(n), n);
     return m_held_back.col(n).squaredNorm();
   });
   for (const int n : contacts.nodes) {  // in balance where the body slept before
-    if (m_solid.is_awake(n)) continue;
-    m_held_back.col(n) = -m_solid.find_free_part(contacts.at.col(n), n);
+    if (m_region.is_awake(n)) continue;
+    m_held_back.col(n) = -solid::find_free_part(m_solid.model, contacts.at.col(n), n);
     m_held_back_squares += m_held_back.col(n).squaredNorm();
   }
   find_reach(state, nodes);
@@ -101,7 +108,8 @@ bool Economy::stops(BodyState& state, const solid::StepLoads& loads, const Nodal
 
 void Economy::finish_step(const BodyState& state) {
   watch_strain(state);
-  m_fidelity.set_made(m_solid.counters().has_solved, m_solid.counters().imbalance, m_solid.held_back());
+  m_fidelity.set_made(m_solid.history.counters.has_solved, m_solid.history.counters.imbalance,
+                      m_region.held_back());
 }
 
 /// fidelity: the mean strain of the points that move, each by its elastic energy. Laws of elasticity agree
@@ -113,15 +121,16 @@ void Economy::watch_strain(const BodyState& state) {
   const auto weigh = [&](std::ptrdiff_t begin, std::ptrdiff_t end, bool by_strain) {
     double sum = 0.0;
     for (auto p = static_cast<int>(begin); p < static_cast<int>(end); ++p) {
-      const Vec6 strain = m_solid.strain().col(p);
+      const Vec6 strain = m_solid.kinematics.strain().col(p);
       const Vec6 elastic = strain - state.solid.plastic_strain.col(p);
-      sum += m_solid.material(m_solid.elements().tet_of_point(p)).mu * m_solid.weight()(p) *
+      sum += m_solid.materials.of(m_solid.model.elements.tet_of_point(p)).mu * m_solid.materials.weight()(p) *
              elastic.squaredNorm() * (by_strain ? strain.norm() : 1.0);
     }
     return sum;
   };
   const auto sum = [&](bool by_strain) {
-    return m_solid.sum_moving_points(
+    return m_region.part().batches.sum(
+        m_solid.model.elements.num_points(),
         [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return weigh(begin, end, by_strain); });
   };
   const double energy = sum(false);

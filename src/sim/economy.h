@@ -12,7 +12,7 @@ namespace argil::sim {
 class Economy {
  public:
   /// All are kept by reference. `is_loaded`: something acts on the body from the start.
-  Economy(const Params& params, const Body& body, solid::Solid& solid);
+  Economy(const Params& params, const Body& body, solid::Body& solid, solid::ActiveRegion& region);
 
   /// Before the first step: a body that nothing loads and no support moves rests from the start; only
   /// rounding would stir it.
@@ -42,7 +42,8 @@ class Economy {
   void watch_strain(const BodyState& state);
 
   const Params& m_params;
-  solid::Solid& m_solid;
+  solid::Body& m_solid;
+  solid::ActiveRegion& m_region;
   bool m_is_moved = false;  // some support moves
   Fidelity m_fidelity, m_committed_fidelity;
   int m_slow_steps = 0, m_committed_slow_steps = 0;  // in a row, slower than rest_speed

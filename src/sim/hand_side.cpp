@@ -22,8 +22,8 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
       m_committed(params),
       m_touched(surface),
       m_detector(surface.triangles(), surface.num_vertices(), tool, params.contact),
-      m_collector(params, surface, body.solid().elements()),
-      m_compliance(surface, body.solid().elements().num_nodes()) {
+      m_collector(params, surface, body.solid().model.elements),
+      m_compliance(surface, body.solid().model.elements.num_nodes()) {
   m_detector.share(params.threads);
   begin_at(start);
 }

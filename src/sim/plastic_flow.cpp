@@ -1,5 +1,6 @@
 #include "sim/plastic_flow.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "base/lanes.h"
@@ -7,27 +8,37 @@
 
 namespace argil::sim {
 
-PlasticFlow::PlasticFlow(const Params& params, const BodyMaterials& materials, solid::Solid& solid)
-    : m_params(params), m_materials(materials), m_solid(solid) {
+PlasticFlow::PlasticFlow(const Params& params, const BodyMaterials& materials, const solid::Body& solid,
+                         const solid::ActiveRegion& region)
+    : m_params(params), m_materials(materials), m_solid(solid), m_region(region) {
   m_has_additive_split = find_law(params.solid.model).plastic_split == solid::PlasticSplit::additive;
   m_is_driven = params.plasticity.enabled && params.plasticity.deviatoric &&
                 (!materials.is_isotropic() || !m_has_additive_split);
-  m_is_flowing.resize(static_cast<std::size_t>(solid.elements().num_points() / kLanes + 1), 0);
+  m_is_flowing.resize(static_cast<std::size_t>(solid.model.elements.num_points() / kLanes + 1), 0);
 }
 
 double PlasticFlow::apply(TensorField& plastic_strain) {
   if (!m_params.plasticity.enabled) return 0.0;
-  const double dissipated = m_solid.sum_moving_points(
+  const double dissipated = m_region.part().batches.sum(
+      m_solid.model.elements.num_points(),
       [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return apply_to_points(begin, end, plastic_strain); });
-  m_is_anywhere = m_solid.has_any_moving(m_is_flowing);
+  m_is_anywhere = is_flowing_anywhere();
   return dissipated;
+}
+
+/// Does any run of points that moves?
+bool PlasticFlow::is_flowing_anywhere() const {
+  const std::vector<int>* batches = m_region.part().batches.list();
+  if (!batches) return std::any_of(m_is_flowing.begin(), m_is_flowing.end(), [](char c) { return c != 0; });
+  return std::any_of(batches->begin(), batches->end(),
+                     [&](int batch) { return m_is_flowing[static_cast<std::size_t>(batch)] != 0; });
 }
 
 /// Of at most kLanes points, which are not looked at one by one where none of them flows.
 double PlasticFlow::apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain) {
   unsigned flowing =
       m_is_driven ? (1U << (end - begin)) - 1U
-                  : material::find_flowing(m_solid.strain().data(), plastic_strain.data(),
+                  : material::find_flowing(m_solid.kinematics.strain().data(), plastic_strain.data(),
                                            m_materials.yield().data(), m_params.plasticity, begin, end);
   m_is_flowing[static_cast<std::size_t>(begin / kLanes)] = flowing != 0;
   double dissipated = 0.0;
@@ -44,11 +55,12 @@ double PlasticFlow::apply_to_point(int point, TensorField& plastic_strain) const
   const Vec6 before = plastic_strain.col(point);
   Vec6 after = compute_flow(point, before);
   if ((after.array() == before.array()).all()) return 0.0;
-  const double energy = m_solid.compute_elastic_energy(point, before);
-  double released = energy - m_solid.compute_elastic_energy(point, after);
+  const solid::Strained body = m_solid.strained();
+  const double energy = solid::compute_elastic_energy(body, point, before);
+  double released = energy - solid::compute_elastic_energy(body, point, after);
   for (int k = 0; !m_has_additive_split && released < 0.0 && k < kHalvings; ++k) {
     after = k + 1 < kHalvings ? Vec6(0.5 * (before + after)) : before;
-    released = energy - m_solid.compute_elastic_energy(point, after);
+    released = energy - solid::compute_elastic_energy(body, point, after);
   }
   plastic_strain.col(point) = after;
   return released;
@@ -56,15 +68,17 @@ double PlasticFlow::apply_to_point(int point, TensorField& plastic_strain) const
 
 /// ε_p of a point after a step's flow.
 Vec6 PlasticFlow::compute_flow(int point, const Vec6& before) const {
-  const int tet = m_solid.elements().tet_of_point(point);
-  material::FlowPoint at{m_solid.material(tet).yield};
+  const int tet = m_solid.model.elements.tet_of_point(point);
+  material::FlowPoint at{m_solid.materials.of(tet).yield};
   Vec6 drive;
   if (m_is_driven) {
-    drive = m_solid.compute_flow_drive(point, before, m_materials.shape_stiffness(tet));
+    const solid::Strained body = m_solid.strained();
+    drive = solid::compute_flow_drive(body.law(), body.kinematics.at(point), before, body.elasticity(tet),
+                                      m_materials.shape_stiffness(tet));
     at.drive = &drive;
   }
-  return material::compute_plastic_strain(m_solid.strain().col(point), before, at, m_params.plasticity,
-                                          m_params.rates.step_seconds());
+  return material::compute_plastic_strain(m_solid.kinematics.strain().col(point), before, at,
+                                          m_params.plasticity, m_params.rates.step_seconds());
 }
 
 }  // namespace argil::sim

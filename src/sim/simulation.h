@@ -42,7 +42,7 @@ class Simulation final : private BodySteps {
   const Body& body() const { return m_body_side.body(); }
   const Clock& clock() const { return m_hand.clock(); }
   const water::PoreWater& pore_water() const { return m_body_side.pore_water(); }
-  const solid::Solid& solid() const { return m_body_side.solid(); }
+  const solid::Body& solid() const { return m_body_side.solid(); }
   const contact::Contacts& contacts() const { return m_hand.contacts(); }
   const Params& params() const { return m_params; }
   bool physics_due_last_tick() const {
@@ -50,9 +50,9 @@ class Simulation final : private BodySteps {
   }
   bool frame_due_last_tick() const { return clock().tick % m_params.rates.frame_period_ticks == 0; }
 
-  HapticRecord haptic_record() const { return m_hand.make_record(); }         ///< of the last tick
-  PhysicsRecord physics_record() const { return m_body_side.make_record(); }  ///< of the last physics step
-  Frame make_frame();                                                         ///< the body as it is now
+  HapticRecord haptic_record() const { return m_hand.make_record(); }   ///< of the last tick
+  PhysicsRecord physics_record() { return m_body_side.make_record(); }  ///< of the last physics step
+  Frame make_frame();                                                   ///< the body as it is now
   /// SHA-256 of all that a tick takes from earlier ones: from equal hashes, equal samples lead to equal bits.
   std::string state_hash();
 

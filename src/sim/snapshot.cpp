@@ -2,6 +2,8 @@
 
 #include "base/check.h"
 #include "sim/simulation.h"
+#include "solid/committed.h"
+#include "solid/step_solver.h"
 
 namespace argil::sim {
 
@@ -64,16 +66,17 @@ void BodySide::serialize(Archive& archive) {
   archive.number("solid/is_at_rest", m_state.is_at_rest);
   serialize_water(archive);
   m_materials.serialize(archive);
-  m_solid.serialize(archive, m_state.solid);
+  solid::serialize(archive, m_solid, m_region, m_state.solid);
   m_flow.serialize(archive);
   m_economy.serialize(archive);
   if (!archive.is_restoring()) return;
-  if (!archive.keeps_history()) m_solid.wake_all();
-  const StepStatus status = archive.keeps_history()
-                                ? m_solid.restore_kinematics(m_state.solid.x, m_state.hand.ticks)
-                                : m_solid.update_kinematics(m_state.solid.x, m_state.hand.ticks);
+  if (!archive.keeps_history()) m_region.wake_all();
+  const StepStatus status =
+      archive.keeps_history()
+          ? solid::restore_kinematics(m_solid, m_region, m_state.solid.x, m_state.hand.ticks)
+          : solid::update_kinematics(m_solid, m_region, m_state.solid.x, m_state.hand.ticks);
   ARGIL_ASSERT(status.is_ok());
-  m_solid.commit(m_state.solid);
+  solid::commit(m_solid, m_region, m_state.solid);
   commit();
 }
 

@@ -8,8 +8,8 @@
 #include "embed/embedding.h"
 #include "mesh/topology.h"
 #include "sim/clock.h"
+#include "solid/active_region.h"
 #include "solid/loads.h"
-#include "solid/solid.h"
 #include "water/water.h"
 
 namespace argil::sim {

@@ -3,6 +3,7 @@
 #include "sim/body_side.h"
 #include "sim/hand_side.h"
 #include "sim/tick.h"
+#include "solid/move.h"
 
 namespace argil::sim {
 
@@ -46,9 +47,9 @@ StepStatus BodySide::find_velocity(const ContactLoad& load) {
 }
 
 StepStatus BodySide::move_solid(const ContactLoad& load, StepResult& result) {
-  apply_deflection(load, result.felt);  // what contacts lose as the body moves on
-  scale_velocity(load.patch);           // v ← G_d^{h/h_ref} v (eq. 9)
-  m_solid.move(m_state.solid);          // x ← x̂ + τ v'
+  apply_deflection(load, result.felt);                   // what contacts lose as the body moves on
+  scale_velocity(load.patch);                            // v ← G_d^{h/h_ref} v (eq. 9)
+  solid::move(m_solid, m_region.part(), m_state.solid);  // x ← x̂ + τ v'
   ARGIL_TRY(check_energy());
   ARGIL_TRY(update_kinematics());  // F → R → ε
   flow();                          // ε_p

@@ -31,6 +31,7 @@ bool wants_region(const Model& model) {
 
 ActiveRegion::ActiveRegion(Body& body) : m_body(body), m_whole(body.model), m_part(body.model) {
   if (wants_region(body.model)) make();
+  commit();
 }
 
 void ActiveRegion::make() {
@@ -75,6 +76,7 @@ void ActiveRegion::wake_all() {
 
 void ActiveRegion::sleep_all() {
   if (m_active) m_active->sleep_all();
+  m_body.is_state_changed = true;  // it loses its speed
 }
 
 void ActiveRegion::wake_tet(int tet) {

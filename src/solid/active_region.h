@@ -27,7 +27,7 @@ class ActiveRegion {
   double held_back() const { return m_past.held_back; }
 
   void wake_all();
-  void sleep_all();  ///< those that are awake, until something acts
+  void sleep_all();  ///< those that are awake, until something acts; the state has no speed any more
   void wake_tet(int tet);
 
   /// The body was set from outside: what nodes and tets that sleep have is not known.

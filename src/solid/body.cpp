@@ -27,6 +27,7 @@ Body::Body(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vecto
   if (may_lag_further(*this)) make_room_for_lag(*this);
   history.solver = linear::make_solver(
       params.iteration == Iteration::newton ? make_exact(params.solver) : params.solver, threads);
+  history.commit(system.has_nodal_blocks(materials));
 }
 
 SolidState make_rest_state(const Model& model) {

@@ -34,6 +34,7 @@ struct Body {
   EnergySums energies;
   Scratch scratch;
   SolverHistory history;
+  bool is_state_changed = false;  ///< the state may be another than the committed one
 
   bool is_newton() const { return prediction.is_static || model.params.iteration == Iteration::newton; }
   bool is_explicit() const {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "solid/body.h"
+
 namespace argil::solid {
 
 void ContactActivity::start(std::size_t count) {
@@ -65,6 +67,19 @@ void add_contact_product(const StepContacts& contacts, const ContactActivity& ac
 
 void spread(const PointStiffness& contact, const Vec3& f, Points& force) {
   for (std::size_t i = 0; i < contact.count(); ++i) force.col(contact.vertex[i]) += contact.weight[i] * f;
+}
+
+Vec3 compute_contact_change(const Body& body, std::span<const PointStiffness> contacts, std::size_t i) {
+  const SolidParams& params = body.model.params;
+  if (!params.implicit_contact || body.is_explicit()) return Vec3::Zero();
+  // Newmark's step takes the mean of both ends.
+  const double share = params.integrator == Integrator::newmark ? 0.5 : 1.0;
+  return -share * body.step_contacts(contacts).compute_fall(i, body.trial.x, body.contacts);
+}
+
+void apply_contact_stiffness(const Body& body, std::span<const PointStiffness> contacts, Points& force) {
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    spread(contacts[i], compute_contact_change(body, contacts, i), force);
 }
 
 }  // namespace argil::solid

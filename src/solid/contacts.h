@@ -7,6 +7,8 @@
 
 namespace argil::solid {
 
+struct Body;
+
 /// Which contacts act in the present step. Lists: at the number of each group's first entry.
 struct ContactActivity {
   std::vector<char> acts;
@@ -42,5 +44,13 @@ void add_contact_product(const StepContacts& contacts, const ContactActivity& ac
 
 /// force += f, shared among the nodes that the contact presses.
 void spread(const PointStiffness& contact, const Vec3& f, Points& force);
+
+/// How the force of contact i, of which a step was told, changed while the body moved: what to add [N] for
+/// the force that acted. An implicit step takes it at its end, f − k n n·(x' − x), or 0 where it let it go;
+/// newmark takes the mean of both ends.
+Vec3 compute_contact_change(const Body& body, std::span<const PointStiffness> contacts, std::size_t i);
+
+/// Turns the contact forces that were given to a step into those that acted.
+void apply_contact_stiffness(const Body& body, std::span<const PointStiffness> contacts, Points& force);
 
 }  // namespace argil::solid

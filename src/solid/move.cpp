@@ -34,4 +34,10 @@ void move(const Body& body, const Part& part, SolidState& state) {
   for (const auto& [n, k] : body.model.placed_components) state.x(k, n) = step.held_x(k, n);
 }
 
+void keep_start(const Body& body, SolidState& state) {
+  if (body.model.params.integrator != Integrator::bdf2) return;
+  state.x_before = body.committed.x;
+  state.v_before = body.committed.v;
+}
+
 }  // namespace argil::solid

@@ -23,4 +23,7 @@ void take_velocity(const Body& body, const Part& part, SolidState& state);
 /// x ← x̂ + τ v; prescribed components go where they must.
 void move(const Body& body, const Part& part, SolidState& state);
 
+/// Of a step that is made, what bdf2 must remember.
+void keep_start(const Body& body, SolidState& state);
+
 }  // namespace argil::solid

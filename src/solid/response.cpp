@@ -12,6 +12,7 @@ namespace argil::solid {
 
 void prepare_response(Body& body, const Part& part, const SolidState& state, double step_s) {
   ARGIL_ASSERT(!body.is_explicit());
+  body.plastic_strain = &state.plastic_strain;
   store_nodal_stiffness(body.model, body.materials, body.system);  // its solves are exact ones
   body.prediction.is_static = false;
   body.prediction.tau = find_tau(body.model, state, step_s);
@@ -19,6 +20,9 @@ void prepare_response(Body& body, const Part& part, const SolidState& state, dou
   keep_damping_frame(body);
   update_volume_change(body.strained(), body.forces.volume);
   assemble_matrix(body, part, {});
+  // Between two steps that is no part of one that might be taken back.
+  if (!body.is_state_changed)
+    body.history.committed.has_nodal_blocks = body.system.has_nodal_blocks(body.materials);
 }
 
 StepStatus find_response(Body& body, const Part& part, const Points& force, Tick tick, Points& displacement) {

@@ -32,15 +32,16 @@ struct SolverHistory {
   FrameLag frame_lag;
   StepCounters counters;
 
-  /// Solves since the last commit count from now on; or they never were. `pattern`: of the system's matrix.
-  void commit();
+  /// Solves since the last commit count from now on; or they never were. `has_nodal_blocks`: p1_nodal, the
+  /// matrix holds the nodes' stiffness. `pattern`: of the system's matrix.
+  void commit(bool has_nodal_blocks);
   void roll_back(const linear::BlockMatrix& pattern);
 
   struct {
     FrameLag frame_lag;
     StepCounters counters;
     bool has_response_solver = false;
-    bool has_nodal_blocks = false;  ///< p1_nodal: the matrix held the nodes' stiffness
+    bool has_nodal_blocks = false;
   } committed;
 };
 

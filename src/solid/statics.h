@@ -11,7 +11,7 @@ struct Body;
 
 /// Static equilibrium of the whole body under `loads` from state.x on: the limit of a step without mass, by
 /// Newton's method. Loads and prescribed displacements are applied in shares where they do not converge at
-/// once; state.x then holds the last share that did.
+/// once; state.x then holds the last share that did. All of the body is to be awake.
 StepStatus find_equilibrium(Body& body, const Part& whole, const StepLoads& loads, SolidState& state);
 
 }  // namespace argil::solid

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solid/committed.h"
 #include "solid/frame_lag.h"
 #include "solid/matrix.h"
+#include "solid/move.h"
 #include "solid/newton.h"
 #include "solid/solve.h"
 
@@ -102,6 +104,18 @@ StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loa
 
 }  // namespace
 
+StepStatus update_kinematics(Body& body, const ActiveRegion& region, const Points& x, Tick tick) {
+  const FrameUpdate frames{find_frame_tolerance(body), false};
+  return update_kinematics(body, region.start_part(), x, frames, tick);
+}
+
+StepStatus begin_step(Body& body, ActiveRegion& region, const SolidState& state, const StepLoads& loads,
+                      const StepTime& time) {
+  set_start(body, region, state);
+  const bool has_moved = predict(body, region.part(), loads, time.length, time.end);
+  return has_moved ? update_kinematics(body, region, body.trial.x, time.tick) : StepStatus::ok();
+}
+
 bool assemble(Body& body, ActiveRegion& region, const StepLoads& loads) {
   if (body.is_newton() && !body.is_explicit()) return assemble_newton(body, region.part(), loads);
   region.wake(loads);
@@ -111,6 +125,15 @@ bool assemble(Body& body, ActiveRegion& region, const StepLoads& loads) {
   assemble_matrix(body, region.part(), loads.contacts);
   region.grow_by_speed(loads);
   return false;
+}
+
+double compute_imbalance(const Body& body, const ActiveRegion& region, const StepLoads& loads) {
+  const Field& mass = body.materials.mass();
+  return std::sqrt(region.part().nodes.sum(mass.size(), [&](std::ptrdiff_t n) {
+    if (!region.is_awake(n)) return 0.0;
+    const Vec3 momentum_rate = mass(n) / body.prediction.tau * body.committed.v.col(n);
+    return (find_imbalance(body, loads, n) + momentum_rate).squaredNorm();
+  }));
 }
 
 StepStatus solve(Body& body, ActiveRegion& region, const StepLoads& loads, Tick tick, bool& solved) {

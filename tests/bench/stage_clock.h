@@ -70,7 +70,7 @@ void measure_steps(benchmark::State& state, sim::Simulation& simulation, Step st
       state.SkipWithError(fault.c_str());
       break;
     }
-    iterations += simulation.solid().counters().linear_iterations;
+    iterations += simulation.solid().history.counters.linear_iterations;
     contacts += static_cast<double>(simulation.contacts().contacts.size());
   }
   simulation.observe_stages(nullptr);

@@ -47,7 +47,7 @@ Points make_end_traction(const Scene& scene, double offset, const Vec3& traction
   solid::Loads loads;
   loads.pressure.push_back(unit);
   const Points inward =
-      compute_load_force(scene.solid.elements(), mesh::make_topology(scene.mesh).boundary, loads);
+      compute_load_force(scene.solid.model.elements, mesh::make_topology(scene.mesh).boundary, loads);
   return traction * inward.colwise().norm();
 }
 
@@ -177,7 +177,7 @@ double solve_torsion(ElementKind element, int n) {
   double torque = 0.0;
   for (int v = 0; v < rest.cols(); ++v)
     if (rest(0, v) > 2.0 - 1e-9) {
-      const Vec3 f = scene.solid.internal_force().col(v);
+      const Vec3 f = scene.solid.forces.internal.col(v);
       torque += (rest(1, v) - 0.5) * f(2) - (rest(2, v) - 0.5) * f(1);
     }
   return torque / (0.5 * twist);  // rate of twist: the ends turn by ±twist/2 over the length 2
@@ -233,7 +233,7 @@ FieldErrors solve_manufactured(ElementKind element, double nu, int n) {
     for (const double offset : {0.0, 1.0}) supports.push_back(hold_plane(axis, offset));
   Scene scene(test::make_irregular_block(n, n, n, Vec3::Ones(), 0.12), supports, make_static_params(element),
               2.0 * exact.mu * (1.0 + nu), nu);
-  const solid::Elements& e = scene.solid.elements();
+  const solid::Elements& e = scene.solid.model.elements;
   for_each_point(e, [&](int t, const Vec3& x, double weight, const Shapes& s) {
     for (int i = 0; i < e.nodes_per_tet; ++i)
       scene.load.col(e.nodes(i, t)) += weight * s.value(i) * exact.force(x);
@@ -267,7 +267,8 @@ std::vector<double> find_frequencies(ElementKind element, double nu, int n, int 
     x(j % 3, j / 3) += 1e-3;
     const Points f = 1e3 * scene.compute_force(x);
     for (Eigen::Index i = 0; i < size; ++i)
-      A(i, j) = f(i % 3, i / 3) / std::sqrt(scene.solid.mass()(i / 3) * scene.solid.mass()(j / 3));
+      A(i, j) = f(i % 3, i / 3) /
+                std::sqrt(scene.solid.materials.mass()(i / 3) * scene.solid.materials.mass()(j / 3));
   }
   const Eigen::VectorXd squares = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A).eigenvalues();
   std::vector<double> found;
@@ -292,14 +293,14 @@ Scene make_spinning_bar(solid::Integrator integrator, solid::Iteration iteration
 }
 
 double compute_energy(const Scene& scene) {
-  return scene.solid.compute_kinetic_energy(scene.state) +
-         scene.solid.compute_elastic_energy(scene.state.plastic_strain);
+  return solid::compute_kinetic_energy(scene.solid.materials, scene.region.part(), scene.state.v) +
+         scene.compute_elastic_energy();
 }
 
 Vec3 compute_momentum(const Scene& scene) {
   Vec3 sum = Vec3::Zero();
   for (int v = 0; v < scene.num_nodes(); ++v)
-    sum += scene.solid.mass()(v) * (scene.state.x.col(v) - kSpinCentre).cross(scene.state.v.col(v));
+    sum += scene.solid.materials.mass()(v) * (scene.state.x.col(v) - kSpinCentre).cross(scene.state.v.col(v));
   return sum;
 }
 
@@ -329,7 +330,7 @@ SpinDrift compute_rigid_spin(int steps) {
   const Points arm = scene.rest().colwise() - kSpinCentre;
   return turn_once(scene, steps, [&](double h) {
     const Points aim = (scene.state.x + h * scene.state.v).colwise() - kSpinCentre;
-    const Eigen::JacobiSVD<Mat3> svd(aim * scene.solid.mass().asDiagonal() * arm.transpose(),
+    const Eigen::JacobiSVD<Mat3> svd(aim * scene.solid.materials.mass().asDiagonal() * arm.transpose(),
                                      Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Points next = (svd.matrixU() * svd.matrixV().transpose() * arm).colwise() + kSpinCentre;
     scene.state.v = (next - scene.state.x) / h;

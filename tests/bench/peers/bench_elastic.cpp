@@ -15,7 +15,9 @@
 #include "mesh/order.h"
 #include "mesh/topology.h"
 #include "mesh_files/readers.h"
-#include "solid/solid.h"
+#include "solid/material_changes.h"
+#include "solid/move.h"
+#include "solid/step_solver.h"
 
 namespace argil {
 namespace {
@@ -42,12 +44,13 @@ StepStatus run(const mesh::TetMesh& mesh, double tolerance, int num_steps, int t
   params.solver.tolerance = tolerance;
   solid::Support bottom;
   bottom.region.kind = solid::Region::Kind::plane;
-  solid::Solid solid(mesh, mesh::make_topology(mesh), {bottom}, params, threads);
+  solid::Body solid(mesh, mesh::make_topology(mesh), {bottom}, params, threads);
+  solid::ActiveRegion region(solid);
   const double mu = kYoung / (2.0 * (1.0 + kPoisson));
   const double lambda = 2.0 * mu * kPoisson / (1.0 - 2.0 * kPoisson);
-  for (int t = 0; t < mesh.num_tets(); ++t) solid.set_material(t, {lambda, mu, 0.0});
-  solid::SolidState state = solid.make_rest_state();
-  ARGIL_TRY(solid.update_kinematics(state.x, 0));
+  for (int t = 0; t < mesh.num_tets(); ++t) solid::set_material(solid, region, t, {lambda, mu, 0.0});
+  solid::SolidState state = solid::make_rest_state(solid.model);
+  ARGIL_TRY(solid::update_kinematics(solid, region, state.x, 0));
   std::this_thread::sleep_for(
       std::chrono::milliseconds(300));  // until threads that libraries start have come to rest
   Points force = Points::Zero(3, state.x.cols());
@@ -56,22 +59,22 @@ StepStatus run(const mesh::TetMesh& mesh, double tolerance, int num_steps, int t
   int iterations = 0;
   for (int k = 1; k <= num_steps; ++k) {
     const double time = k * kStep;
-    force.row(2) = -std::min(1.0, time / kRamp) * kForce * weigh(solid.elements().rest, time).transpose();
+    force.row(2) = -std::min(1.0, time / kRamp) * kForce * weigh(solid.model.elements.rest, time).transpose();
     const auto begin = std::chrono::steady_clock::now();
-    ARGIL_TRY(solid.begin_step(state, loads, kStep, time, k));
+    ARGIL_TRY(solid::begin_step(solid, region, state, loads, {kStep, time, k}));
     for (bool solved = false; !solved;) {
-      solved = solid.assemble(loads);
-      if (!solved) ARGIL_TRY(solid.solve(loads, k, solved));
+      solved = solid::assemble(solid, region, loads);
+      if (!solved) ARGIL_TRY(solid::solve(solid, region, loads, k, solved));
     }
-    solid.finish_step(state);
-    solid.move(state);
-    ARGIL_TRY(solid.update_kinematics(state.x, k));
+    solid::take_velocity(solid, region.part(), state);
+    solid::move(solid, region.part(), state);
+    ARGIL_TRY(solid::update_kinematics(solid, region, state.x, k));
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    iterations += solid.counters().linear_iterations;
+    iterations += solid.history.counters.linear_iterations;
   }
   std::sort(seconds.begin(), seconds.end());
-  const double down =
-      weigh(solid.elements().rest, 0.0).dot((state.x - solid.elements().rest).row(2).transpose().matrix());
+  const double down = weigh(solid.model.elements.rest, 0.0)
+                          .dot((state.x - solid.model.elements.rest).row(2).transpose().matrix());
   std::printf("%d,%d,%g,%.3f,%.3f,%.1f,%.6g\n", mesh.num_tets(), threads, tolerance,
               1e3 * seconds[seconds.size() / 2], 1e3 * seconds.front(),
               static_cast<double>(iterations) / num_steps, 1e3 * down);

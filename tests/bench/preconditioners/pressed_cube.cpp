@@ -11,7 +11,9 @@
 #include "mesh/topology.h"
 #include "shapes/shapes.h"
 #include "solid/element.h"
-#include "solid/solid.h"
+#include "solid/material_changes.h"
+#include "solid/move.h"
+#include "solid/step_solver.h"
 
 namespace argil::bench {
 namespace {
@@ -30,15 +32,15 @@ struct Rows {
   linear::BlockMatrix pattern;
 };
 
-Rows number_rows(const solid::Solid& solid) {
-  const solid::Elements& elements = solid.elements();
+Rows number_rows(const solid::Body& solid) {
+  const solid::Elements& elements = solid.model.elements;
   std::vector<int> nodes(static_cast<std::size_t>(elements.num_nodes()));
   std::iota(nodes.begin(), nodes.end(), 0);
   mesh::sort_along_curve(elements.rest, nodes);
   Rows rows;
   rows.of_node.assign(nodes.size(), -1);
   for (const int node : nodes) {
-    if (!solid.constraints().is_free(node)) continue;
+    if (!solid.model.constraints.is_free(node)) continue;
     rows.of_node[static_cast<std::size_t>(node)] = static_cast<int>(rows.node.size());
     rows.node.push_back(node);
   }
@@ -55,8 +57,8 @@ Rows number_rows(const solid::Solid& solid) {
 }
 
 /// A = M + h² K with the rotations at x; h f_int (a column a row) besides.
-linear::BlockMatrix assemble(const solid::Solid& solid, const Rows& rows, const Points& x, Points& impulse) {
-  const solid::Elements& elements = solid.elements();
+linear::BlockMatrix assemble(const solid::Body& solid, const Rows& rows, const Points& x, Points& impulse) {
+  const solid::Elements& elements = solid.model.elements;
   const Mat6 C = solid::make_isotropic_stiffness(kLambda, kMu);
   const solid::Elasticity elasticity{kLambda, kMu};
   linear::BlockMatrix matrix = rows.pattern;
@@ -83,7 +85,7 @@ linear::BlockMatrix assemble(const solid::Solid& solid, const Rows& rows, const 
   }
   for (int row = 0; row < matrix.num_rows(); ++row)
     matrix.block(matrix.diagonal[static_cast<std::size_t>(row)]).diagonal().array() +=
-        solid.mass()(rows.node[static_cast<std::size_t>(row)]);
+        solid.materials.mass()(rows.node[static_cast<std::size_t>(row)]);
   return matrix;
 }
 
@@ -96,15 +98,16 @@ Field weigh(const Points& rest) {
   return weight / weight.sum();
 }
 
-StepStatus step(solid::Solid& solid, const solid::StepLoads& loads, int k, solid::SolidState& state) {
-  ARGIL_TRY(solid.begin_step(state, loads, kStep, k * kStep, k));
+StepStatus step(solid::Body& solid, solid::ActiveRegion& region, const solid::StepLoads& loads, int k,
+                solid::SolidState& state) {
+  ARGIL_TRY(solid::begin_step(solid, region, state, loads, {kStep, k * kStep, k}));
   for (bool solved = false; !solved;) {
-    solved = solid.assemble(loads);
-    if (!solved) ARGIL_TRY(solid.solve(loads, k, solved));
+    solved = solid::assemble(solid, region, loads);
+    if (!solved) ARGIL_TRY(solid::solve(solid, region, loads, k, solved));
   }
-  solid.finish_step(state);
-  solid.move(state);
-  return solid.update_kinematics(state.x, k);
+  solid::take_velocity(solid, region.part(), state);
+  solid::move(solid, region.part(), state);
+  return solid::update_kinematics(solid, region, state.x, k);
 }
 
 Points rows_of(const Rows& rows, const Points& of_nodes) {
@@ -136,18 +139,19 @@ StepSystem make_pressed_cube(int target_tets) {
   params.solver.tolerance = 1e-10;
   solid::Support bottom;
   bottom.region.kind = solid::Region::Kind::plane;
-  solid::Solid solid(mesh, mesh::make_topology(mesh), {bottom}, params, 1);
-  for (int t = 0; t < mesh.num_tets(); ++t) solid.set_material(t, {kLambda, kMu, 0.0});
+  solid::Body solid(mesh, mesh::make_topology(mesh), {bottom}, params, 1);
+  solid::ActiveRegion region(solid);
+  for (int t = 0; t < mesh.num_tets(); ++t) solid::set_material(solid, region, t, {kLambda, kMu, 0.0});
 
   const Rows rows = number_rows(solid);
-  const Field weight = weigh(solid.elements().rest);
-  solid::SolidState state = solid.make_rest_state();
+  const Field weight = weigh(solid.model.elements.rest);
+  solid::SolidState state = solid::make_rest_state(solid.model);
   Points force = Points::Zero(3, state.x.cols());
   Points impulse;
   StepSystem system;
   system.num_tets = mesh.num_tets();
-  system.rest = rows_of(rows, solid.elements().rest);
-  StepStatus status = solid.update_kinematics(state.x, 0);
+  system.rest = rows_of(rows, solid.model.elements.rest);
+  StepStatus status = solid::update_kinematics(solid, region, state.x, 0);
   for (int k = 1; k <= kSteps && status.is_ok(); ++k) {
     force.row(2) = -kGrowth * k * kStep * weight.transpose();
     if (k == kSteps - kEarlier) system.before = assemble(solid, rows, state.x, impulse);
@@ -157,11 +161,11 @@ StepSystem make_pressed_cube(int target_tets) {
       Points product(3, speed.cols());
       linear::MatrixOperator(system.matrix, 1).multiply(speed, product);
       for (Eigen::Index row = 0; row < speed.cols(); ++row)
-        product.col(row) -= solid.mass()(rows.node[static_cast<std::size_t>(row)]) * speed.col(row);
+        product.col(row) -= solid.materials.mass()(rows.node[static_cast<std::size_t>(row)]) * speed.col(row);
       system.b = kStep * rows_of(rows, force) - impulse - product;
     }
     const Points speed = state.v;
-    status = step(solid, {force}, k, state);
+    status = step(solid, region, {force}, k, state);
     if (k == kSteps) system.off = compare(system, rows_of(rows, state.v - speed));
   }
   ARGIL_ASSERT(status.is_ok());

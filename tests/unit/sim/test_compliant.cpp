@@ -102,9 +102,9 @@ TEST(CompliantSkin, UnderTheBoundaryGivesTheBodyWhatTheHandFeels) {
     for (int k = 1; k <= 100 * kPeriod; ++k)
       ASSERT_TRUE(simulation.tick(slide(0.02 - 2e-6 * std::min(k, 1000) - 0.001, 2e-6 * k)).is_ok());
     Vec3 borne = Vec3::Zero();  // by the held nodes of the base
-    const Points& internal = simulation.solid().internal_force();
+    const Points& internal = simulation.solid().forces.internal;
     for (Eigen::Index v = 0; v < internal.cols(); ++v)
-      if (simulation.solid().elements().rest(2, v) < 1e-9) borne += internal.col(v);
+      if (simulation.solid().model.elements.rest(2, v) < 1e-9) borne += internal.col(v);
     const Vec3 felt = simulation.hand_state().hand_force;
     EXPECT_GT(felt.z(), 0.05);
     EXPECT_LT((borne - felt).norm(), 2e-2 * felt.norm()) << borne.transpose() << " | " << felt.transpose();

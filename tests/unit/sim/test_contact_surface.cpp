@@ -153,7 +153,7 @@ TEST(Skin, AFreeBodyTakesUpTheMomentumThatTheHandGives) {
       ASSERT_TRUE(simulation.tick(sample).is_ok());
       impulse -= params.rates.haptic_period * simulation.hand_state().hand_force;
     }
-    const Vec3 momentum = simulation.body_state().solid.v * simulation.solid().mass();
+    const Vec3 momentum = simulation.body_state().solid.v * simulation.solid().materials.mass();
     EXPECT_LT(momentum.z(), -1e-5);
     EXPECT_EQ(momentum.x() > 1e-6, friction > 0.0) << momentum.transpose();
     EXPECT_LT((momentum - impulse).norm(), 1e-12 * impulse.norm() + 1e-17) << damping << ' ' << friction;
@@ -180,7 +180,7 @@ TEST(Skin, AFreeBodyTakesUpTheAngularMomentumThatTheHandGives) {
       ASSERT_TRUE(simulation.tick(sample).is_ok());
       Vec3 momentum = Vec3::Zero();
       for (Eigen::Index v = 0; v < X.cols(); ++v)
-        momentum += simulation.solid().mass()(v) *
+        momentum += simulation.solid().materials.mass()(v) *
                     (X.col(v) - sample.position).cross(Vec3(simulation.body_state().solid.v.col(v)));
       const double h = params.rates.haptic_period;
       const HandState& state = simulation.hand_state();

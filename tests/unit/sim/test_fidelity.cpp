@@ -189,8 +189,8 @@ Comparison compare(Hand hand, Tick num_ticks) {
       result.kick = std::max(result.kick, (error - last_error).norm() / record.bound);
     }
     if (record.rung == Rung::solved) {
-      rows += lean.solid().counters().assembled_rows;
-      all_rows += full.solid().counters().assembled_rows;
+      rows += lean.solid().history.counters.assembled_rows;
+      all_rows += full.solid().history.counters.assembled_rows;
     }
     result.asleep += record.rung == Rung::asleep;
     result.coasting += record.rung == Rung::coasting;
@@ -341,7 +341,7 @@ TEST(FidelityAuto, AFreeBodyFallsAndIsNotPutToSleep) {
     ASSERT_TRUE(simulation.tick(hand_over(0.05)).is_ok());
     EXPECT_NE(simulation.physics_record().fidelity.rung, Rung::asleep) << k;
   }
-  const double mass = simulation.solid().mass().sum();
+  const double mass = simulation.solid().materials.mass().sum();
   const double ways = 0.5 * 1e-6 * kSteps * (kSteps + 1);  // h² k (k + 1)/2
   const double fall = (start - simulation.body_state().solid.x).row(2).mean();
   EXPECT_NEAR(fall, 9.81 * ways, 0.02 / mass * ways);

@@ -70,7 +70,7 @@ TEST(HandForce, NeverDrawsOnABodyThatLeaves) {
     params.solid.density = 7e3 * period * period;  // the penalty's frequency is about half a radian a step
     const double h = 1e-3 * period;
     Simulation simulation = test::make_one_node_simulation(params);
-    const double m = simulation.solid().mass()(3);
+    const double m = simulation.solid().materials.mass()(3);
     double d = 0.0, v = 0.0;
     int num_let_go = 0, num_pressing = 0;
     for (int frame = 1; frame <= 3000; ++frame) {

@@ -91,7 +91,7 @@ TEST(LateSteps, FreeBodyTakesUpTheMeanForceOfTheTicksForOneStep) {
     ticks = 0;
     ++steps;
   }
-  const Vec3 momentum = simulation.body_state().solid.v * simulation.solid().mass();
+  const Vec3 momentum = simulation.body_state().solid.v * simulation.solid().materials.mass();
   EXPECT_LT(momentum.z(), -1e-5);
   EXPECT_LT((momentum - impulse).norm(), 1e-12 * impulse.norm());
 }

@@ -57,7 +57,7 @@ TEST(Simulation, BodyTakesUpTheMomentumThatTheHandGives) {
       ASSERT_TRUE(simulation.tick(over(0.001 - 5e-5 * k, device::ToolMode::push)).is_ok());
       impulse -= params.rates.haptic_period * simulation.hand_state().hand_force;
     }
-    const Vec3 momentum = simulation.body_state().solid.v * simulation.solid().mass();
+    const Vec3 momentum = simulation.body_state().solid.v * simulation.solid().materials.mass();
     EXPECT_LT(momentum.z(), -1e-5);
     EXPECT_LT((momentum - impulse).norm(), 1e-12 * impulse.norm() + 1e-17);
   }

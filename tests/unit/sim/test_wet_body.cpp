@@ -243,7 +243,7 @@ TEST(WaterMass, AddsToTheClaysAndHangsOnIt) {
       params.water.adds_mass = adds;
       Simulation simulation = make_simulation(make_bar(0.8), params);
       const double density = params.solid.density + (adds ? 0.8 * 0.4 * 1000.0 : 0.0);
-      EXPECT_NEAR(simulation.solid().mass().sum(), density * kLength * kWidth * kWidth, 1e-15);
+      EXPECT_NEAR(simulation.solid().materials.mass().sum(), density * kLength * kWidth * kWidth, 1e-15);
       ASSERT_TRUE(simulation.find_equilibrium().is_ok());
       longer[adds] = find_corner(simulation).x() - kLength;
       const double expected = density * 9.81 * kLength * kLength / (2.0 * 1e5);
@@ -314,7 +314,7 @@ TEST(Rest, AWetToolLeavesAnUntouchedBodyInPlaceBitForBit) {
   EXPECT_GT(simulation.hand_state().hand_force.z(), 0.01);
   EXPECT_GT(simulation.pore_water().mass(), 1e-6);
   EXPECT_TRUE(simulation.body_state().is_at_rest);
-  EXPECT_EQ(simulation.body_state().solid.x, simulation.solid().elements().rest);
+  EXPECT_EQ(simulation.body_state().solid.x, simulation.solid().model.elements.rest);
 }
 
 TEST(Rest, ContactTakesTheBodyFromWhereTheLastDetectionLeftIt) {

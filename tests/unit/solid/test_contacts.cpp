@@ -68,7 +68,7 @@ TEST(Contacts, LetGoOrActAsTheOnlySetThatAgreesWithItself) {
       Rng rng(3);
       for (int round = 0; round < 100; ++round) {
         Scene scene = make_point_mass(integrator, iteration);
-        const double mass = scene.solid.mass()(kNode);
+        const double mass = scene.solid.materials.mass()(kNode);
         std::vector<PointStiffness> contacts;
         for (int j = 0; j < 3; ++j) contacts.push_back(make_contact(rng, mass, j));
         const Vec3 v = scene.state.v.col(kNode) = draw_vector(rng, 0.03);
@@ -91,7 +91,7 @@ TEST(Contacts, LetGoOrActAsTheOnlySetThatAgreesWithItself) {
         const Vec3 after = scene.state.v.col(kNode);
         EXPECT_LT((after - *wanted).norm(), 1e-9) << round;
         // The books: what is said to have acted is what changed the momentum.
-        scene.solid.apply_contact_stiffness(contacts, force);
+        apply_contact_stiffness(scene.solid, contacts, force);
         EXPECT_LT((kStep * force.col(kNode) - mass * (after - v)).norm(), 1e-9 * mass) << round;
       }
     }
@@ -103,7 +103,7 @@ TEST(Contacts, FrictionGoesWithTheContactThatCarriesIt) {
   // A mass that leaves upwards: neither its contact nor the spring of sticking holds it.
   for (const double speed : {-0.1, 0.1}) {
     Scene scene = make_point_mass(Integrator::backward_euler, Iteration::one);
-    const double mass = scene.solid.mass()(kNode);
+    const double mass = scene.solid.materials.mass()(kNode);
     const double k = mass / (kStep * kStep);
     PointStiffness normal{
         {kNode, -1, -1}, {1.0, 0.0, 0.0}, Vec3::UnitZ(), k, mass * Vec3(0.3, 0.0, 1.0), 0, true};
@@ -123,13 +123,13 @@ TEST(Contacts, FrictionGoesWithTheContactThatCarriesIt) {
 TEST(Contacts, WithoutAChangeOfSignTheyCostNoSecondSolve) {
   for (const double speed : {-0.1, 0.1}) {
     Scene scene = make_point_mass(Integrator::backward_euler, Iteration::one);
-    const double mass = scene.solid.mass()(kNode);
+    const double mass = scene.solid.materials.mass()(kNode);
     const PointStiffness contact{
         {kNode, -1, -1}, {1.0, 0.0, 0.0}, Vec3::UnitZ(), 1e4 * mass, mass * Vec3::UnitZ(), 0, true};
     scene.state.v(2, kNode) = speed;
     scene.load.col(kNode) = contact.force;
     ASSERT_TRUE(scene.solve(kStep, std::span(&contact, 1)).is_ok());
-    EXPECT_EQ(scene.solid.counters().newton_iterations, speed > 0.0 ? 2 : 1);
+    EXPECT_EQ(scene.solid.history.counters.newton_iterations, speed > 0.0 ? 2 : 1);
   }
 }
 

@@ -61,12 +61,13 @@ TEST(FindEquilibrium, OfASoftBarBesideAStiffOneIsTheClosedForm) {
         for (int t = 0; t < mesh.num_tets(); ++t) {
           double middle = 0.0;
           for (int i = 0; i < 4; ++i) middle += 0.25 * mesh.vertices(0, mesh.tets(i, t));
-          scene.solid.set_material(t, test::make_material(middle < 0.5 * kLength ? 1e5 * ratio : 1e5, 0.0));
+          set_material(scene.solid, scene.region, t,
+                       test::make_material(middle < 0.5 * kLength ? 1e5 * ratio : 1e5, 0.0));
         }
         const std::vector<int> tip = find_end(mesh, kLength);
         // Consistent nodal forces of a uniform pull: a third of the area of the triangles around each node.
-        for (Eigen::Index f = 0; f < scene.solid.elements().surface.cols(); ++f) {
-          const auto face = scene.solid.elements().surface.col(f);
+        for (Eigen::Index f = 0; f < scene.solid.model.elements.surface.cols(); ++f) {
+          const auto face = scene.solid.model.elements.surface.col(f);
           bool is_tip = true;
           for (int k = 0; k < 3; ++k) is_tip = is_tip && std::abs(mesh.vertices(0, face(k)) - kLength) < 1e-9;
           for (int k = 0; k < 3 && is_tip; ++k) scene.load(0, face(k)) += pull * 0.5 * 0.05 * 0.05 / 3.0;
@@ -124,7 +125,7 @@ TEST(NodalVolumes, TakeAFactorOfAllTheirStiffnessInLongSteps) {
   for (int step = 0; step < 5; ++step) {
     ASSERT_TRUE(scene.step(0.1).is_ok());
     if (step == 0) continue;
-    EXPECT_LT(scene.solid.counters().linear_iterations,
+    EXPECT_LT(scene.solid.history.counters.linear_iterations,
               30);  // over a factor of the tets' own part: twice as many
   }
 }

@@ -39,15 +39,15 @@ struct Oscillator {
     }
     const Eigen::SelfAdjointEigenSolver<Mat3> modes(0.5 * (K + K.transpose()));
     direction = modes.eigenvectors().col(1);
-    omega = std::sqrt(modes.eigenvalues()(1) / scene.solid.mass()(7));
-    EXPECT_TRUE(scene.solid.update_kinematics(scene.state.x, 0).is_ok());
+    omega = std::sqrt(modes.eigenvalues()(1) / scene.solid.materials.mass()(7));
+    EXPECT_TRUE(update_kinematics(scene.solid, scene.region, scene.state.x, 0).is_ok());
   }
   double u() const { return direction.dot(scene.displacement().col(7)); }
   double v() const { return direction.dot(scene.state.v.col(7)); }
   void start(double u0, double v0) {
     scene.state.x.col(7) += u0 * direction;
     scene.state.v.col(7) = v0 * direction;
-    EXPECT_TRUE(scene.solid.update_kinematics(scene.state.x, 0).is_ok());
+    EXPECT_TRUE(update_kinematics(scene.solid, scene.region, scene.state.x, 0).is_ok());
   }
 };
 
@@ -139,7 +139,7 @@ TEST(Integrator, ExplicitStepIsStableBelowTwoOverTheLargestFrequencyAndNotAbove)
     // K by unit displacements, ω² the eigenvalues of M^-½ K M^-½ over the free nodes.
     std::vector<int> free;
     for (int n = 0; n < scene.num_nodes(); ++n)
-      if (scene.solid.constraints().is_free(n)) free.push_back(n);
+      if (scene.solid.model.constraints.is_free(n)) free.push_back(n);
     const auto size = static_cast<Eigen::Index>(3 * free.size());
     Eigen::MatrixXd A(size, size);
     for (Eigen::Index j = 0; j < size; ++j) {
@@ -148,8 +148,8 @@ TEST(Integrator, ExplicitStepIsStableBelowTwoOverTheLargestFrequencyAndNotAbove)
       const Points f = 1e4 * scene.compute_force(x);
       for (Eigen::Index i = 0; i < size; ++i)
         A(i, j) = f(i % 3, free[static_cast<std::size_t>(i / 3)]) /
-                  std::sqrt(scene.solid.mass()(free[static_cast<std::size_t>(i / 3)]) *
-                            scene.solid.mass()(free[static_cast<std::size_t>(j / 3)]));
+                  std::sqrt(scene.solid.materials.mass()(free[static_cast<std::size_t>(i / 3)]) *
+                            scene.solid.materials.mass()(free[static_cast<std::size_t>(j / 3)]));
     }
     const double omega = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A).eigenvalues()(size - 1));
     for (const double share : {0.995, 1.005}) {
@@ -233,13 +233,13 @@ TEST(ContactForce, ThatActedIsTheChangeOfMomentum) {
     params.solver.kind = linear::SolverKind::cholesky;
     Scene scene(test::make_block(1, 1, 1, Vec3(1, 1, 1)), {0, 1, 2, 3, 4, 5, 6}, params, 1e-9, 0.0);
     const double h = 0.01;
-    const double m = scene.solid.mass()(7);
+    const double m = scene.solid.materials.mass()(7);
     scene.state.v.col(7) = Vec3(0, 0, -2);
     scene.load(2, 7) = 30.0 * m;
     Points force = scene.load;
     const PointStiffness contact{{7, -1, -1}, {1.0, 0.0, 0.0}, Vec3::UnitZ(), 0.8 * m / (h * h)};
     ASSERT_TRUE(scene.solve(h, std::span(&contact, 1)).is_ok());
-    scene.solid.apply_contact_stiffness(std::span(&contact, 1), force);
+    apply_contact_stiffness(scene.solid, std::span(&contact, 1), force);
     EXPECT_NEAR(h * force(2, 7), m * (scene.state.v(2, 7) + 2.0), 1e-9 * m) << static_cast<int>(integrator);
   }
 }

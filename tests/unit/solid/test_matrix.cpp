@@ -23,10 +23,10 @@ Scene make_scene(StrainModel model) {
 }
 
 void change_three_tets(Scene& scene) {
-  scene.solid.set_material(kWet, test::make_material(3e4, 0.4));
-  scene.solid.set_swelling(kSwollen, 1.1);
-  scene.solid.set_water_mass(kHeavy, 1e-3);
-  ASSERT_TRUE(scene.solid.update_kinematics(scene.state.x, 0).is_ok());
+  set_material(scene.solid, scene.region, kWet, test::make_material(3e4, 0.4));
+  set_swelling(scene.solid, kSwollen, 1.1);
+  set_water_mass(scene.solid, kHeavy, 1e-3);
+  ASSERT_TRUE(update_kinematics(scene.solid, scene.region, scene.state.x, 0).is_ok());
 }
 
 std::vector<PointStiffness> make_contact(const Scene& scene) {
@@ -55,7 +55,7 @@ TEST_P(MatrixUpdate, LeavesTheMatrixThatANewBodyWouldHave) {
 
   ASSERT_TRUE(scene.solve(kStep).is_ok());
   ASSERT_TRUE(fresh.solve(kStep).is_ok());
-  EXPECT_EQ(fresh.solid.counters().assembled_rows, fresh.solid.num_free());
+  EXPECT_EQ(fresh.solid.history.counters.assembled_rows, fresh.solid.model.num_free());
   EXPECT_EQ((scene.state.v - fresh.state.v).cwiseAbs().maxCoeff(), 0.0);
 }
 
@@ -68,21 +68,21 @@ TEST(MatrixUpdate, GathersTheRowsAroundChangedTetsAlone) {
   Scene scene = make_scene(StrainModel::linear);
   ASSERT_TRUE(scene.step(kStep).is_ok());
   ASSERT_TRUE(scene.step(kStep).is_ok());
-  EXPECT_EQ(scene.solid.counters().assembled_rows, 0);
+  EXPECT_EQ(scene.solid.history.counters.assembled_rows, 0);
   change_three_tets(scene);
   std::set<int> rows;
   for (const int tet : {kWet, kSwollen, kHeavy})
     for (const int node : scene.mesh.tets.col(tet))
-      if (!scene.solid.constraints().is_held(node)) rows.insert(node);
+      if (!scene.solid.model.constraints.is_held(node)) rows.insert(node);
   ASSERT_TRUE(scene.step(kStep).is_ok());
-  EXPECT_EQ(scene.solid.counters().assembled_rows, static_cast<int>(rows.size()));
+  EXPECT_EQ(scene.solid.history.counters.assembled_rows, static_cast<int>(rows.size()));
 }
 
 TEST(MatrixUpdate, GathersAllRowsForAnotherStep) {
   Scene scene = make_scene(StrainModel::linear);
   ASSERT_TRUE(scene.step(kStep).is_ok());
   ASSERT_TRUE(scene.step(2.0 * kStep).is_ok());
-  EXPECT_EQ(scene.solid.counters().assembled_rows, scene.solid.num_free());
+  EXPECT_EQ(scene.solid.history.counters.assembled_rows, scene.solid.model.num_free());
 }
 
 TEST(Matrix, IsTakenAnewByASolverInFloatsWhereModuliChange) {
@@ -93,7 +93,7 @@ TEST(Matrix, IsTakenAnewByASolverInFloatsWhereModuliChange) {
     scene.load.col(20) = Vec3(1, 2, 3);
     EXPECT_TRUE(scene.step(0.05).is_ok());
     for (int t = 0; t < scene.mesh.num_tets(); ++t)
-      scene.solid.set_material(t, test::make_material(1e3, 0.3));
+      set_material(scene.solid, scene.region, t, test::make_material(1e3, 0.3));
     EXPECT_TRUE(scene.step(0.05).is_ok());
     return scene.displacement();
   };

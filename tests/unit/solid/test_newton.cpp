@@ -26,7 +26,7 @@ struct Pressed {
   explicit Pressed(const SolidParams& params)
       : scene(test::make_irregular_block(2, 2, 2, Vec3(0.2, 0.15, 0.1)), make_supports(params), params, 1e5,
               0.42) {
-    const Triangles& surface = scene.solid.elements().surface;
+    const Triangles& surface = scene.solid.model.elements.surface;
     for (const Eigen::Index f : {surface.cols() - 1, surface.cols() / 2}) {
       PointStiffness contact{
           {surface(0, f), surface(1, f), surface(2, f), -1}, {0.2, 0.5, 0.3}, Vec3(1, 2, -2) / 3.0, 3e4};
@@ -96,7 +96,7 @@ void give_history(History history, Scene& scene) {
   C.topLeftCorner<1, 1>() *= 3.0;
   C(3, 3) *= 0.3;
   C(2, 4) = C(4, 2) = 1e4;
-  for (int t = 0; t < scene.mesh.num_tets(); ++t) scene.solid.set_anisotropic_stiffness(t, C);
+  for (int t = 0; t < scene.mesh.num_tets(); ++t) set_stiffness(scene.solid, t, C);
 }
 
 /// Relative residual after one step of Newton's method from `distance` off the equilibrium.
@@ -113,7 +113,7 @@ double find_residual_near(SolidParams params, History history, double distance) 
   for (int n = 0; n < scene.num_nodes(); ++n)
     if (scene.rest()(0, n) > 1e-9)
       for (int k = 0; k < 3; ++k) scene.state.x(k, n) += distance * rng.uniform(-1.0, 1.0);
-  EXPECT_TRUE(scene.solid.update_kinematics(scene.state.x, 0).is_ok());
+  EXPECT_TRUE(update_kinematics(scene.solid, scene.region, scene.state.x, 0).is_ok());
   const StepStatus status = scene.step(1e4);
   EXPECT_FALSE(status.is_ok());
   return status.is_ok() ? 0.0 : status.failure().value;
@@ -193,7 +193,7 @@ TEST(Newton, FindsTheSameEquilibriumFromABadStart) {
       Scene bad = make_bar(params, 3.0);
       Rng rng(9);
       for (int n = 0; n < bad.num_nodes(); ++n)
-        if (bad.solid.constraints().is_free(n))
+        if (bad.solid.model.constraints.is_free(n))
           bad.state.x.col(n) += 0.006 * Vec3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
       ASSERT_TRUE(bad.find_equilibrium().is_ok());
       EXPECT_LT((bad.state.x - good.state.x).norm(), 1e-7 * good.displacement().norm())
@@ -217,7 +217,7 @@ TEST(Newton, DampedTurningBodyConverges) {
       const StepStatus status = scene.step(0.03);
       ASSERT_TRUE(status.is_ok()) << status.failure().quantity << status.failure().value;
     }
-    EXPECT_LT(scene.solid.counters().newton_iterations, 15);
+    EXPECT_LT(scene.solid.history.counters.newton_iterations, 15);
   }
 }
 
@@ -268,7 +268,7 @@ TEST(FindEquilibrium, CountsTheIterationsOfAllSharesOfTheLoad) {
   params.newton_max_iterations = 4;
   Scene scene = make_bar(params, 60.0);
   ASSERT_TRUE(scene.find_equilibrium().is_ok());
-  EXPECT_GT(scene.solid.counters().newton_iterations, params.newton_max_iterations + 1);
+  EXPECT_GT(scene.solid.history.counters.newton_iterations, params.newton_max_iterations + 1);
 }
 
 TEST(FindEquilibrium, ThatFailsKeepsTheLastShareOfTheLoad) {
@@ -284,7 +284,7 @@ TEST(FindEquilibrium, ThatFailsKeepsTheLastShareOfTheLoad) {
   EXPECT_LT(share, 1.0);
   double largest = 0.0;
   for (int n = 0; n < scene.num_nodes(); ++n)
-    if (scene.solid.constraints().is_free(n))
+    if (scene.solid.model.constraints.is_free(n))
       largest = std::max(largest, (force.col(n) - share * scene.load.col(n)).norm());
   EXPECT_LT(largest, 1e-8 * scene.load.norm());
 }

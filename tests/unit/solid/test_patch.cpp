@@ -55,8 +55,7 @@ class Patch : public testing::TestWithParam<PatchCase> {
   Scene make_scene(std::vector<Support> supports) {
     Scene scene(mesh, std::move(supports), params, kE, kNu);
     if (GetParam().is_anisotropic)
-      for (int t = 0; t < mesh.num_tets(); ++t)
-        scene.solid.set_anisotropic_stiffness(t, make_triclinic_stiffness());
+      for (int t = 0; t < mesh.num_tets(); ++t) set_stiffness(scene.solid, t, make_triclinic_stiffness());
     return scene;
   }
   Support place(int node, std::array<bool, 3> fixes = {true, true, true}) const {
@@ -108,9 +107,9 @@ TEST_P(Patch, DampedBodyComesToRestThere) {
   scene.state.x = F * elements.rest;
   Rng rng(3);
   for (int n = 0; n < scene.num_nodes(); ++n)
-    if (scene.solid.constraints().is_free(n))
+    if (scene.solid.model.constraints.is_free(n))
       scene.state.x.col(n) += 1e-3 * Vec3(rng.uniform(), rng.uniform(), rng.uniform());
-  ASSERT_TRUE(scene.solid.update_kinematics(scene.state.x, 0).is_ok());
+  ASSERT_TRUE(update_kinematics(scene.solid, scene.region, scene.state.x, 0).is_ok());
   for (int k = 0; k < 60; ++k) ASSERT_TRUE(scene.step(0.02).is_ok());
   EXPECT_LT(error(scene), kRounding);
   EXPECT_LT(scene.state.v.norm(), 1e-9);
@@ -206,7 +205,8 @@ TEST(PressureLoad, OnAllSidesIsHydrostaticStress) {
     pressure.pressure = 300.0;
     Loads loads;
     loads.pressure.push_back(pressure);
-    scene.load = compute_load_force(scene.solid.elements(), mesh::make_topology(scene.mesh).boundary, loads);
+    scene.load =
+        compute_load_force(scene.solid.model.elements, mesh::make_topology(scene.mesh).boundary, loads);
     ASSERT_TRUE(scene.find_equilibrium().is_ok());
     const double strain = -300.0 * (1.0 - 2.0 * kNu) / kE;  // −p/(3K)
     EXPECT_LT((scene.displacement() - strain * scene.rest()).cwiseAbs().maxCoeff(), 1e-9 * std::abs(strain));

@@ -91,7 +91,7 @@ int count_free_motions(const mesh::TetMesh& mesh, const std::vector<Support>& su
   std::vector<std::pair<int, int>> free;
   for (int n = 0; n < scene.num_nodes(); ++n)
     for (int k = 0; k < 3; ++k)
-      if (scene.solid.constraints().support(k, n) < 0) free.emplace_back(k, n);
+      if (scene.solid.model.constraints.support(k, n) < 0) free.emplace_back(k, n);
   const auto size = static_cast<Eigen::Index>(free.size());
   Eigen::MatrixXd K(size, size);
   for (Eigen::Index j = 0; j < size; ++j) {

@@ -10,8 +10,8 @@
 
 #include "run/run.h"
 #include "scenario/build.h"
+#include "solid/body.h"
 #include "solid/element.h"
-#include "solid/solid.h"
 #include "study/chart.h"
 #include "study/stability.h"
 #include "study_scene.h"
@@ -24,7 +24,7 @@ double compute_largest_frequency(const std::string& file, double E) {
   scenario::Scenario s = scenario::load_scenario(file, {});
   const scenario::Scene scene = scenario::build_scene(s);
   const mesh::TetMesh& mesh = scene.body.mesh;
-  const solid::Solid solid(mesh, scene.body.topology, scene.body.supports, s.params.solid, 1);
+  const solid::Body solid(mesh, scene.body.topology, scene.body.supports, s.params.solid, 1);
   const double nu = 0.3;
   const Mat6 C = solid::make_isotropic_stiffness(E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu)));
   const Eigen::Index n = mesh.num_vertices();
@@ -40,7 +40,7 @@ double compute_largest_frequency(const std::string& file, double E) {
   }
   for (Eigen::Index i = 0; i < n; ++i) {
     const bool is_held = mesh.vertices(2, i) < 1e-9;
-    const double scale = is_held ? 0.0 : 1.0 / std::sqrt(solid.mass()(i));
+    const double scale = is_held ? 0.0 : 1.0 / std::sqrt(solid.materials.mass()(i));
     K.middleRows<3>(3 * i) *= scale;
     K.middleCols<3>(3 * i) *= scale;
   }

@@ -1,5 +1,7 @@
 // A step that fails, in whichever stage, leaves nothing behind: the archive is the one of before, to the bit,
 // and the steps that follow are those of a body that never failed.
+#include "solid/committed.h"
+
 #include <cmath>
 #include <limits>
 #include <string>
@@ -49,9 +51,9 @@ struct PulledBar {
   std::vector<char> is_flowing;
 
   explicit PulledBar(const Kind& kind) : scene(make_scene(kind)), slack(kind.slack), poisson(kind.poisson) {
-    is_flowing.resize(static_cast<std::size_t>(scene.solid.elements().num_points() / kLanes + 1), 0);
-    scene.solid.make_ready(scene.state, scene.load);
-    scene.solid.commit(scene.state);
+    is_flowing.resize(static_cast<std::size_t>(scene.solid.model.elements.num_points() / kLanes + 1), 0);
+    make_ready(scene.solid, scene.region, scene.state, scene.load);
+    commit(scene.solid, scene.region, scene.state);
   }
   static Scene make_scene(const Kind& kind) {
     SolidParams params;
@@ -76,17 +78,17 @@ struct PulledBar {
   StepStatus step() {
     StepLoads loads{scene.load, {}};
     loads.slack = slack;
-    ARGIL_TRY(scene.solid.begin_step(scene.state, loads, kStep, scene.time + kStep, steps));
+    ARGIL_TRY(begin_step(scene.solid, scene.region, scene.state, loads, {kStep, scene.time + kStep, steps}));
     for (bool solved = false; !solved;) {
-      solved = scene.solid.assemble(loads);
-      if (!solved) ARGIL_TRY(scene.solid.solve(loads, steps, solved));
+      solved = assemble(scene.solid, scene.region, loads);
+      if (!solved) ARGIL_TRY(solve(scene.solid, scene.region, loads, steps, solved));
     }
-    scene.solid.finish_step(scene.state);
-    scene.solid.move(scene.state);
-    ARGIL_TRY(scene.solid.update_kinematics(scene.state.x, steps));
-    scene.solid.keep_start(scene.state);
+    take_velocity(scene.solid, scene.region.part(), scene.state);
+    move(scene.solid, scene.region.part(), scene.state);
+    ARGIL_TRY(update_kinematics(scene.solid, scene.region, scene.state.x, steps));
+    keep_start(scene.solid, scene.state);
     flow();
-    scene.solid.sleep_slow_runs(scene.state, is_flowing);
+    scene.region.put_to_sleep(scene.state, is_flowing);
     return StepStatus::ok();
   }
   /// Some points, others in each step.
@@ -94,8 +96,8 @@ struct PulledBar {
     const auto num_points = static_cast<std::size_t>(scene.state.plastic_strain.cols());
     std::fill(is_flowing.begin(), is_flowing.end(), char{0});
     const std::size_t point = static_cast<std::size_t>(37 * (steps + 1)) % num_points;
-    if (!scene.solid.has_any_moving(std::vector<char>(is_flowing.size(), 1))) return;
-    const std::vector<int>* moving = scene.solid.moving_batches().list();
+    const std::vector<int>* moving = scene.region.part().batches.list();
+    if (moving && moving->empty()) return;
     const std::size_t batch =
         moving ? static_cast<std::size_t>((*moving)[point % moving->size()]) : point / kLanes;
     scene.state.plastic_strain(3, static_cast<Eigen::Index>(batch * kLanes)) += 1e-4;
@@ -106,17 +108,18 @@ struct PulledBar {
       set_load();
       const StepStatus status = step();
       ASSERT_TRUE(status.is_ok()) << steps << ' ' << status.failure().quantity;
-      scene.solid.commit(scene.state, is_flowing);
+      commit(scene.solid, scene.region, scene.state, is_flowing);
       scene.time += kStep;
     }
   }
   void set_material(const TetMaterial& material) {
-    for (int t = 0; t < scene.mesh.num_tets(); ++t) scene.solid.set_material(t, material);
+    for (int t = 0; t < scene.mesh.num_tets(); ++t)
+      solid::set_material(scene.solid, scene.region, t, material);
   }
   Snapshot take_snapshot() {
     Snapshot snapshot;
     Archive archive = Archive::make_saving(snapshot);
-    scene.solid.serialize(archive, scene.state);
+    serialize(archive, scene.solid, scene.region, scene.state);
     return snapshot;
   }
 };
@@ -204,9 +207,9 @@ const Fault kFaults[] = {
      }},
     {"size",
      [](PulledBar& run) {  // likewise; a size comes back by its ratio
-       run.scene.solid.set_swelling(5, 1.02);
-       const StepStatus status = run.scene.solid.update_kinematics(run.scene.state.x, 0);
-       run.scene.solid.set_swelling(5, 1.0);
+       set_swelling(run.scene.solid, 5, 1.02);
+       const StepStatus status = update_kinematics(run.scene.solid, run.scene.region, run.scene.state.x, 0);
+       set_swelling(run.scene.solid, 5, 1.0);
        EXPECT_TRUE(status.is_ok());
        return StepStatus::failed({});
      }},
@@ -238,9 +241,10 @@ TEST_P(FailedStep, LeavesTheArchiveOfBefore) {
     const StepStatus failed = fault.fail(run);
     ASSERT_FALSE(failed.is_ok());
     run.set_material(test::make_material(kYoungs, run.poisson));  // as who knows the water does
-    ASSERT_TRUE(run.scene.solid.roll_back(run.scene.state, 0).is_ok());
+    ASSERT_TRUE(roll_back(run.scene.solid, run.scene.region, run.scene.state, 0).is_ok());
     expect_equal(before, run.take_snapshot());
-    EXPECT_TRUE((run.scene.solid.strain().array() == twin.scene.solid.strain().array()).all());
+    EXPECT_TRUE(
+        (run.scene.solid.kinematics.strain().array() == twin.scene.solid.kinematics.strain().array()).all());
   }
   run.make_steps(12);
   twin.make_steps(12);
