@@ -16,10 +16,8 @@ BodyMaterials::BodyMaterials(const Body& body, const Params& params, const water
       m_solid(solid),
       m_region(region),
       m_moisture(params.elastic, params.plasticity.yield, params.moisture, params.water.porosity),
-      m_saturation(water.saturation()) {
-  m_yield.setZero(solid.model.elements.num_points());
-  if (!m_moisture.is_isotropic() && params.plasticity.enabled && params.plasticity.deviatoric)
-    m_shape_stiffness.resize(static_cast<std::size_t>(body.mesh.num_tets()));
+      m_saturation(water.saturation()),
+      m_needs_shape_stiffness(params.plasticity.enabled && params.plasticity.deviatoric) {
   m_changed.reserve(static_cast<std::size_t>(body.mesh.num_tets()));
   m_before.reserve(m_changed.capacity());
 }
@@ -28,28 +26,19 @@ void BodyMaterials::set_all() {
   for (int t = 0; t < m_body.mesh.num_tets(); ++t) set(t, m_water.saturation()(t));
 }
 
-double BodyMaterials::shape_stiffness(int tet) const {
-  return m_shape_stiffness.empty() ? 2.0 * m_solid.materials.of(tet).mu
-                                   : m_shape_stiffness[static_cast<std::size_t>(tet)];
-}
-
 void BodyMaterials::set(int tet, double S) {
   m_saturation(tet) = S;
   const bool has_own_modulus = m_body.youngs_modulus.size() > 0;
   const double E = has_own_modulus ? m_body.youngs_modulus(tet) : m_params.elastic.youngs_modulus;
   const material::WetState wet = has_own_modulus ? m_moisture.at(S, E) : m_moisture.at(S);
   solid::set_material(m_solid, m_region, tet, {wet.lambda, wet.mu, wet.yield});
-  const int Q = m_solid.model.elements.points_per_tet;
-  m_yield.segment(static_cast<Eigen::Index>(Q) * tet, Q).setConstant(wet.yield);
   if (m_params.water.swelling > 0.0) solid::set_swelling(m_solid, tet, 1.0 + m_params.water.swelling * S);
   if (m_params.water.adds_mass) solid::set_water_mass(m_solid, tet, m_water.capacity(tet) * S);
   if (m_moisture.is_isotropic()) return;
   const Vec3 axis =
       m_body.pore_axis.cols() > 0 ? Vec3(m_body.pore_axis.col(tet)) : m_params.moisture.medium.axis;
   const Mat6 C = has_own_modulus ? m_moisture.stiffness_at(S, axis, E) : m_moisture.stiffness_at(S, axis);
-  solid::set_stiffness(m_solid, tet, C);
-  if (!m_shape_stiffness.empty())
-    m_shape_stiffness[static_cast<std::size_t>(tet)] = material::compute_shape_stiffness(C);
+  solid::set_stiffness(m_solid, tet, C, m_needs_shape_stiffness ? material::compute_shape_stiffness(C) : 0.0);
 }
 
 std::span<const int> BodyMaterials::refresh(double tolerance) {

@@ -22,11 +22,6 @@ class BodyMaterials {
   /// Returns them, increasing.
   std::span<const int> refresh(double tolerance);
 
-  bool is_isotropic() const { return m_moisture.is_isotropic(); }
-  const Field& yield() const { return m_yield; }  ///< of each point: elastic strain norm [–]
-  /// 2μ* [Pa] of the isotropic law nearest to a tet's.
-  double shape_stiffness(int tet) const;
-
   void commit() { m_changed.clear(); }
   void roll_back();
   void serialize(Archive& archive);
@@ -41,10 +36,9 @@ class BodyMaterials {
   solid::ActiveRegion& m_region;
   material::MoistureTable m_moisture;
   Field m_saturation;  // S of each tet for which it was last brought up to date
-  Field m_yield;
-  std::vector<double> m_shape_stiffness;  // of each tet; empty: isotropic, or not needed
-  std::vector<int> m_changed;             // since the last commit
-  std::vector<double> m_before;           // S of these before
+  bool m_needs_shape_stiffness;
+  std::vector<int> m_changed;    // since the last commit
+  std::vector<double> m_before;  // S of these before
 };
 
 }  // namespace argil::sim

@@ -30,7 +30,7 @@ BodySide::BodySide(Body body, const Params& params)
       m_force(solid::compute_load_force(m_solid.model.elements, m_body.topology.boundary, m_body.loads)),
       m_loads{m_force.total()},
       m_materials(m_body, params, m_water, m_solid, m_region),
-      m_flow(params, m_materials, m_solid, m_region),
+      m_flow(params, m_solid, m_region),
       m_economy(params, m_body, m_solid, m_region) {
   m_loads.changed = &m_force.changed();
   m_state.solid = solid::make_rest_state(m_solid.model);

@@ -8,12 +8,9 @@
 
 namespace argil::sim {
 
-PlasticFlow::PlasticFlow(const Params& params, const BodyMaterials& materials, const solid::Body& solid,
-                         const solid::ActiveRegion& region)
-    : m_params(params), m_materials(materials), m_solid(solid), m_region(region) {
+PlasticFlow::PlasticFlow(const Params& params, const solid::Body& solid, const solid::ActiveRegion& region)
+    : m_params(params), m_solid(solid), m_region(region) {
   m_has_additive_split = find_law(params.solid.model).plastic_split == solid::PlasticSplit::additive;
-  m_is_driven = params.plasticity.enabled && params.plasticity.deviatoric &&
-                (!materials.is_isotropic() || !m_has_additive_split);
   m_is_flowing.resize(static_cast<std::size_t>(solid.model.elements.num_points() / kLanes + 1), 0);
 }
 
@@ -24,6 +21,11 @@ double PlasticFlow::apply(TensorField& plastic_strain) {
       [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return apply_to_points(begin, end, plastic_strain); });
   m_is_anywhere = is_flowing_anywhere();
   return dissipated;
+}
+
+/// By the stress, not the strain?
+bool PlasticFlow::is_driven() const {
+  return m_params.plasticity.deviatoric && (!m_solid.materials.is_isotropic() || !m_has_additive_split);
 }
 
 /// Does any run of points that moves?
@@ -37,9 +39,9 @@ bool PlasticFlow::is_flowing_anywhere() const {
 /// Of at most kLanes points, which are not looked at one by one where none of them flows.
 double PlasticFlow::apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain) {
   unsigned flowing =
-      m_is_driven ? (1U << (end - begin)) - 1U
+      is_driven() ? (1U << (end - begin)) - 1U
                   : material::find_flowing(m_solid.kinematics.strain().data(), plastic_strain.data(),
-                                           m_materials.yield().data(), m_params.plasticity, begin, end);
+                                           m_solid.materials.yield().data(), m_params.plasticity, begin, end);
   m_is_flowing[static_cast<std::size_t>(begin / kLanes)] = flowing != 0;
   double dissipated = 0.0;
   for (; flowing != 0; flowing &= flowing - 1)
@@ -71,10 +73,10 @@ Vec6 PlasticFlow::compute_flow(int point, const Vec6& before) const {
   const int tet = m_solid.model.elements.tet_of_point(point);
   material::FlowPoint at{m_solid.materials.of(tet).yield};
   Vec6 drive;
-  if (m_is_driven) {
+  if (is_driven()) {
     const solid::Strained body = m_solid.strained();
     drive = solid::compute_flow_drive(body.law(), body.kinematics.at(point), before, body.elasticity(tet),
-                                      m_materials.shape_stiffness(tet));
+                                      body.materials.shape_stiffness(tet));
     at.drive = &drive;
   }
   return material::compute_plastic_strain(m_solid.kinematics.strain().col(point), before, at,

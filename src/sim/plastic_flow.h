@@ -3,7 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "sim/body_materials.h"
+#include "sim/params.h"
+#include "sim/state.h"
 
 namespace argil::sim {
 
@@ -11,8 +12,7 @@ namespace argil::sim {
 class PlasticFlow {
  public:
   /// All are kept by reference.
-  PlasticFlow(const Params& params, const BodyMaterials& materials, const solid::Body& solid,
-              const solid::ActiveRegion& region);
+  PlasticFlow(const Params& params, const solid::Body& solid, const solid::ActiveRegion& region);
 
   /// Flow of every point that moves and whose elastic strain lies beyond its yield, at the present
   /// kinematics. Returns what it dissipates [J].
@@ -27,16 +27,15 @@ class PlasticFlow {
 
  private:
   bool is_flowing_anywhere() const;
+  bool is_driven() const;
   double apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain);
   double apply_to_point(int point, TensorField& plastic_strain) const;
   Vec6 compute_flow(int point, const Vec6& before) const;
 
   const Params& m_params;
-  const BodyMaterials& m_materials;
   const solid::Body& m_solid;
   const solid::ActiveRegion& m_region;
   bool m_has_additive_split;
-  bool m_is_driven;  // by the stress, not the strain
   bool m_is_anywhere = false, m_was_anywhere = false;
   std::vector<char> m_is_flowing;
 };

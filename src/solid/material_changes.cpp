@@ -11,8 +11,8 @@ void set_material(Body& body, ActiveRegion& region, int tet, const TetMaterial& 
   body.energies.is_batch_new[static_cast<std::size_t>(tet / kLanes)] = 1;
 }
 
-void set_stiffness(Body& body, int tet, const Mat6& C) {
-  body.materials.set_stiffness(tet, C);
+void set_stiffness(Body& body, int tet, const Mat6& C, double shape_stiffness) {
+  body.materials.set_stiffness(tet, C, shape_stiffness);
   body.system.is_tet_changed[static_cast<std::size_t>(tet)] = 1;
 }
 

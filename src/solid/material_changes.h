@@ -12,8 +12,8 @@ class ActiveRegion;
 
 /// Stiffness and yield; the tet wakes.
 void set_material(Body& body, ActiveRegion& region, int tet, const TetMaterial& material);
-/// C (Mandel) [Pa] of an anisotropic law; set_material makes the tet isotropic again.
-void set_stiffness(Body& body, int tet, const Mat6& C);
+/// C (Mandel) [Pa] of an anisotropic law and its 2μ* [Pa]; set_material makes the tet isotropic again.
+void set_stiffness(Body& body, int tet, const Mat6& C, double shape_stiffness = 0.0);
 /// Rest volume of a tet over what it was made with (> 0): its shape at rest grows alike in all directions.
 /// Mass stays.
 void set_swelling(Body& body, int tet, double volume_ratio);

@@ -26,8 +26,10 @@ void Materials::set_moduli(int tet, const TetMaterial& material) {
   m_mu(tet) = material.mu;
   const Eigen::Index Q = m_model.elements.points_per_tet;
   m_yield.segment(Q * tet, Q).setConstant(material.yield);
-  if (!m_C.empty())
+  if (!m_C.empty()) {
     m_C[static_cast<std::size_t>(tet)] = make_isotropic_stiffness(material.lambda, material.mu);
+    m_shape_stiffness[static_cast<std::size_t>(tet)] = 2.0 * material.mu;
+  }
   if (!m_nodal) return;
   const double own_bulk = NodalVolume::kOwnBulkOverShear * material.mu;
   m_excess_bulk(tet) = std::max(0.0, material.lambda + 2.0 / 3.0 * material.mu - own_bulk);
@@ -35,12 +37,15 @@ void Materials::set_moduli(int tet, const TetMaterial& material) {
   m_nodal->set_excess(tet, m_excess_bulk(tet), weight()(tet));
 }
 
-void Materials::set_stiffness(int tet, const Mat6& C) {
+void Materials::set_stiffness(int tet, const Mat6& C, double shape_stiffness) {
   ARGIL_ASSERT(find_law(m_model.params.model).takes_full_stiffness && !m_nodal);
   if (m_C.empty())
-    for (Eigen::Index t = 0; t < m_lambda.size(); ++t)
+    for (Eigen::Index t = 0; t < m_lambda.size(); ++t) {
       m_C.push_back(make_isotropic_stiffness(m_lambda(t), m_mu(t)));
+      m_shape_stiffness.push_back(2.0 * m_mu(t));
+    }
   m_C[static_cast<std::size_t>(tet)] = C;
+  m_shape_stiffness[static_cast<std::size_t>(tet)] = shape_stiffness;
 }
 
 void Materials::set_swelling(int tet, double volume_ratio) {

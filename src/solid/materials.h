@@ -23,8 +23,9 @@ class Materials {
   explicit Materials(const Model& model);
 
   void set_moduli(int tet, const TetMaterial& material);
-  /// C (Mandel) [Pa] of an anisotropic law; set_moduli makes the tet isotropic again.
-  void set_stiffness(int tet, const Mat6& C);
+  /// C (Mandel) [Pa] of an anisotropic law; set_moduli makes the tet isotropic again. `shape_stiffness`: 2μ*
+  /// of C [Pa] (material/plasticity.h); 0 where no flow asks for it.
+  void set_stiffness(int tet, const Mat6& C, double shape_stiffness = 0.0);
   /// Rest volume of a tet over what it was made with (> 0): its shape at rest grows alike in all directions.
   void set_swelling(int tet, double volume_ratio);
   /// Mass [kg] of water in a tet, shared among its nodes like that of the clay.
@@ -34,6 +35,10 @@ class Materials {
   /// For p1_nodal split into the tet's own part and what acts on the nodes' mean volume change, which is not
   /// set.
   Elasticity elasticity(int tet) const;
+  /// 2μ* [Pa] of the isotropic law nearest to a tet's.
+  double shape_stiffness(int tet) const {
+    return m_C.empty() ? 2.0 * m_mu(tet) : m_shape_stiffness[static_cast<std::size_t>(tet)];
+  }
   bool is_isotropic() const { return m_C.empty(); }  ///< every tet
 
   const Field& lambda() const { return m_lambda; }  ///< of each tet [Pa]
@@ -62,7 +67,8 @@ class Materials {
   const Model& m_model;
   Field m_lambda, m_mu, m_yield;
   Field m_own_lambda, m_excess_bulk;  // p1_nodal
-  std::vector<Mat6> m_C;              // empty while every tet is isotropic
+  std::vector<Mat6> m_C;              // empty while every tet is isotropic, as is the next
+  std::vector<double> m_shape_stiffness;
   Eigen::Matrix3Xd m_swollen_gradient;
   Field m_swollen_weight;  // empty without swelling
   Field m_mass, m_static_mass;
