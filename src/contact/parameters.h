@@ -1,6 +1,16 @@
 #pragma once
 
+#include <optional>
+
+#include "contact/tool_solid.h"
+
 namespace argil::contact {
+
+/// What the force is a force of.
+enum class ContactLaw {
+  pairs,     ///< eqs. 7 and 8: a stiffness for each pair of features in touch (the paper)
+  pressure,  ///< κ times the depth, over the area in touch
+};
 
 /// How deep a pair counts.
 enum class PenaltyKind {
@@ -24,6 +34,13 @@ struct ContactParams {
   /// [m], ≥ 0: vertices and edges that come this near count as met by detection. The force stays that of
   /// penetration.
   double minimum_separation = 0.0;
+  ContactLaw law = ContactLaw::pairs;
+  /// pressure: κ [Pa/m], > 0; 0: as the body's stiffness asks for.
+  double pressure_stiffness = 0.0;
+  /// pressure: mean traction [Pa] that a pulling tool's grip bears, > 0.
+  double grip_strength = 0.0;
+  /// pressure: the tool's exact shape; none: the one that its triangles enclose.
+  std::optional<RoundTool> round_tool = {};
 };
 
 }  // namespace argil::contact

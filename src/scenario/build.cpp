@@ -215,7 +215,20 @@ void check_skin(const Scenario& s, const mesh::TriangleMesh& skin) {
   contact::require_closed_surface(skin, s.body.kind == BodyKind::surface ? s.body.file : s.file);
 }
 
+/// A pulling tool's grip bears what the clay does, unless it is given.
+void check_grip(const Scenario& s, const device::Trace& trace) {
+  const contact::ContactParams& c = s.params.contact;
+  if (c.law == contact::ContactLaw::pairs || c.grip_strength > 0.0) return;
+  const auto pulls = [](const device::DeviceSample& sample) { return sample.mode == device::ToolMode::pull; };
+  if (s.tool.mode == ModeChoice::pull ||
+      (s.tool.mode == ModeChoice::trace && std::any_of(trace.samples.begin(), trace.samples.end(), pulls)))
+    throw InputError(s.file, "/contact/grip_strength_Pa",
+                     "is missing: the tool pulls, and elastic clay has no strength",
+                     "give the mean traction at which the tool lets go");
+}
+
 void check_trace(const Scenario& s, const device::Trace& trace) {
+  check_grip(s, trace);
   for (const device::DeviceSample& sample : trace.samples)
     if (const double distance = sample.position.stableNorm(); !(distance <= device::kFarthestPlace)) {
       std::ostringstream problem;

@@ -294,12 +294,27 @@ void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
                         {ModeChoice::dry, "dry"}},
                        "What the tool does; trace: as recorded.");
   contact::ContactParams& c = s.params.contact;
-  b.number("/contact/vertex_face_stiffness_N_per_m", c.vertex_face_stiffness, positive(), "N/m",
-           "k_vf of eq. 7, per pair.")
-      .required = true;
-  b.number("/contact/edge_edge_stiffness_N_per_m", c.edge_edge_stiffness, not_negative(), "N/m",
-           "k_ee of eq. 8, per pair.")
-      .required = true;
+  b.choice<contact::ContactLaw>(
+      "/contact/law", c.law,
+      {{contact::ContactLaw::pairs, "pairs"}, {contact::ContactLaw::pressure, "pressure"}},
+      "A stiffness for each pair of features in touch (the paper), or a pressure over the area in touch.");
+  const auto pairs = [&c] { return c.law == contact::ContactLaw::pairs; };
+  const auto pressure = [&c] { return c.law == contact::ContactLaw::pressure; };
+  b.number("/contact/stiffness_Pa_per_m", c.pressure_stiffness, not_negative(), "Pa/m",
+           "pressure: κ, pressure per depth; 0: chosen from the body's modulus and cells.")
+      .applies = pressure;
+  b.number("/contact/grip_strength_Pa", c.grip_strength, not_negative(), "Pa",
+           "pressure: mean traction at which a pulling tool lets go; 0: 8 times the clay's shear strength, "
+           "√2 G yield.")
+      .applies = pressure;
+  Parameter& vertex_face = b.number("/contact/vertex_face_stiffness_N_per_m", c.vertex_face_stiffness,
+                                    positive(), "N/m", "pairs: k_vf of eq. 7, per pair.");
+  vertex_face.required = true;
+  vertex_face.applies = pairs;
+  Parameter& edge_edge = b.number("/contact/edge_edge_stiffness_N_per_m", c.edge_edge_stiffness,
+                                  not_negative(), "N/m", "pairs: k_ee of eq. 8, per pair.");
+  edge_edge.required = true;
+  edge_edge.applies = pairs;
   b.choice<sim::SurfaceKind>("/contact/surface", s.params.contact_surface,
                              {{sim::SurfaceKind::cage, "cage"}, {sim::SurfaceKind::skin, "skin"}},
                              "What the tool meets: the boundary of the solid (the paper), or the skin that "

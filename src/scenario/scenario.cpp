@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -80,6 +82,42 @@ void check_between_frames(const Scenario& s) {
   if (!p.implicit_contact)
     throw InputError(s.file, place, "compliant needs contact stiffness in the implicit step",
                      "set /dynamics/implicit_contact to true, or use re_evaluate");
+}
+
+/// Exact shapes of the tools that are drawn as triangles.
+std::optional<contact::RoundTool> find_round_tool(const ToolSpec& t) {
+  switch (t.kind) {
+    case ToolKind::sphere:
+      return contact::RoundTool{t.radius, 0.0, t.radius, false};
+    case ToolKind::capsule:
+      return contact::RoundTool{t.radius, t.length, t.radius, false};
+    case ToolKind::stylus:
+      return contact::RoundTool{t.tip_radius, t.length, t.radius, true};
+    case ToolKind::mesh:
+      break;
+  }
+  return std::nullopt;
+}
+
+void check_contact(Scenario& s) {
+  contact::ContactParams& c = s.params.contact;
+  c.round_tool = find_round_tool(s.tool);
+  if (c.law == contact::ContactLaw::pairs) return;
+  if (c.damping > 0.0)
+    throw InputError(s.file, "/contact/damping_s_per_m", "is of the pairs' law, not of the pressure law",
+                     "leave it out, or set /contact/law to pairs");
+  const solid::SolidParams& d = s.params.solid;
+  const bool is_implicit = d.implicit_contact && d.integrator != solid::Integrator::symplectic_euler;
+  if (c.friction > 0.0 && (!is_implicit || s.params.rates.between_frames != sim::BetweenFrames::hold))
+    throw InputError(s.file, "/contact/friction",
+                     "of the pressure law is found in an implicit step with one detection",
+                     "set /haptics/between_frames to hold and /dynamics/implicit_contact to true, or set "
+                     "/contact/law to pairs");
+  const material::Plasticity& flow = s.params.plasticity;
+  if (c.grip_strength > 0.0 || !flow.enabled || !(flow.yield > 0.0)) return;
+  const double shear_modulus =
+      s.params.elastic.youngs_modulus / (2.0 * (1.0 + s.params.elastic.poissons_ratio));
+  c.grip_strength = 8.0 * std::numbers::sqrt2 * shear_modulus * flow.yield;
 }
 
 void check_tables(const Scenario& s) {
@@ -285,6 +323,7 @@ void check_combinations(Scenario& s) {
   check_inversion(s);
   check_rates(s);
   check_between_frames(s);
+  check_contact(s);
   check_extent(s);
   check_tables(s);
   check_pore_axes(s);

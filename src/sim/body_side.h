@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "contact/pressure.h"
 #include "base/status.h"
 #include "sim/body_materials.h"
 #include "sim/compliance.h"
@@ -44,6 +45,8 @@ class BodySide {
   const HandPose& hand() const { return m_state.hand; }           ///< of the last step
   const Points& x_before() const { return m_solid.committed.x; }  ///< nodes before the last move
   BodyBetweenSteps between_steps(Tick tick);
+  /// Of each triangle of the touched surface, as the body is now.
+  contact::SurfaceStiffness find_surface_stiffness() const;
   PhysicsRecord make_record();                   ///< of the last step
   Frame make_frame(const HandPose& hand) const;  ///< the body as it is now, with the hand there
   /// The same with the hand of the last step, and the hash of the body's side alone: where the hand goes on

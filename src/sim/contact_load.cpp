@@ -110,6 +110,33 @@ int LoadCollector::add_stiffness(const contact::Contact& c, const Vec3& force, b
   return group;
 }
 
+void LoadCollector::add_friction(const contact::Contact& c, std::size_t first) {
+  const std::size_t end = m_load.stiffness.size();
+  for (std::size_t i = first; i < end; ++i) {
+    solid::PointStiffness entry = m_load.stiffness[i];
+    const double part = end - first == 1 ? 1.0 : c.weight[i - first];
+    entry.counts = false;
+    entry.friction = c.friction;
+    entry.partner = static_cast<int>(i);
+    entry.force = m_share * part * c.resistance;
+    m_load.stiffness.push_back(entry);
+    m_load.levers.push_back({m_load.levers[i].point, 0.0});
+  }
+}
+
+void LoadCollector::serialize(Archive& archive) {
+  m_load.serialize(archive);
+  if (m_params.contact.law != contact::ContactLaw::pressure) return;
+  archive.records("load/friction", m_load.stiffness,
+                  [](solid::PointStiffness& s, auto field) { field(s.friction), field(s.partner); });
+}
+
+void LoadCollector::add_bond(const contact::Contact& bond, const Points& x) {
+  const Vec3 along = bond.normal.unitOrthogonal();
+  for (const Vec3& direction : {bond.normal, along, Vec3(bond.normal.cross(along))})
+    add_stiffness_along(bond, direction, m_share * bond.stiffness, 0.0, x);
+}
+
 /// What presses on the same vertices in several ticks of a step is one contact to the body, which gets the
 /// mean. Number of the first piece of the first of them, or `first` when there was none yet.
 std::size_t LoadCollector::find_group(const contact::Contact& c, std::size_t first, std::size_t pieces) {

@@ -85,6 +85,11 @@ class LoadCollector {
   /// How a contact's force changes as the body moves on. `force`: on the body, by its share of the step; `x`:
   /// the touched surface's vertices [m]. Returns the group of contacts with which it is let go; −1: none.
   int add_stiffness(const contact::Contact& contact, const Vec3& force, bool pushes, const Points& x);
+  /// The friction of the contact whose entries of stiffness begin at `first`: solved for with the step.
+  void add_friction(const contact::Contact& contact, std::size_t first);
+  std::size_t num_entries() const { return m_load.stiffness.size(); }
+  /// How a bond's force changes as the body moves on: alike in all directions, whether it pushes or draws.
+  void add_bond(const contact::Contact& bond, const Points& x);
   /// Contacts from here on change the force that the hand feels; those before have been felt as they are.
   void begin_felt() { m_load.last_detection = m_load.stiffness.size(); }
 
@@ -96,7 +101,7 @@ class LoadCollector {
 
   void commit() { m_mark = m_load.mark(); }
   void roll_back() { m_load.cut_to(m_mark); }
-  void serialize(Archive& archive) { m_load.serialize(archive); }
+  void serialize(Archive& archive);
 
  private:
   void add_stiffness_along(const contact::Contact& contact, const Vec3& direction, double stiffness,

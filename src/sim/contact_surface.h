@@ -49,6 +49,11 @@ class ContactSurface {
   void add_stiffness(const contact::Contact& contact, const Vec3& direction, double stiffness,
                      const solid::Elements& elements, std::vector<solid::PointStiffness>& list) const;
 
+  /// A tet under a triangle: of a skin, under its first corner.
+  int tet_under(int triangle) const {
+    return m_tets[static_cast<std::size_t>(triangle) * static_cast<std::size_t>(m_tets_per_triangle)];
+  }
+
   /// Tets under the touched area and how much of it each has [m²], triangle by triangle; a skin's triangle
   /// gives a third to the tet of each of its corners.
   void find_touched_tets(const contact::Contacts& contacts, std::vector<int>& tet,

@@ -22,9 +22,17 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
       m_committed(params),
       m_touched(surface),
       m_detector(surface.triangles(), surface.num_vertices(), tool, params.contact),
+      m_grip(params.contact.grip_strength),
       m_collector(params, surface, body.solid().model.elements),
       m_compliance(surface, body.solid().model.elements.num_nodes()) {
   m_detector.share(params.threads);
+  if (params.contact.law == contact::ContactLaw::pressure)
+    m_pressure.emplace(
+        surface.triangles(), surface.num_vertices(),
+        params.contact.round_tool ? contact::ToolSolid(*params.contact.round_tool) : contact::ToolSolid(tool),
+        body.find_surface_stiffness());
+  if (m_pressure && params.contact.friction > 0.0)
+    m_friction.emplace(params.contact.friction, surface.num_vertices());
   begin_at(start);
 }
 
@@ -33,6 +41,7 @@ void HandSide::begin_at(const device::DeviceSample& start) {
   m_state.mode = start.mode;
   m_state.contact_tool = m_state.tool;
   if (m_touched.x_t0().size() > 0) m_detector.prepare(m_touched.x_t0(), m_state.tool);
+  if (m_pressure && m_touched.x_t0().size() > 0) m_pressure->prepare(m_touched.x_t0());
   commit();
 }
 
@@ -46,6 +55,7 @@ void HandSide::prepare_alone() {
 void HandSide::place_surface(const Points& x) {
   m_touched.place(x);
   m_detector.prepare(x, m_state.tool);
+  if (m_pressure) m_pressure->prepare(x);
 }
 
 void HandSide::receive(StepResult& result) {
@@ -75,7 +85,8 @@ bool HandSide::is_wetting() const {
 /// Does the surface deflect between physics steps? Tools that do not deform the body meet it as it is, and so
 /// does a pulling one, whose negative stiffness has no balance with the body where it is the stiffer.
 bool HandSide::is_compliant() const {
-  return m_params.rates.between_frames == BetweenFrames::compliant && m_state.mode == ToolMode::push;
+  return m_params.rates.between_frames == BetweenFrames::compliant && m_state.mode != ToolMode::pull &&
+         !keeps_shape();
 }
 
 StepStatus HandSide::find_contact_force(bool begins_step) {
@@ -83,6 +94,7 @@ StepStatus HandSide::find_contact_force(bool begins_step) {
   const bool moves_water = begins_step && m_params.rates.moves_water(m_state.steps_begun + 1);
   m_contacts.with_touched = moves_water && is_wetting();
   ++m_state.force_age;
+  choose_yielding();
   if (is_compliant()) return find_compliant_force();
   if (m_params.rates.between_frames != BetweenFrames::hold)
     find_penalty_force(1);
@@ -105,7 +117,10 @@ bool HandSide::finds_same_contacts() {
 /// Detection over `ticks` ticks while the surface goes to where the body has moved it; both paths start where
 /// the last one ended, so none has a gap.
 void HandSide::find_contacts(int ticks) {
-  if (!finds_same_contacts())
+  const bool is_new = !finds_same_contacts();
+  if (is_new && m_pressure)
+    find_pressure();
+  else if (is_new)
     m_detector.find_contacts(m_touched.x_t0(), m_touched.x_t1(), m_state.contact_tool, m_state.tool,
                              m_contacts, m_touched.find_motion(), m_state.clock.seconds(ticks));
   m_state.num_contacts = static_cast<int>(m_contacts.contacts.size());
@@ -119,7 +134,8 @@ void HandSide::find_contacts(int ticks) {
 /// Eqs. 7 and 8 on the body, reversed in pull. Wet and dry tools feel the body but do not deform it.
 void HandSide::gather_contact_forces() {
   m_collector.begin_felt();
-  if (is_wetting()) return;
+  if (keeps_shape()) return;
+  if (m_pressure) return gather_pressure();
   const bool pushes = m_state.mode == ToolMode::push;
   for (const contact::Contact& c : m_contacts.contacts) {
     const Vec3 force = (pushes ? c.force : Vec3(-c.force)) + c.resistance;
@@ -160,6 +176,8 @@ void HandSide::commit() {
   m_committed = m_state;
   m_touched.commit();
   m_detector.commit();
+  m_grip.commit();
+  if (m_friction) m_friction->commit();
   m_collector.commit();
   if (m_params.rates.between_frames != BetweenFrames::compliant) return;
   m_compliance.commit();
@@ -173,6 +191,9 @@ void HandSide::roll_back(ContactLoad* load) {
   m_state = m_committed;
   m_touched.roll_back(is_compliant ? &m_body.state().solid.x : nullptr);
   m_detector.roll_back();
+  if (m_pressure) m_pressure->forget();
+  m_grip.roll_back();
+  if (m_friction) m_friction->roll_back();
   m_collector.roll_back();
   m_still_detections = 0;
   if (!is_compliant) return;

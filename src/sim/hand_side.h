@@ -1,13 +1,17 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/archive.h"
 #include "contact/contact.h"
+#include "contact/pressure.h"
+#include "contact/surface_friction.h"
 #include "device/sample.h"
 #include "sim/compliance.h"
 #include "sim/contact_load.h"
 #include "sim/contact_surface.h"
+#include "sim/grip.h"
 #include "sim/params.h"
 #include "sim/record.h"
 #include "sim/stage.h"
@@ -79,6 +83,12 @@ class HandSide {
  private:
   // step.cpp
   void find_penalty_force(int ticks);
+  // pressure_contact.cpp
+  void choose_yielding();
+  bool keeps_shape() const;
+  void update_grip();
+  void find_pressure();
+  void gather_pressure();
   // compliant_contact.cpp
   StepStatus find_compliant_force();
   void follow_with_springs();
@@ -89,6 +99,7 @@ class HandSide {
   // hand_side.cpp
   bool is_compliant() const;
   bool is_wetting() const;
+  bool reverses() const { return !m_pressure && m_state.mode == device::ToolMode::pull; }
   void find_contacts(int ticks);
   bool finds_same_contacts();
   void gather_contact_forces();
@@ -100,8 +111,11 @@ class HandSide {
   HandState m_state, m_committed;
   TouchedSurface m_touched;
   contact::ContactDetector m_detector;
-  contact::Contacts m_contacts;  // of the last detection
-  int m_still_detections = 0;    // in a row, in which neither tool nor surface had moved
+  std::optional<contact::PressureContact> m_pressure;  // in place of the detector's pairs
+  std::optional<contact::SurfaceFriction> m_friction;  // with pressure
+  Grip m_grip;                                         // of a pulling tool, with pressure
+  contact::Contacts m_contacts;                        // of the last detection
+  int m_still_detections = 0;  // in a row, in which neither tool nor surface had moved
   LoadCollector m_collector;
   LocalCompliance m_compliance;
   std::vector<ContactSpring> m_springs, m_committed_springs;  // of the last detection, with their forces

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "contact/contact.h"
+#include "contact/pressure.h"
 #include "device/chatter_watch.h"
 #include "device/gate.h"
 #include "device/passivity.h"
@@ -52,11 +53,12 @@ struct HandState {
   device::OutputGate gate;
   device::GatedForce gated;
   // contact
-  contact::Pose contact_tool;       ///< tool at the end of the last detection
-  Vec3 hand_force = Vec3::Zero();   ///< [N] that the hand feels
-  Vec3 hand_torque = Vec3::Zero();  ///< [N m] about the hand's point
-  int force_age = 0;                ///< [ticks] since it was computed
-  int num_contacts = 0;             ///< of the last detection
+  contact::Pose contact_tool;                           ///< tool at the end of the last detection
+  Vec3 hand_force = Vec3::Zero();                       ///< [N] that the hand feels
+  Vec3 hand_torque = Vec3::Zero();                      ///< [N m] about the hand's point
+  int force_age = 0;                                    ///< [ticks] since it was computed
+  int num_contacts = 0;                                 ///< of the last detection
+  contact::Yielding yielding = contact::Yielding::yes;  ///< pressure: of the body, since the tool touches it
   // ledgers
   double port_energy = 0.0;       ///< [J] work of the device's force on the hand since the start
   double passivity_energy = 0.0;  ///< [J] that the passivity controller has kept from the hand

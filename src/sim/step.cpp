@@ -23,7 +23,7 @@ StepStatus make_tick(HandSide& hand, BodySteps& steps, const device::DeviceSampl
 void HandSide::find_penalty_force(int ticks) {
   release_springs();
   find_contacts(ticks);
-  const double sign = m_state.mode == device::ToolMode::pull ? -1.0 : 1.0;  // pull: force reversed
+  const double sign = reverses() ? -1.0 : 1.0;  // eqs. 7 and 8, pull: force reversed
   m_state.hand_force = sign * m_contacts.force_on_tool + m_contacts.resistance_on_tool;
   m_state.hand_torque = sign * m_contacts.torque_on_tool + m_contacts.resistance_torque_on_tool;
   gather_contact_forces();

@@ -9,14 +9,25 @@ namespace argil::solid {
 
 struct Body;
 
+/// A contact that slides: its force is `force` − c e e·(x − x₀), where e lies across its way. It turns with
+/// the motion, so that it is softer across the way the faster it slides.
+struct Sliding {
+  bool is_sliding = false;
+  Vec3 force = Vec3::Zero();   ///< [N]
+  Vec3 across = Vec3::Zero();  ///< e, unit
+  double stiffness = 0.0;      ///< c [N/m]
+};
+
 /// Which contacts act in the present step. Lists: at the number of each group's first entry.
 struct ContactActivity {
   std::vector<char> acts;
-  std::vector<double> force;  ///< Σ n·f − k n·(x − x₀) [N]
-  int num_updates = 0;        ///< of the step
+  std::vector<double> force;     ///< Σ n·f − k n·(x − x₀) [N]
+  std::vector<Sliding> sliding;  ///< of contacts with friction; empty where there are none
+  std::vector<Sliding> next;     ///< working array
+  int num_updates = 0;           ///< of the step
 
-  /// Of a step with so many contacts, all of which act.
-  void start(std::size_t count);
+  /// Of a step with these contacts, all of which act and none slides.
+  void start(std::span<const PointStiffness> contacts);
   bool is_acting(int group) const { return group < 0 || acts[static_cast<std::size_t>(group)] != 0; }
 };
 
@@ -29,13 +40,16 @@ struct StepContacts {
   Vec3 displacement(std::size_t i, const Points& x) const;
   /// How much less than f contact i exerts at x [N].
   Vec3 compute_fall(std::size_t i, const Points& x, const ContactActivity& activity) const;
+  /// How the force of contact i falls with the displacement of its point [N/m], symmetric.
+  Mat3 stiffness(std::size_t i, const ContactActivity& activity) const;
   /// Potential of what compute_fall is the force of [J].
   double compute_potential(std::size_t i, const Points& x, const ContactActivity& activity) const;
 };
 
 /// Lets go what would draw at x and takes back what would press again: Newton's method on the potential
 /// ½ Σ max(0, n·f − k n·(x − x₀))²/k, which is convex. After some rounds contacts are only let go, so that
-/// this ends. False when all is as it was.
+/// this ends. Contacts with friction stick or slide by what their partners press with, until all together
+/// they carry what Coulomb's law says to a thousandth. False when all is as it was.
 bool update_active_contacts(const StepContacts& contacts, const Points& x, ContactActivity& activity);
 
 /// force += scale · Σ k n n·u of the contacts that act.

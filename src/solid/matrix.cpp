@@ -190,9 +190,13 @@ void update_nodal_stiffness(Body& body) {
 void add_contacts(Body& body, std::span<const PointStiffness> contacts) {
   linear::BlockMatrix& matrix = body.system.matrix;
   const double tau = body.prediction.tau;
-  for (const PointStiffness& contact : contacts) {
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const PointStiffness& contact = contacts[c];
     if (!body.contacts.is_acting(contact.group)) continue;
-    const Mat3 block = tau * tau * contact.stiffness * contact.normal * contact.normal.transpose();
+    const Mat3 block =
+        contact.friction > 0.0
+            ? Mat3(tau * tau * body.step_contacts(contacts).stiffness(c, body.contacts))
+            : Mat3(tau * tau * contact.stiffness * contact.normal * contact.normal.transpose());
     for (std::size_t i = 0; i < contact.count(); ++i)
       for (std::size_t j = 0; j < contact.count(); ++j) {
         const int row = body.model.row_of_node[static_cast<std::size_t>(contact.vertex[i])];

@@ -101,7 +101,7 @@ bool predict(Body& body, const Part& part, const StepLoads& loads, double step_s
   step.load_share = 1.0;
   body.history.counters = {};
   body.newton.iterations = 0;
-  body.contacts.start(loads.contacts.size());
+  body.contacts.start(loads.contacts);
   keep_damping_frame(body);
   step.tau = find_tau(body.model, start, step_s);
   set_prediction(body, part, loads);

@@ -22,6 +22,11 @@ struct PointStiffness {
   Vec3 force = Vec3::Zero();  ///< f [N]: how much of the loads is this contact's at x
   int group = -1;             ///< number of the group's first entry; −1: acts whatever its force
   bool counts = false;        ///< it is along this normal that its group must not draw
+  /// > 0: this is the friction of the contact `partner`, with Coulomb's coefficient μ: a spring of
+  /// `stiffness` in all directions across that one's normal, whose `force` without the body's motion is f; it
+  /// carries no more than μ times what its partner presses with.
+  double friction = 0.0;
+  int partner = -1;
   std::size_t count() const {
     return static_cast<std::size_t>(std::find(vertex.begin(), vertex.end(), -1) - vertex.begin());
   }

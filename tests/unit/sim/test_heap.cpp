@@ -88,6 +88,13 @@ TEST_P(Tick, TakesNothingFromTheHeapAfterItsWarmUp) {
   EXPECT_EQ(count_in_ticks(params, GetParam().mode), 0U);
 }
 
+void use_pressure(Params& p) {
+  p.contact.law = contact::ContactLaw::pressure;
+  p.contact.round_tool = contact::RoundTool{kToolRadius, 0.0, kToolRadius, false};
+  p.contact.friction = 0.0;
+  p.contact.grip_strength = 1e9;
+}
+
 const Case kCases[] = {
     {"push", [](Params&) {}},
     {"two_threads", [](Params& p) { p.threads = 2; }},
@@ -98,6 +105,14 @@ const Case kCases[] = {
      device::ToolMode::pull},
     {"wet", [](Params&) {}, device::ToolMode::wet},
     {"dry", [](Params&) {}, device::ToolMode::dry},
+    {"pressure", use_pressure},
+    {"pressure_and_friction",
+     [](Params& p) {
+       use_pressure(p);
+       p.contact.friction = 0.3;
+     }},
+    {"pressure_pull", use_pressure, device::ToolMode::pull},
+    {"pressure_wet", use_pressure, device::ToolMode::wet},
     {"hold", [](Params& p) { p.rates.physics_period_ticks = 10; }},
     {"re_evaluate",
      [](Params& p) {

@@ -1,0 +1,384 @@
+#include "contact/pressure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "base/check.h"
+
+namespace argil::contact {
+namespace {
+
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+constexpr int kMostLevels = 10;  // of splitting a triangle in four
+
+/// Share of a triangle where a linear function with these corner values is negative.
+double compute_negative_share(const std::array<double, 3>& d) {
+  const auto num_negative = std::count_if(d.begin(), d.end(), [](double value) { return value < 0.0; });
+  if (num_negative == 0 || num_negative == 3) return num_negative == 3 ? 1.0 : 0.0;
+  std::size_t alone = 0;
+  while ((d[alone] < 0.0) != (num_negative == 1)) ++alone;
+  const double da = d[alone];
+  const double cut = da * da / ((da - d[(alone + 1) % 3]) * (da - d[(alone + 2) % 3]));
+  return num_negative == 1 ? cut : 1.0 - cut;
+}
+
+/// The four quarters of a piece.
+std::array<std::array<Vec3, 3>, 4> quarter(const std::array<Vec3, 3>& p) {
+  const std::array<Vec3, 3> m = {0.5 * (p[0] + p[1]), 0.5 * (p[1] + p[2]), 0.5 * (p[2] + p[0])};
+  return {{{p[0], m[0], m[2]}, {m[0], p[1], m[1]}, {m[2], m[1], p[2]}, {m[0], m[1], m[2]}}};
+}
+
+Vec3 centre_of(const std::array<Vec3, 3>& piece) {
+  return (piece[0] + piece[1] + piece[2]) / 3.0;
+}
+
+}  // namespace
+
+PressureContact::PressureContact(const Triangles& surface, int num_vertices, ToolSolid tool,
+                                 SurfaceStiffness stiffness)
+    : m_surface(surface),
+      m_tool(std::move(tool)),
+      m_stiffness(std::move(stiffness)),
+      m_corner_of_vertex(static_cast<std::size_t>(num_vertices), -1) {
+  ARGIL_ASSERT(m_stiffness.per_area.size() == surface.cols(), m_stiffness.per_area.size());
+  m_places.reserve(kMostPlaces);
+  m_candidates.reserve(static_cast<std::size_t>(surface.cols()));
+  m_faces.reserve(m_candidates.capacity());
+  m_corners.reserve(m_corner_of_vertex.size());
+}
+
+void PressureContact::prepare(const Points& x) {
+  m_tree.emplace(x, m_surface);
+}
+
+/// Places of the tool along its way, in pieces that are no longer than it is thick: their ends, or for a body
+/// that keeps its shape, where nothing hangs on the end, their middles.
+void PressureContact::place_tool(const Pose& pose_t0, const Pose& pose_t1) {
+  const Vec3 path = pose_t1.position - pose_t0.position;
+  const double angle = pose_t0.orientation.angularDistance(pose_t1.orientation);
+  m_way = path.norm() + angle * m_tool.reach();
+  const double wanted = std::ceil(m_way / m_tool.thickness());
+  const int pieces = static_cast<int>(std::min(wanted, static_cast<double>(kMostPlaces - 1)));
+  const double first = m_yielding == Yielding::yes ? 0.0 : 0.5;
+  m_places.clear();
+  for (int i = 0; i < pieces; ++i) {
+    const double t = (first + i) / pieces;
+    const Quat orientation = pose_t0.orientation.slerp(t, pose_t1.orientation);
+    m_places.push_back({pose_t0.position + t * path, orientation.conjugate().toRotationMatrix()});
+  }
+  if (m_yielding == Yielding::yes || pieces == 0)
+    m_places.push_back({pose_t1.position, pose_t1.orientation.conjugate().toRotationMatrix()});
+}
+
+/// Of the body, what the ball around the tool comes near.
+void PressureContact::find_faces(const Points& x) {
+  mesh::Box box;
+  for (const Place& place : m_places) box.include(place.position + place.turn.transpose() * m_tool.centre());
+  m_candidates.clear();
+  m_tree->find_overlaps(box.grown(m_tool.radius()), x, x, m_candidates);
+  std::sort(m_candidates.begin(), m_candidates.end());
+  m_faces.clear();
+  for (const int number : m_candidates) {
+    Face face;
+    face.number = number;
+    for (Eigen::Index k = 0; k < 3; ++k) face.x[static_cast<std::size_t>(k)] = x.col(m_surface(k, number));
+    const Vec3 a = face.x[1] - face.x[0];
+    const Vec3 b = face.x[2] - face.x[0];
+    const Vec3 normal = a.cross(b);
+    face.area = 0.5 * normal.norm();
+    if (!(face.area > 0.0)) continue;
+    face.normal = normal / (2.0 * face.area);
+    const double longest = std::sqrt(std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()}));
+    face.size = std::max(0.5 * longest, std::sqrt(4.0 / std::numbers::sqrt3 * face.area));
+    face.whole = measure_cover(face, kWhole, 0);
+    if (face.whole.area > 0.0 || face.whole.may_touch) m_faces.push_back(face);
+  }
+}
+
+ToolDistance PressureContact::find_distance(const Vec3& p, const Place& place) {
+  if (m_tool.is_ball()) return m_tool.find_from_ball(p - place.position);
+  ToolDistance found = m_tool.find_distance(place.turn * (p - place.position), m_guess);
+  found.outward = place.turn.transpose() * found.outward;
+  return found;
+}
+
+/// Of a point from the tool along its way; anything beyond `reach` where it is farther.
+ToolDistance PressureContact::find_least_distance(const Vec3& p, double reach) {
+  ToolDistance least = find_distance(p, m_places.back());
+  if (least.distance - m_way >= reach) return least;
+  for (std::size_t i = 0; i + 1 < m_places.size(); ++i)
+    if (const ToolDistance found = find_distance(p, m_places[i]); found.distance < least.distance)
+      least = found;
+  return least;
+}
+
+PressureContact::Cover& PressureContact::Cover::operator+=(const Cover& other) {
+  area += other.area;
+  facing_area += other.facing_area;
+  may_touch = may_touch || other.may_touch;
+  return *this;
+}
+
+/// Of a piece of a triangle, the distance taken as linear on its pieces of `level`. As the distance changes
+/// by no more than the point moves, a piece whose centre is farther than its corners is wholly on one side.
+PressureContact::Cover PressureContact::measure_cover(const Face& face, const Piece& piece, int level) {
+  const Vec3 centre = face.at(centre_of(piece));
+  std::array<Vec3, 3> x;
+  double reach = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    x[k] = face.at(piece[k]);
+    reach = std::max(reach, (x[k] - centre).norm());
+  }
+  const ToolDistance found = find_least_distance(centre, reach);
+  if (found.distance >= reach) return {};
+  const bool is_inside = found.distance <= -reach;
+  if (level > 0 && !is_inside) {
+    Cover sum;
+    for (const Piece& part : quarter(piece)) sum += measure_cover(face, part, level - 1);
+    return sum;
+  }
+  const double share = is_inside ? 1.0
+                                 : compute_negative_share({find_least_distance(x[0], kAnywhere).distance,
+                                                           find_least_distance(x[1], kAnywhere).distance,
+                                                           find_least_distance(x[2], kAnywhere).distance});
+  const double area = share * 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
+  return {area, area * facing_share(found.outward, face.normal), share == 0.0};
+}
+
+/// Radius of a disc as large as the patch, 0 where nothing is touched [m]. Triangles are split until a piece
+/// is no larger than that.
+double PressureContact::find_patch_radius() {
+  double spacing = 0.0;
+  for (const Face& face : m_faces) spacing = std::max(spacing, face.size);
+  for (int pass = 0; pass <= kMostLevels; ++pass, spacing *= 0.5) {
+    Cover patch;
+    for (const Face& face : m_faces) {
+      const double levels = std::ceil(std::log2(face.size / spacing) - 1e-9);
+      patch += measure_cover(face, std::max(0, static_cast<int>(levels)));
+    }
+    if (patch.facing_area == 0.0 && !patch.may_touch) return 0.0;
+    const double radius = std::sqrt(patch.facing_area / std::numbers::pi);
+    if (spacing <= radius) return radius;
+  }
+  return 2.0 * spacing;  // smaller than can be told: as small as a piece
+}
+
+/// How far a point inside the tool is from its surface along a direction [m]: by Newton's method, in steps
+/// that are four times the distance at most.
+double PressureContact::find_way_out(const Vec3& p, const Vec3& direction, const Place& place) {
+  constexpr int kMostSteps = 20;
+  constexpr double kLeastSlope = 0.25;
+  double way = 0.0;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const ToolDistance found = find_distance(p + way * direction, place);
+    if (step > 0 && std::abs(found.distance) < 1e-7 * m_tool.radius()) break;
+    way -= found.distance / std::max(kLeastSlope, found.outward.dot(direction));
+  }
+  return way;
+}
+
+/// Mean over the way of the depth below the tool's surface, which is linear between its places.
+PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
+  PointDepth point;
+  ToolDistance before = find_distance(p, m_places.front());
+  point.begin = point.end = -before.distance;
+  if (m_places.size() == 1)
+    return {std::max(0.0, point.end), point.end, point.end, point.end > 0.0 ? 1.0 : 0.0, before.outward};
+  point.outward = std::max(0.0, point.end) * before.outward;
+  const double pieces = static_cast<double>(m_places.size() - 1);
+  for (std::size_t i = 1; i < m_places.size(); ++i) {
+    const ToolDistance found = find_distance(p, m_places[i]);
+    point.end = -found.distance;
+    const double high = -std::min(before.distance, found.distance);
+    const double low = -std::max(before.distance, found.distance);
+    const double share = low >= 0.0 ? 1.0 : high > 0.0 ? high / (high - low) : 0.0;
+    point.share += share / pieces;
+    point.mean += 0.5 * share * (high + std::max(0.0, low)) / pieces;
+    point.outward += std::max(0.0, point.end) * found.outward;
+    before = found;
+  }
+  const double length = point.outward.norm();
+  point.outward = length > 0.0 ? Vec3(point.outward / length) : before.outward;
+  return point;
+}
+
+/// The same straight into a body that keeps its shape, so that ∫ depth dA is the volume that the two share.
+PressureContact::PointDepth PressureContact::find_held_depth(const Vec3& p, const Vec3& normal) {
+  PointDepth point;
+  const double places = static_cast<double>(m_places.size());
+  for (const Place& place : m_places) {
+    const ToolDistance found = find_distance(p, place);
+    if (!(found.distance < 0.0)) continue;
+    point.mean += facing_share(found.outward, normal) * find_way_out(p, -normal, place) / places;
+  }
+  point.outward = -normal;
+  return point;
+}
+
+/// 1 for a surface that faces the way out of the tool, 0 for one that looks along it; in between by degrees
+/// near the right angle.
+double PressureContact::facing_share(const Vec3& outward, const Vec3& normal) {
+  constexpr double kFull = 0.25;  // cosine beyond which all of it counts
+  return std::clamp(-outward.dot(normal) / kFull, 0.0, 1.0);
+}
+
+void PressureContact::add_contact(const std::array<int, 3>& vertex, const Vec3& weight,
+                                  const PointDepth& depth, double area, double stiffness, const Vec3& point,
+                                  Contacts& out) const {
+  if (!(depth.mean > 0.0 && stiffness > 0.0)) return;
+  Contact c;
+  c.vertex = vertex;
+  c.weight = {weight(0), weight(1), weight(2)};
+  c.normal = depth.outward;
+  c.force = stiffness * depth.mean * depth.outward;
+  c.stiffness = stiffness * depth.share;
+  c.end_force = stiffness * std::max(0.0, depth.end);
+  c.end_stiffness = depth.end > 0.0 ? stiffness : 0.0;
+  c.passes = depth.end <= 0.0;
+  c.spring = stiffness;
+  c.begin_force = stiffness * std::max(0.0, depth.begin);
+  c.area = area;
+  c.point = point;
+  out.contacts.push_back(c);
+}
+
+void PressureContact::press_corners(const Face& face, double share) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int vertex = m_surface(static_cast<Eigen::Index>(k), face.number);
+    int& place = m_corner_of_vertex[static_cast<std::size_t>(vertex)];
+    if (place < 0) {
+      place = static_cast<int>(m_corners.size());
+      m_corners.push_back({vertex, find_depth(face.x[k])});
+    }
+    Corner& corner = m_corners[static_cast<std::size_t>(place)];
+    const double area = share * face.area / 3.0 * facing_share(corner.depth.outward, face.normal);
+    corner.area += area;
+    corner.stiffness += area * stiffness_of(face);
+  }
+}
+
+/// Each piece of `level` presses with its centre.
+PressureContact::Cover PressureContact::press_pieces(const Face& face, const Piece& piece, int level,
+                                                     double share, Contacts& out) {
+  const Vec3 centre = centre_of(piece);
+  const Vec3 x = face.at(centre);
+  if (level > 0) {
+    double reach = 0.0;
+    for (const Vec3& corner : piece) reach = std::max(reach, (face.at(corner) - x).norm());
+    if (find_least_distance(x, reach).distance >= reach) return {};
+    Cover sum;
+    for (const Piece& part : quarter(piece)) sum += press_pieces(face, part, level - 1, share, out);
+    return sum;
+  }
+  const bool yields = m_yielding == Yielding::yes;
+  const PointDepth depth = yields ? find_depth(x) : find_held_depth(x, face.normal);
+  if (depth.mean > 0.0) {
+    const Vec3 a = face.at(piece[1]) - face.at(piece[0]);
+    const Vec3 b = face.at(piece[2]) - face.at(piece[0]);
+    const double area = share * 0.5 * a.cross(b).norm() * facing_share(depth.outward, face.normal);
+    const Eigen::Vector3i v = m_surface.col(face.number);
+    add_contact({v(0), v(1), v(2)}, centre, depth, area, area * stiffness_of(face), x, out);
+  }
+  return m_needs_cover ? measure_cover(face, piece, 0) : Cover{};
+}
+
+/// With pieces of about the size `spacing`: between two numbers of halvings, a mean of both. Where the body
+/// yields, faces that small press with their corners: as nodes do that a tool moves.
+void PressureContact::press_face(Face& face, double spacing, Contacts& out) {
+  const double levels = std::clamp(std::log2(face.size / spacing), 0.0, static_cast<double>(kMostLevels));
+  const int level = static_cast<int>(levels);
+  constexpr double kPassage = 0.4;  // of a halving, in which one number of them gives way to the next
+  const double share = std::clamp((levels - level - 0.5) / kPassage + 0.5, 0.0, 1.0);
+  face.cover = {};
+  for (int i = 0; i < 2; ++i) {
+    const double part = i == 0 ? 1.0 - share : share;
+    if (!(part > 0.0)) continue;
+    Cover cover;
+    if (level + i == 0 && m_yielding == Yielding::yes) {
+      cover = face.whole;
+      press_corners(face, part);
+    } else {
+      cover = press_pieces(face, kWhole, level + i, part, out);
+    }
+    cover.area *= part;
+    cover.facing_area *= part;
+    face.cover += cover;
+  }
+}
+
+void PressureContact::press_all_corners(const Points& x, Contacts& out) {
+  for (const Corner& corner : m_corners) {
+    m_corner_of_vertex[static_cast<std::size_t>(corner.vertex)] = -1;
+    add_contact({corner.vertex, -1, -1}, Vec3::UnitX(), corner.depth, corner.area, corner.stiffness,
+                x.col(corner.vertex), out);
+  }
+  m_corners.clear();
+}
+
+double PressureContact::stiffness_of(const Face& face) const {
+  return m_yielding == Yielding::yes ? m_stiffness.per_area(face.number) : 1.0;
+}
+
+/// κ [Pa/m] of a tool under which the body keeps its shape. Hertz: a ball that is d deep in a half-space is
+/// pressed out by 4/3 E* √R d^{3/2}; as it lies in a plane that does not yield, its patch has the radius
+/// a = √(2Rd) and ∫ depth dA = π R d². So κ = 4√2/(3π) E*/a = 0.600 E*/a; Sneddon's cone wants 0.608 and a
+/// flat punch 0.637.
+double PressureContact::find_held_stiffness() const {
+  double area = 0.0;
+  double modulus = 0.0;
+  for (const Face& face : m_faces) {
+    area += face.cover.facing_area;
+    modulus += face.cover.facing_area * m_stiffness.modulus(face.number);
+  }
+  if (!(area > 0.0)) return 0.0;
+  const double radius = std::sqrt(area / std::numbers::pi);
+  return 4.0 * std::numbers::sqrt2 / (3.0 * std::numbers::pi) * (modulus / area) / radius;
+}
+
+/// Contacts were found with κ = 1.
+void PressureContact::hold_shape(Contacts& out) const {
+  const double held = find_held_stiffness();
+  for (Contact& c : out.contacts) {
+    c.force *= held;
+    c.end_force *= held;
+    c.stiffness = c.end_stiffness = 0.0;
+  }
+}
+
+void PressureContact::advance(const Points& x_before, const Points& x, std::optional<double> motion) {
+  if (!m_tree) prepare(x_before);
+  m_tree->advance(motion ? *motion : (x - x_before).cwiseAbs().maxCoeff());
+}
+
+void PressureContact::find_contacts(const Points& x, const Pose& pose_t0, const Pose& pose_t1,
+                                    Yielding yielding, Contacts& contacts) {
+  contacts.clear();
+  m_yielding = yielding;
+  m_needs_cover = yielding == Yielding::no || contacts.with_touched;
+  place_tool(pose_t0, pose_t1);
+  if (!m_tree) prepare(x);
+  find_faces(x);
+  if (m_faces.empty()) return;
+  // Of clay that yields, the force is the clay's, and the points only share it out; where it keeps its shape
+  // they are all that counts.
+  const double points_per_radius = yielding == Yielding::yes ? 2.0 : 4.0;
+  const double radius = find_patch_radius();
+  if (radius == 0.0) return;
+  for (Face& face : m_faces) press_face(face, radius / points_per_radius, contacts);
+  press_all_corners(x, contacts);
+  if (yielding == Yielding::no) hold_shape(contacts);
+  for (const Face& face : m_faces) {
+    if (!contacts.with_touched || !(face.cover.area > 0.0)) continue;
+    contacts.touched_triangle.push_back(face.number);
+    contacts.touched_area.push_back(face.cover.area);
+  }
+  for (const Contact& c : contacts.contacts) {
+    contacts.force_on_tool -= c.force;
+    contacts.torque_on_tool -= (c.point - pose_t1.position).cross(c.force);
+  }
+}
+
+}  // namespace argil::contact

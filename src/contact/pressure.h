@@ -1,0 +1,131 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "contact/bounding_tree.h"
+#include "contact/contact.h"
+#include "contact/tool_solid.h"
+
+namespace argil::contact {
+
+/// What resists a tool, of each triangle of the body's surface.
+struct SurfaceStiffness {
+  Field per_area;  ///< κ [Pa/m] of a tool that the body yields to
+  Field modulus;   ///< E/(1 − ν²) [Pa] of the body under it, for a tool that it does not yield to
+};
+
+/// How the body answers the tool.
+enum class Yielding {
+  yes,  ///< its shape gives way: κ is a penalty
+  no,   ///< it keeps its shape and is felt as an elastic half-space would be
+};
+
+/// Contact as pressure over the touched part of a body's surface: p = κ · depth below the tool's surface,
+/// toward the outside of the tool. The force follows the patch, not the number of triangles of either.
+///
+/// Each triangle is split until its pieces are small against the patch; the number of pieces changes by
+/// degrees, so that the force has no jump. Triangles that are small themselves press with their corners.
+/// Only what faces the tool counts: the far side of a thin part does not.
+class PressureContact {
+ public:
+  /// `surface`: 3×m triangles of body vertex numbers, outward.
+  PressureContact(const Triangles& surface, int num_vertices, ToolSolid tool, SurfaceStiffness stiffness);
+
+  /// Makes for a body that is here what the next call would else make first.
+  void prepare(const Points& x);
+  /// The next call may start anywhere.
+  void forget() { m_tree.reset(); }
+
+  /// The body's vertices have gone from x_before to x (3×n) [m], none by more than `motion` along any axis;
+  /// without it that is found by looking at all of them. Successive calls must join.
+  void advance(const Points& x_before, const Points& x, std::optional<double> motion);
+
+  /// Contacts while the tool goes from pose_t0 to pose_t1 and the body's vertices stay at x.
+  /// Depths are means over the way; each point of the tool moves linearly in so many pieces that none is
+  /// longer than the tool is thick.
+  void find_contacts(const Points& x, const Pose& pose_t0, const Pose& pose_t1, Yielding yielding,
+                     Contacts& contacts);
+
+ private:
+  static constexpr int kMostPlaces = 17;  // on the tool's way
+  using Piece = std::array<Vec3, 3>;      // barycentric corners of a piece of a triangle
+  inline static const Piece kWhole = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+
+  struct Place {  // of the tool
+    Vec3 position;
+    Mat3 turn;  ///< from world to tool
+  };
+  /// How deep a point of the body is below the tool's surface.
+  struct PointDepth {
+    double mean = 0.0;            ///< of max(0, depth) over the way [m]
+    double begin = 0.0;           ///< at its start, negative outside [m]
+    double end = 0.0;             ///< at its end, negative outside [m]
+    double share = 0.0;           ///< of the way below the surface
+    Vec3 outward = Vec3::Zero();  ///< unit mean of the way out of the tool, weighted by depth
+  };
+  /// What of a triangle the tool has covered.
+  struct Cover {
+    double area = 0.0;         ///< [m²]
+    double facing_area = 0.0;  ///< of that, what faces the tool
+    bool may_touch = false;    ///< a piece lies outside by its corners but may be touched between them
+    Cover& operator+=(const Cover& other);
+  };
+  struct Corner {  // of triangles that press with their corners
+    int vertex = -1;
+    PointDepth depth;
+    double area = 0.0;       // [m²]
+    double stiffness = 0.0;  // Σ κ·area [N/m]
+  };
+  struct Face {
+    int number = -1;
+    std::array<Vec3, 3> x;  // [m]
+    double area = 0.0;
+    double size = 0.0;  // edge of a regular triangle of this area, or half the longest edge [m]
+    Vec3 normal = Vec3::Zero();
+    Cover whole;  // unsplit
+    Cover cover;
+    Vec3 at(const Vec3& weight) const { return weight(0) * x[0] + weight(1) * x[1] + weight(2) * x[2]; }
+  };
+
+  void place_tool(const Pose& pose_t0, const Pose& pose_t1);
+  void find_faces(const Points& x);
+  double find_patch_radius();
+  Cover measure_cover(const Face& face, const Piece& piece, int level);
+  Cover measure_cover(const Face& face, int level) {
+    return level == 0 ? face.whole : measure_cover(face, kWhole, level);
+  }
+  ToolDistance find_distance(const Vec3& p, const Place& place);
+  ToolDistance find_least_distance(const Vec3& p, double reach);
+  double find_way_out(const Vec3& p, const Vec3& direction, const Place& place);
+  PointDepth find_depth(const Vec3& p);
+  PointDepth find_held_depth(const Vec3& p, const Vec3& normal);
+  void press_face(Face& face, double spacing, Contacts& out);
+  void press_corners(const Face& face, double share);
+  Cover press_pieces(const Face& face, const Piece& piece, int level, double share, Contacts& out);
+  void add_contact(const std::array<int, 3>& vertex, const Vec3& weight, const PointDepth& depth, double area,
+                   double stiffness, const Vec3& point, Contacts& out) const;
+  void press_all_corners(const Points& x, Contacts& out);
+  double stiffness_of(const Face& face) const;
+  double find_held_stiffness() const;
+  void hold_shape(Contacts& out) const;
+  static double facing_share(const Vec3& outward, const Vec3& normal);
+
+  Triangles m_surface;
+  ToolSolid m_tool;
+  SurfaceStiffness m_stiffness;
+  std::optional<BoundingTree> m_tree;
+  // Of the present call.
+  std::vector<Place> m_places;  // along the tool's way, the end last
+  double m_way = 0.0;           // no point of the tool moves farther [m]
+  Yielding m_yielding = Yielding::yes;
+  bool m_needs_cover = false;
+  std::vector<int> m_candidates;
+  std::vector<Face> m_faces;  // near the tool's way, by number
+  std::vector<Corner> m_corners;
+  std::vector<int> m_corner_of_vertex;  // place in m_corners; −1: none
+  int m_guess = 0;                      // face of the tool near the last point
+};
+
+}  // namespace argil::contact

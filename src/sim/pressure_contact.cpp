@@ -1,0 +1,59 @@
+// Contact as pressure over the touched patch: push, pull, and tools under which the body keeps its shape.
+
+#include "sim/hand_side.h"
+
+namespace argil::sim {
+
+using device::ToolMode;
+
+/// How the body answers is decided where the tool comes to touch it, and stays so until it has left: no mode
+/// that is chosen in between kicks the hand, and a shape that was pressed in is held. What water does follows
+/// the mode at once.
+void HandSide::choose_yielding() {
+  if (!m_pressure || m_state.num_contacts > 0) return;
+  m_state.yielding = is_wetting() ? contact::Yielding::no : contact::Yielding::yes;
+}
+
+bool HandSide::keeps_shape() const {
+  return m_pressure ? m_state.yielding == contact::Yielding::no : is_wetting();
+}
+
+/// A pulling tool presses in like a pushing one until the hand turns back; then it holds what it touches.
+void HandSide::update_grip() {
+  if (m_state.mode != ToolMode::pull) return m_grip.release();
+  m_grip.test(m_state.hand_force, m_state.contact_tool);
+  if (m_grip.has_let_go() && m_state.num_contacts == 0) m_grip.release();
+  const bool turns_back =
+      (m_state.tool.position - m_state.contact_tool.position).dot(m_state.hand_force) > 0.0;
+  if (m_grip.holds() || m_grip.has_let_go() || m_state.num_contacts == 0 || !turns_back) return;
+  m_pressure->find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.contact_tool, m_state.yielding,
+                            m_contacts);
+  m_grip.hold(m_contacts, m_state.hand_force, m_state.contact_tool);
+}
+
+void HandSide::find_pressure() {
+  m_pressure->advance(m_touched.x_t0(), m_touched.x_t1(), m_touched.find_motion());
+  update_grip();
+  if (m_grip.holds())
+    return m_grip.find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.tool, m_contacts);
+  m_pressure->find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.tool, m_state.yielding,
+                            m_contacts);
+  if (m_friction && !keeps_shape())
+    m_friction->stretch(m_touched.x_t0(), m_touched.x_t1(), m_state.contact_tool, m_state.tool, m_contacts);
+}
+
+/// Pressures on the body and how they change as it moves on.
+void HandSide::gather_pressure() {
+  for (const contact::Contact& c : m_contacts.contacts) {
+    m_collector.add_force(c, c.force + c.resistance);
+    if (m_grip.holds()) {
+      m_collector.add_bond(c, m_touched.x_t0());
+      continue;
+    }
+    const std::size_t first = m_collector.num_entries();
+    m_collector.add_stiffness(c, m_collector.share() * c.force, true, m_touched.x_t0());
+    if (c.friction > 0.0) m_collector.add_friction(c, first);
+  }
+}
+
+}  // namespace argil::sim

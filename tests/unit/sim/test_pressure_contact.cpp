@@ -1,0 +1,277 @@
+// Contact as pressure in the loop: rest, sliding, modes that change in contact, a pull that grips.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "contact/tool_shape.h"
+#include "sim/simulation.h"
+#include "support/block_body.h"
+
+namespace argil::sim {
+namespace {
+
+constexpr double kRadius = 0.008;
+constexpr double kTop = 0.02;
+constexpr double kModulus = 3e4;
+
+Params make_params(int physics_period_ticks = 1) {
+  Params p;
+  p.elastic = {kModulus, 0.3};
+  p.plasticity.enabled = false;
+  p.kernel.form = material::KernelForm::off;
+  p.contact.law = contact::ContactLaw::pressure;
+  p.contact.round_tool = contact::RoundTool{kRadius, 0.0, kRadius, false};
+  p.contact.grip_strength = 1e9;
+  p.rates.physics_period_ticks = physics_period_ticks;
+  p.rates.water_period_ticks = physics_period_ticks;
+  p.solid.rayleigh_stiffness = 2e-3;
+  p.solid.solver.tolerance = 1e-9;
+  p.water.wetting_flux = 1.0;
+  p.device.max_force = 1e3;
+  p.device.max_force_rate = 1e9;
+  return p;
+}
+
+/// The ball so deep below the top of the block, off the middle of its cells.
+device::DeviceSample hand_at(double depth, double x = 0.0, device::ToolMode mode = device::ToolMode::push) {
+  device::DeviceSample sample;
+  sample.position = {0.0212 + x, 0.0195, kTop + kRadius - depth};
+  sample.mode = mode;
+  return sample;
+}
+
+Simulation make_simulation(const Params& params, device::ToolMode mode = device::ToolMode::push) {
+  return {test::make_block_body(10, 10, 5, Vec3(0.04, 0.04, kTop)), contact::make_sphere_tool(kRadius, 2),
+          params, hand_at(-1e-3, 0.0, mode)};
+}
+
+/// Ticks on a straight way; the hand's force after each.
+std::vector<Vec3> lead(Simulation& simulation, const device::DeviceSample& to, int ticks) {
+  const Vec3 from = simulation.hand_state().tool.position;
+  std::vector<Vec3> forces;
+  for (int k = 1; k <= ticks; ++k) {
+    device::DeviceSample sample = to;
+    sample.position = from + (to.position - from) * (static_cast<double>(k) / ticks);
+    const StepStatus status = simulation.tick(sample);
+    EXPECT_TRUE(status.is_ok()) << k << ' ' << (status.is_ok() ? "" : status.failure().quantity);
+    if (!status.is_ok()) break;
+    forces.push_back(simulation.hand_state().hand_force);
+  }
+  return forces;
+}
+
+double largest_change(const std::vector<Vec3>& forces) {
+  double largest = 0.0;
+  for (std::size_t i = 1; i < forces.size(); ++i)
+    largest = std::max(largest, (forces[i] - forces[i - 1]).norm());
+  return largest;
+}
+
+class EveryPeriod : public testing::TestWithParam<int> {};
+
+TEST_P(EveryPeriod, AToolThatRestsIsFeltAtRest) {
+  Simulation simulation = make_simulation(make_params(GetParam()));
+  lead(simulation, hand_at(1e-3), 140);
+  lead(simulation, hand_at(1e-3), 420);
+  const std::vector<Vec3> rest = lead(simulation, hand_at(1e-3), 280);
+  ASSERT_GT(rest.back().z(), 0.1);
+  for (const Vec3& force : rest) ASSERT_LT((force - rest.back()).norm(), 1e-3 * rest.back().norm());
+}
+
+std::vector<Vec3> slide(int physics_period_ticks, double friction) {
+  Params params = make_params(physics_period_ticks);
+  params.contact.friction = friction;
+  Simulation simulation = make_simulation(params);
+  lead(simulation, hand_at(1e-3, -0.006), 140);
+  lead(simulation, hand_at(1e-3, -0.002), 280);
+  return lead(simulation, hand_at(1e-3, 0.002), 280);
+}
+
+/// Coulomb's law, and no alternation from step to step. What the clay's shape and its cells do to the side
+/// force is there without friction, too.
+TEST_P(EveryPeriod, AToolThatSlidesIsHeldByFriction) {
+  const std::vector<Vec3> smooth = slide(GetParam(), 0.0);
+  for (const double friction : {0.2, 0.5}) {
+    const std::vector<Vec3> rough = slide(GetParam(), friction);
+    std::vector<double> ratio;
+    for (std::size_t i = 0; i < rough.size(); i += static_cast<std::size_t>(GetParam()))
+      ratio.push_back(-(rough[i].x() - smooth[i].x()) / rough[i].z());
+    for (std::size_t i = 1; i + 1 < ratio.size(); ++i) {
+      ASSERT_NEAR(ratio[i] / friction, 1.0, 0.15) << i;
+      ASSERT_LT(std::abs(ratio[i + 1] - 2 * ratio[i] + ratio[i - 1]), 0.03 * friction) << i;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Ticks, EveryPeriod, testing::Values(1, 7, 14));
+
+/// A hand that turns on the spot or rests after a slide is held within the cone, and steadily.
+TEST(Friction, HoldsStillWhatRests) {
+  Params params = make_params(5);
+  params.contact.friction = 0.5;
+  Simulation simulation = make_simulation(params);
+  lead(simulation, hand_at(1e-3, -0.002), 100);
+  lead(simulation, hand_at(1e-3, 0.003), 250);
+  lead(simulation, hand_at(1e-3, 0.003), 400);
+  const std::vector<Vec3> rest = lead(simulation, hand_at(1e-3, 0.003), 200);
+  for (const Vec3& force : rest) ASSERT_LT((force - rest.back()).norm(), 1e-3 * rest.back().norm());
+  EXPECT_LT(rest.back().x(), -0.05 * rest.back().z());
+  EXPECT_LE(rest.back().head<2>().norm(), 0.5 * rest.back().z() * 1.01);
+}
+
+TEST(Friction, TakesUpAPathSmallerThanTheSlipAsASpring) {
+  // Far within the cone the tool and what it touches move as one: force against path is the clay's, whatever
+  // κ.
+  std::vector<double> forces;
+  for (const double stiffness : {3e8, 1e9, 1e10}) {
+    Params params = make_params(5);
+    params.contact.friction = 5.0;
+    params.contact.pressure_stiffness = stiffness;
+    params.solid.solver.kind = linear::SolverKind::cholesky;
+    Simulation simulation = make_simulation(params);
+    lead(simulation, hand_at(1.5e-3), 100);
+    const double before = lead(simulation, hand_at(1.5e-3), 200).back().x();
+    lead(simulation, hand_at(1.5e-3, 1e-4), 50);
+    forces.push_back(lead(simulation, hand_at(1.5e-3, 1e-4), 200).back().x() - before);
+  }
+  EXPECT_LT(forces[1], -0.005);
+  EXPECT_NEAR(forces[0] / forces[1], 1.0, 0.1);
+  EXPECT_NEAR(forces[2] / forces[1], 1.0, 0.05);
+}
+
+TEST(Modes, ThatChangeInContactDoNotKick) {
+  using device::ToolMode;
+  for (const auto& [before, after] :
+       {std::pair{ToolMode::push, ToolMode::wet}, std::pair{ToolMode::wet, ToolMode::push},
+        std::pair{ToolMode::push, ToolMode::dry}, std::pair{ToolMode::push, ToolMode::pull},
+        std::pair{ToolMode::pull, ToolMode::push}}) {
+    Simulation simulation = make_simulation(make_params(), before);
+    lead(simulation, hand_at(2e-3, 0.0, before), 100);
+    std::vector<Vec3> forces = lead(simulation, hand_at(2e-3, 0.0, before), 100);
+    const std::vector<Vec3> then = lead(simulation, hand_at(2e-3, 0.0, after), 100);
+    forces.insert(forces.end(), then.begin(), then.end());
+    forces.erase(forces.begin(), forces.begin() + 80);
+    ASSERT_GT(forces.front().z(), 0.3);
+    EXPECT_LT(largest_change(forces), 0.01 * forces.front().norm());
+  }
+}
+
+TEST(Modes, AWettingToolIsFeltAsElasticClayAndLeavesItsShape) {
+  Simulation simulation = make_simulation(make_params(), device::ToolMode::wet);
+  const double depth = 1e-3;
+  const std::vector<Vec3> forces = lead(simulation, hand_at(depth, 0.0, device::ToolMode::wet), 100);
+  const double hertz = 4.0 / 3.0 * kModulus / (1 - 0.09) * std::sqrt(kRadius) * std::pow(depth, 1.5);
+  EXPECT_NEAR(forces.back().z() / hertz, 1.0, 0.1);
+  EXPECT_EQ(simulation.body_state().solid.x, simulation.body().mesh.vertices);
+}
+
+TEST(Pull, GripsWithTheSameStiffnessBothWaysAndLetsGoAtItsStrength) {
+  using device::ToolMode;
+  Params params = make_params();
+  Simulation simulation = make_simulation(params, ToolMode::pull);
+  lead(simulation, hand_at(1.5e-3, 0.0, ToolMode::pull), 150);
+  lead(simulation, hand_at(1.5e-3, 0.0, ToolMode::pull), 100);
+  std::vector<double> force;  // at heights 0.1 mm apart, drawn up slowly
+  for (int i = 0; i <= 20; ++i)
+    force.push_back(lead(simulation, hand_at(1.5e-3 - 1e-4 * i, 0.0, ToolMode::pull), 60).back().z());
+  ASSERT_GT(force.front(), 0.1);
+  ASSERT_LT(force.back(), -0.05);  // it draws
+  const double slope = (force.back() - force.front()) / 20;
+  for (int i = 0; i <= 20; ++i)
+    EXPECT_NEAR(force[static_cast<std::size_t>(i)], force.front() + slope * i,
+                0.03 * (force.front() - force.back()))
+        << i;
+
+  // The same with a grip that bears half of what it was last drawn by.
+  double area = 0.0;
+  for (const contact::Contact& c : simulation.contacts().contacts) area += c.area;
+  params.contact.grip_strength = -0.5 * force.back() / area;
+  Simulation weak = make_simulation(params, ToolMode::pull);
+  lead(weak, hand_at(1.5e-3, 0.0, ToolMode::pull), 150);
+  lead(weak, hand_at(1.5e-3, 0.0, ToolMode::pull), 100);
+  double most = 0.0;
+  for (int i = 0; i <= 20; ++i)
+    for (const Vec3& f : lead(weak, hand_at(1.5e-3 - 1e-4 * i, 0.0, ToolMode::pull), 60))
+      most = std::max(most, -f.z());
+  EXPECT_NEAR(most / (-0.5 * force.back()), 1.0, 0.05);
+  EXPECT_LT(lead(weak, hand_at(-2e-3, 0.0, ToolMode::pull), 200).back().norm(), 1e-9);
+}
+
+TEST(Pull, DoesNotDependOnTheStiffness) {
+  using device::ToolMode;
+  std::vector<double> drawn;
+  for (const double factor : {1.0, 10.0, 100.0}) {
+    Params params = make_params();
+    params.contact.pressure_stiffness = 1e9 * factor;
+    Simulation simulation = make_simulation(params, ToolMode::pull);
+    lead(simulation, hand_at(2e-3, 0.0, ToolMode::pull), 150);
+    lead(simulation, hand_at(2e-3, 0.0, ToolMode::pull), 100);
+    lead(simulation, hand_at(-1e-3, 0.0, ToolMode::pull), 600);
+    drawn.push_back(lead(simulation, hand_at(-1e-3, 0.0, ToolMode::pull), 200).back().z());
+  }
+  // One cell to the contact's radius: which of some dozens of points are held differs by a few.
+  ASSERT_LT(drawn[1], -0.1);
+  EXPECT_NEAR(drawn[0] / drawn[1], 1.0, 0.1);
+  EXPECT_NEAR(drawn[2] / drawn[1], 1.0, 0.1);
+}
+
+/// Hand and body get the same impulse: what the hand felt over the ticks is what the body's momentum, free of
+/// supports, has become.
+TEST(Momentum, OfHandAndBodyIsTheSame) {
+  for (const double friction : {0.0, 0.4}) {
+    Params params = make_params(5);
+    params.contact.friction = friction;
+    Body body = test::make_block_body(6, 6, 4, Vec3(0.04, 0.04, kTop), 0.0, false);
+    Simulation simulation(std::move(body), contact::make_sphere_tool(kRadius, 2), params, hand_at(-1e-3));
+    Vec3 felt = Vec3::Zero();
+    for (const device::DeviceSample& to : {hand_at(1e-3, 1e-3), hand_at(-4e-3, 2e-3)})
+      for (const Vec3& force : lead(simulation, to, 50)) felt += params.rates.haptic_period * force;
+    Vec3 momentum = Vec3::Zero();
+    const Field& mass = simulation.solid().materials.mass();
+    const Points& v = simulation.body_state().solid.v;
+    for (Eigen::Index n = 0; n < v.cols(); ++n) momentum += mass(n) * v.col(n);
+    ASSERT_GT(momentum.norm(), 1e-4);
+    EXPECT_LT((felt + momentum).norm(), 1e-6 * momentum.norm());
+  }
+}
+
+/// Presses, slides, pulls, and stabs far too deep in one tick.
+TEST(FailedTickOfPressure, LeavesTheStateOfTheTickBefore) {
+  using device::ToolMode;
+  for (const ToolMode mode : {ToolMode::push, ToolMode::pull}) {
+    Params params = make_params();
+    params.contact.friction = 0.4;
+    params.solid.min_volume_ratio = 0.6;
+    const auto make = [&] {
+      Simulation simulation = make_simulation(params, mode);
+      lead(simulation, hand_at(1.5e-3, 1e-3, mode), 40);
+      lead(simulation, hand_at(1.0e-3, 1.5e-3, mode), 20);
+      return simulation.take_snapshot();
+    };
+    const Snapshot start = make();
+    Simulation simulation = make_simulation(params, mode);
+    Simulation twin = make_simulation(params, mode);
+    simulation.restore(start, "start");
+    twin.restore(start, "start");
+    const std::string before = simulation.state_hash();
+    ASSERT_EQ(twin.state_hash(), before);
+    const StepStatus status = simulation.tick(hand_at(0.018, 0.0, ToolMode::push));
+    ASSERT_FALSE(status.is_ok());
+    const Snapshot after = simulation.take_snapshot();
+    for (const auto& [name, value] : start) {
+      const Eigen::MatrixXd& is = after.at(name);
+      EXPECT_TRUE(is.rows() == value.rows() && is.cols() == value.cols() && is == value) << name;
+    }
+    EXPECT_EQ(simulation.state_hash(), before);
+    const device::DeviceSample next = hand_at(0.8e-3, 3e-3, mode);
+    EXPECT_EQ(lead(simulation, next, 30), lead(twin, next, 30));
+    EXPECT_EQ(simulation.state_hash(), twin.state_hash());
+  }
+}
+
+}  // namespace
+}  // namespace argil::sim
