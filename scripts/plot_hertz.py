@@ -133,7 +133,7 @@ def write_tool(file, height, reach, rings):
 
 
 def press(argil, folder, tool, cells, stiffness, element):
-    """Force at the hand over the closed form; `stiffness`: of a pair over E* a."""
+    """Force at the hand over the closed form; `stiffness`: of a pair over E* a, or a `contact` of a scenario."""
     depth, exact, height = shape_of(tool)
     block = folder / f"block{cells}"
     if not block.with_suffix(".ele").exists():
@@ -156,8 +156,9 @@ def press(argil, folder, tool, cells, stiffness, element):
         "material": {"youngs_modulus_Pa": YOUNG, "poissons_ratio": POISSON, "density_kg_per_m3": 1,
                      "clay_kernel": {"form": "off"}, "plasticity": {"enabled": False}},
         "tool": {"shape": {"kind": "mesh", "file": "tool.obj"}},
-        "contact": {"penalty": "discrete", "vertex_face_stiffness_N_per_m": stiffness * REDUCED * CONTACT_RADIUS,
-                    "edge_edge_stiffness_N_per_m": stiffness * REDUCED * CONTACT_RADIUS},
+        "contact": stiffness if isinstance(stiffness, dict) else {
+            "penalty": "discrete", "vertex_face_stiffness_N_per_m": stiffness * REDUCED * CONTACT_RADIUS,
+            "edge_edge_stiffness_N_per_m": stiffness * REDUCED * CONTACT_RADIUS},
         "dynamics": {"model": "linear", "element": element,
                      "solver": {"kind": "pcg_jacobi", "max_iterations": 100000}},
         "haptics": {"period_s": PERIOD, "water_period_ticks": 1, "frame_period_ticks": 1000},
