@@ -154,13 +154,14 @@ void describe_contact(Summary& s) {
     s.simplify("contact surface: the cage's boundary, not the skin that is drawn");
   else if (!surface.empty())
     s.keep("contact surface: the one that is drawn");
-  const double per_area = s.number("/contact/stiffness_Pa_per_m");
-  if (s.word("/contact/law") == "pressure")
+  if (s.word("/contact/law") == "pressure") {
+    const double per_area = s.number("/contact/stiffness_Pa_per_m");
     s.simplify("contact: a pressure of " + (per_area > 0.0 ? print(per_area) + " Pa/m" : "40 E*/cell") +
                " times the depth, over the area in touch");
-  else
+  } else {
     s.simplify("contact: a penalty of " + print(s.number("/contact/vertex_face_stiffness_N_per_m")) +
                " N/m a pair, so the tool sinks in");
+  }
   if (s.word("/contact/penalty") == "discrete") s.simplify("penetration: at the end of a tick only");
   if (s.number("/contact/friction") == 0.0) s.simplify("friction: none");
   if (s.is("/dynamics/implicit_contact", false)) s.simplify("contact stiffness: not in the implicit solve");
