@@ -7,29 +7,13 @@
 #include <utility>
 
 #include "base/check.h"
+#include "contact/triangle_pieces.h"
 
 namespace argil::contact {
 namespace {
 
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 constexpr int kMostLevels = 10;  // of splitting a triangle in four
-
-/// Share of a triangle where a linear function with these corner values is negative.
-double compute_negative_share(const std::array<double, 3>& d) {
-  const auto num_negative = std::count_if(d.begin(), d.end(), [](double value) { return value < 0.0; });
-  if (num_negative == 0 || num_negative == 3) return num_negative == 3 ? 1.0 : 0.0;
-  std::size_t alone = 0;
-  while ((d[alone] < 0.0) != (num_negative == 1)) ++alone;
-  const double da = d[alone];
-  const double cut = da * da / ((da - d[(alone + 1) % 3]) * (da - d[(alone + 2) % 3]));
-  return num_negative == 1 ? cut : 1.0 - cut;
-}
-
-/// The four quarters of a piece.
-std::array<std::array<Vec3, 3>, 4> quarter(const std::array<Vec3, 3>& p) {
-  const std::array<Vec3, 3> m = {0.5 * (p[0] + p[1]), 0.5 * (p[1] + p[2]), 0.5 * (p[2] + p[0])};
-  return {{{p[0], m[0], m[2]}, {m[0], p[1], m[1]}, {m[2], m[1], p[2]}, {m[0], m[1], m[2]}}};
-}
 
 Vec3 centre_of(const std::array<Vec3, 3>& piece) {
   return (piece[0] + piece[1] + piece[2]) / 3.0;

@@ -5,21 +5,10 @@
 #include <cmath>
 
 #include "contact/detector.h"
+#include "contact/triangle_pieces.h"
 
 namespace argil::contact {
 namespace {
-
-/// Share of a triangle on which a linear function with these corner values is negative.
-double compute_negative_share(const std::array<double, 3>& d) {
-  const auto num_negative = std::count_if(d.begin(), d.end(), [](double value) { return value < 0.0; });
-  if (num_negative == 0 || num_negative == 3) return num_negative == 3 ? 1.0 : 0.0;
-  // The corner that is alone on its side cuts off a triangle similar to none, of this share.
-  std::size_t alone = 0;
-  while ((d[alone] < 0.0) != (num_negative == 1)) ++alone;
-  const double da = d[alone];
-  const double cut = da * da / ((da - d[(alone + 1) % 3]) * (da - d[(alone + 2) % 3]));
-  return num_negative == 1 ? cut : 1.0 - cut;
-}
 
 /// For tools of any shape: by quartering the triangle.
 struct Measure {
@@ -41,10 +30,9 @@ struct Measure {
     if (d <= -reach) return 1.0;
     if (level == 0)
       return compute_negative_share({find_distance(x[0]), find_distance(x[1]), find_distance(x[2])});
-    const std::array<Vec3, 3> m = {0.5 * (x[0] + x[1]), 0.5 * (x[1] + x[2]), 0.5 * (x[2] + x[0])};
-    return 0.25 *
-           (compute_share({x[0], m[0], m[2]}, level - 1) + compute_share({m[0], x[1], m[1]}, level - 1) +
-            compute_share({m[2], m[1], x[2]}, level - 1) + compute_share({m[0], m[1], m[2]}, level - 1));
+    double sum = 0.0;
+    for (const std::array<Vec3, 3>& part : quarter(x)) sum += compute_share(part, level - 1);
+    return 0.25 * sum;
   }
 };
 
