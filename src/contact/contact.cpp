@@ -39,10 +39,20 @@ void Contacts::clear() {
   contacts.clear();
   touched_triangle.clear();
   touched_area.clear();
+  sum_reactions(Vec3::Zero());
+}
+
+void Contacts::sum_reactions(const Vec3& hand) {
   force_on_tool.setZero();
   torque_on_tool.setZero();
   resistance_on_tool.setZero();
   resistance_torque_on_tool.setZero();
+  for (const Contact& c : contacts) {
+    force_on_tool -= c.force;
+    torque_on_tool -= (c.point - hand).cross(c.force);
+    resistance_on_tool -= c.resistance;
+    resistance_torque_on_tool -= (c.point - hand).cross(c.resistance);
+  }
 }
 
 ContactDetector::Impl::Impl(const Triangles& surface, int num_body_vertices,
@@ -166,12 +176,7 @@ void ContactDetector::find_contacts(const Points& x_t0, const Points& x_t1, cons
   impl.press_vertices(motion, contacts);
   impl.press_edges(motion, contacts);
   impl.measure_touched(motion, contacts);
-  for (const Contact& c : contacts.contacts) {
-    contacts.force_on_tool -= c.force;
-    contacts.torque_on_tool -= (c.point - pose_t1.position).cross(c.force);
-    contacts.resistance_on_tool -= c.resistance;
-    contacts.resistance_torque_on_tool -= (c.point - pose_t1.position).cross(c.resistance);
-  }
+  contacts.sum_reactions(pose_t1.position);
 }
 
 bool ContactDetector::overlaps(const Points& x, const Pose& pose) const {

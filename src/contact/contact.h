@@ -54,7 +54,9 @@ struct Contacts {
   Vec3 torque_on_tool = Vec3::Zero();      ///< [N m] about the hand's point at t₁
   Vec3 resistance_on_tool = Vec3::Zero();  ///< [N]: −Σ resistance
   Vec3 resistance_torque_on_tool = Vec3::Zero();  ///< [N m] about the hand's point at t₁
-  void clear();                                   ///< of results; keeps with_touched
+  /// Sums the four above up from `contacts`, for a hand whose point is at `hand` [m].
+  void sum_reactions(const Vec3& hand);
+  void clear();  ///< of results; keeps with_touched
 };
 
 /// Which vertices lie inside at the end of an interval, increasing, and the face each of them presses on.

@@ -359,10 +359,7 @@ void PressureContact::find_contacts(const Points& x, const Pose& pose_t0, const 
     contacts.touched_triangle.push_back(face.number);
     contacts.touched_area.push_back(face.cover.area);
   }
-  for (const Contact& c : contacts.contacts) {
-    contacts.force_on_tool -= c.force;
-    contacts.torque_on_tool -= (c.point - pose_t1.position).cross(c.force);
-  }
+  contacts.sum_reactions(pose_t1.position);
 }
 
 }  // namespace argil::contact

@@ -91,9 +91,8 @@ void SurfaceFriction::stretch(const Points& x_t0, const Points& x_t1, const Pose
   for (Contact& c : contacts.contacts) {
     c.friction = m_friction;
     c.resistance = c.stiffness * find_stretch(c);
-    contacts.resistance_on_tool -= c.resistance;
-    contacts.resistance_torque_on_tool -= (c.point - pose_t1.position).cross(c.resistance);
   }
+  contacts.sum_reactions(pose_t1.position);
   for (const int v : m_state.vertex) m_place[static_cast<std::size_t>(v)] = -1;
 }
 

@@ -65,9 +65,8 @@ void Grip::find_contacts(const Points& x, const contact::Pose& from, const conta
     c.area = bond.area;
     c.point = point;
     contacts.contacts.push_back(c);
-    contacts.force_on_tool -= c.force;
-    contacts.torque_on_tool -= (c.point - to.position).cross(c.force);
   }
+  contacts.sum_reactions(to.position);
 }
 
 void Grip::serialize(Archive& archive) {
