@@ -106,9 +106,8 @@ void check_contact(Scenario& s) {
   if (c.damping > 0.0)
     throw InputError(s.file, "/contact/damping_s_per_m", "is of the pairs' law, not of the pressure law",
                      "leave it out, or set /contact/law to pairs");
-  const solid::SolidParams& d = s.params.solid;
-  const bool is_implicit = d.implicit_contact && d.integrator != solid::Integrator::symplectic_euler;
-  if (c.friction > 0.0 && (!is_implicit || s.params.rates.between_frames != sim::BetweenFrames::hold))
+  if (c.friction > 0.0 &&
+      (!s.params.solid.solves_contact() || s.params.rates.between_frames != sim::BetweenFrames::hold))
     throw InputError(s.file, "/contact/friction",
                      "of the pressure law is found in an implicit step with one detection",
                      "set /haptics/between_frames to hold and /dynamics/implicit_contact to true, or set "

@@ -150,9 +150,7 @@ void LoadCollector::add_stiffness_along(const contact::Contact& c, const Vec3& d
                                         double force_at_rest, const Points& x) {
   if (!(stiffness > 0.0)) return;
   m_surface.add_stiffness(c, direction, stiffness, m_elements, m_load.stiffness);
-  const bool is_implicit =
-      m_params.solid.implicit_contact && m_params.solid.integrator != solid::Integrator::symplectic_euler;
-  if (!is_implicit) force_at_rest = 0.0;
+  if (!m_params.solid.solves_contact()) force_at_rest = 0.0;
   if (force_at_rest != 0.0) m_load.forces.push_back({c.vertex, c.weight, force_at_rest * direction});
   // One entry stands for the contact as a whole, more of them for one of its vertices each.
   const std::size_t added = m_load.stiffness.size() - m_load.levers.size();

@@ -41,9 +41,7 @@ struct Body {
     return !prediction.is_static && model.params.integrator == Integrator::symplectic_euler;
   }
   /// Do contacts change within a step?
-  bool has_implicit_contact() const {
-    return model.params.implicit_contact && !prediction.is_static && !is_explicit();
-  }
+  bool has_implicit_contact() const { return model.params.solves_contact() && !prediction.is_static; }
   Strained strained() const { return strained(*plastic_strain); }
   Strained strained(const TensorField& strain) const {
     return {model, materials, kinematics, strain, forces.volume};

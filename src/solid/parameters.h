@@ -52,6 +52,8 @@ struct SolidParams {
       1e-3;  ///< local: speed over the fastest node's below which nodes stay where they are
   bool implicit_contact = true;   ///< contact stiffness enters the implicit solve
   double min_volume_ratio = 0.0;  ///< det F at or below which the run stops
+  /// Does a step in time solve for its contacts' forces?
+  bool solves_contact() const { return implicit_contact && integrator != Integrator::symplectic_euler; }
 };
 
 }  // namespace argil::solid
