@@ -12,6 +12,10 @@ enum class ContactLaw {
   pressure,  ///< κ times the depth, over the area in touch
 };
 
+/// κ h/E* [–] of a pressure whose κ is chosen: doubling it changes the force by less than a hundredth where
+/// the patch's radius has two cells or more.
+inline constexpr double kChosenStiffness = 40.0;
+
 /// How deep a pair counts.
 enum class PenaltyKind {
   continuous,  ///< eqs. 7 and 8: mean over the interval

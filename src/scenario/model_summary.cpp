@@ -4,6 +4,7 @@
 #include <limits>
 #include <sstream>
 
+#include "contact/parameters.h"
 #include "scenario/json_document.h"
 #include "scenario/strain_models.h"
 
@@ -156,7 +157,8 @@ void describe_contact(Summary& s) {
     s.keep("contact surface: the one that is drawn");
   if (s.word("/contact/law") == "pressure") {
     const double per_area = s.number("/contact/stiffness_Pa_per_m");
-    s.simplify("contact: a pressure of " + (per_area > 0.0 ? print(per_area) + " Pa/m" : "40 E*/cell") +
+    s.simplify("contact: a pressure of " +
+               (per_area > 0.0 ? print(per_area) + " Pa/m" : print(contact::kChosenStiffness) + " E*/cell") +
                " times the depth, over the area in touch");
   } else {
     s.simplify("contact: a penalty of " + print(s.number("/contact/vertex_face_stiffness_N_per_m")) +

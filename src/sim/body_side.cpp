@@ -60,10 +60,10 @@ StepStatus BodySide::find_equilibrium() {
   return StepStatus::ok();
 }
 
-/// κ = c E*/h with E* = E/(1 − ν²) and h the edge of a regular tet of the size of the one below: a patch of
-/// radius a yields by some E*/a, so that κ is stiff against the body where a is two cells and more.
+/// κ = kChosenStiffness E*/h with E* = E/(1 − ν²) and h the edge of a regular tet of the size of the one
+/// below: a patch of radius a yields by some E*/a, so that κ is stiff against the body where a is two cells
+/// and more.
 contact::SurfaceStiffness BodySide::find_surface_stiffness() const {
-  constexpr double kStiffer = 40.0;  // c [–]: doubling it changes the force by less than a hundredth
   const solid::Elements& elements = m_solid.model.elements;
   const double nodes_per_edge = elements.nodes_per_tet == 4 ? 1.0 : 2.0;
   const Eigen::Index count = m_surface.triangles().cols();
@@ -79,7 +79,7 @@ contact::SurfaceStiffness BodySide::find_surface_stiffness() const {
     const double cell = std::cbrt(6.0 * std::numbers::sqrt2 * volume) / nodes_per_edge;
     stiffness.per_area(t) = m_params.contact.pressure_stiffness > 0.0
                                 ? m_params.contact.pressure_stiffness
-                                : kStiffer * stiffness.modulus(t) / cell;
+                                : contact::kChosenStiffness * stiffness.modulus(t) / cell;
   }
   return stiffness;
 }

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/archive.h"
-#include "contact/pressure.h"
 #include "base/status.h"
+#include "contact/pressure.h"
 #include "sim/body_materials.h"
 #include "sim/compliance.h"
 #include "sim/contact_surface.h"
