@@ -40,22 +40,31 @@ void HandSide::begin_at(const device::DeviceSample& start) {
   m_state.tool = {start.position, start.orientation};
   m_state.mode = start.mode;
   m_state.contact_tool = m_state.tool;
-  if (m_touched.x_t0().size() > 0) m_detector.prepare(m_touched.x_t0(), m_state.tool);
-  if (m_pressure && m_touched.x_t0().size() > 0) m_pressure->prepare(m_touched.x_t0());
+  if (m_touched.x_t0().size() > 0) prepare_detection(m_touched.x_t0());
   commit();
 }
 
 /// A first look at contacts, in which nothing moves.
 void HandSide::prepare_alone() {
   m_detector.share(1);
-  m_detector.find_contacts(m_touched.x_t0(), m_touched.x_t0(), m_state.tool, m_state.tool, m_contacts, 0.0);
+  if (m_pressure)
+    m_pressure->find_contacts(m_touched.x_t0(), m_state.tool, m_state.tool, m_state.yielding, m_contacts);
+  else
+    m_detector.find_contacts(m_touched.x_t0(), m_touched.x_t0(), m_state.tool, m_state.tool, m_contacts, 0.0);
   commit();
 }
 
 void HandSide::place_surface(const Points& x) {
   m_touched.place(x);
-  m_detector.prepare(x, m_state.tool);
-  if (m_pressure) m_pressure->prepare(x);
+  prepare_detection(x);
+}
+
+/// Of the contact law: a surface at x.
+void HandSide::prepare_detection(const Points& x) {
+  if (m_pressure)
+    m_pressure->prepare(x);
+  else
+    m_detector.prepare(x, m_state.tool);
 }
 
 void HandSide::receive(StepResult& result) {
@@ -136,7 +145,7 @@ void HandSide::gather_contact_forces() {
   m_collector.begin_felt();
   if (keeps_shape()) return;
   if (m_pressure) return gather_pressure();
-  const bool pushes = m_state.mode == ToolMode::push;
+  const bool pushes = !reverses();
   for (const contact::Contact& c : m_contacts.contacts) {
     const Vec3 force = (pushes ? c.force : Vec3(-c.force)) + c.resistance;
     m_collector.add_force(c, force);

@@ -97,6 +97,7 @@ class HandSide {
   void release_springs();
   void serialize_springs(Archive& archive);
   // hand_side.cpp
+  void prepare_detection(const Points& x);
   bool is_compliant() const;
   bool is_wetting() const;
   bool reverses() const { return !m_pressure && m_state.mode == device::ToolMode::pull; }
