@@ -25,7 +25,8 @@ class Archive {
   static Archive make_restoring(const Snapshot& snapshot, const std::string& origin);
   /// The same, but leaves solver history as it is: what only makes a solve shorter (see History).
   static Archive make_restoring_without_history(const Snapshot& snapshot, const std::string& origin);
-  /// Adds names, shapes and bits of the fields to `hash`, in the order in which they are listed.
+  /// Adds names, shapes and bits of the fields to `hash`, in the order in which they are listed; also those
+  /// of solver history.
   static Archive make_hashing(Sha256& hash);
 
   bool is_restoring() const { return m_origin.has_value(); }

@@ -35,11 +35,11 @@ double interpolate_monotone(std::span<const double> x, std::span<const double> y
          (t3 - t2) * h * m1;
 }
 
-WetState make_state(double E, double nu, double yield) {
+MoistState make_state(double E, double nu, double yield) {
   return {E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu)), yield};
 }
 
-WetState make_state(const MediumResult& medium, double yield) {
+MoistState make_state(const MediumResult& medium, double yield) {
   return {medium.bulk_modulus - 2.0 / 3.0 * medium.shear_modulus, medium.shear_modulus, yield};
 }
 
@@ -51,10 +51,10 @@ std::pair<std::size_t, double> locate(double saturation) {
   return {node, at - static_cast<double>(node)};
 }
 
-WetState interpolate_state(const std::vector<WetState>& states, double saturation) {
+MoistState interpolate_state(const std::vector<MoistState>& states, double saturation) {
   const auto [node, share] = locate(saturation);
-  const WetState& a = states[node];
-  const WetState& b = states[node + 1];
+  const MoistState& a = states[node];
+  const MoistState& b = states[node + 1];
   return {std::lerp(a.lambda, b.lambda, share), std::lerp(a.mu, b.mu, share), a.yield};
 }
 
@@ -96,7 +96,7 @@ bool MoistureTable::is_proportional() const {
   return m_states.empty() || (medium.fluid_bulk_modulus == 0.0 && medium.fluid_shear_modulus == 0.0);
 }
 
-WetState MoistureTable::at(double saturation) const {
+MoistState MoistureTable::at(double saturation) const {
   const double S = std::clamp(saturation, 0.0, 1.0);
   const Moisture& m = m_moisture;
   if (!m_states.empty()) return with_strength(interpolate_state(m_states, S), S);
@@ -108,20 +108,20 @@ WetState MoistureTable::at(double saturation) const {
   return with_strength(make_state(E, m_dry.poissons_ratio, yield), S);
 }
 
-WetState MoistureTable::at(double saturation, double youngs_modulus) const {
+MoistState MoistureTable::at(double saturation, double youngs_modulus) const {
   if (!is_proportional())
     return with_strength(make_state(evaluate(saturation, youngs_modulus), m_yield), saturation);
   const Moisture& m = m_moisture;
   const bool by_table = m.law == MoistureLaw::table && m.softens_elasticity;
   const double factor = youngs_modulus / (by_table ? m.table_youngs_modulus.front() : m_dry.youngs_modulus);
-  WetState state = at(saturation);
+  MoistState state = at(saturation);
   state.lambda *= factor;
   state.mu *= factor;
   return state;
 }
 
 /// What suction, liquidity and yield law make of modulus and yield strain.
-WetState MoistureTable::with_strength(WetState state, double saturation) const {
+MoistState MoistureTable::with_strength(MoistState state, double saturation) const {
   const Moisture& m = m_moisture;
   double strength = compute_suction_factor(m, saturation);  // of modulus and yield stress alike
   if (m.law == MoistureLaw::liquidity_index) strength *= compute_liquidity_factor(m, saturation);

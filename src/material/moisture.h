@@ -5,8 +5,8 @@
 
 namespace argil::material {
 
-/// What a tet of saturation S offers the solid.
-struct WetState {
+/// Stiffness and strength of clay of one saturation S, dry clay included.
+struct MoistState {
   double lambda = 0.0;  ///< Lamé λ of the isotropic part [Pa]
   double mu = 0.0;      ///< Lamé μ of the isotropic part [Pa]
   double yield = 0.0;   ///< elastic strain norm at which it flows [–]
@@ -40,7 +40,7 @@ class MoistureTable {
   /// `yield` (–): dry yield strain.  `porosity` n (–).  Requires is_supported(moisture.medium), table columns
   /// of equal length ≥ 2 with S increasing from 0 to 1.
   MoistureTable(const Elastic& dry, double yield, const Moisture& moisture, double porosity);
-  WetState at(double saturation) const;
+  MoistState at(double saturation) const;
   /// Full stiffness at S (Mandel) with the inclusions' axis along `axis` (unit length). Only when not
   /// is_isotropic().
   Mat6 stiffness_at(double saturation, const Vec3& axis) const;
@@ -48,13 +48,13 @@ class MoistureTable {
   /// The same of clay of this dry Young's modulus [Pa] in place of the material's. Nothing but the effective
   /// medium of water with a stiffness of its own knows more than a factor: there the law is evaluated, which
   /// costs a scheme each time, for C(E, K_I) is not E times C(1, K_I).  `table`: E(S)/E(0) counts.
-  WetState at(double saturation, double youngs_modulus) const;
+  MoistState at(double saturation, double youngs_modulus) const;
   Mat6 stiffness_at(double saturation, const Vec3& axis, double youngs_modulus) const;
   /// False only for aligned inclusions that are no spheres, in a law that uses them.
   bool is_isotropic() const;
 
  private:
-  WetState with_strength(WetState state, double saturation) const;
+  MoistState with_strength(MoistState state, double saturation) const;
   bool is_proportional() const;
   MediumResult evaluate(double saturation, double youngs_modulus) const;
 
@@ -62,7 +62,8 @@ class MoistureTable {
   double m_yield;
   double m_porosity;
   Moisture m_moisture;
-  std::vector<WetState> m_states;  // of the effective medium at S = i/(size−1); empty where it does not count
+  std::vector<MoistState>
+      m_states;  // of the effective medium at S = i/(size−1); empty where it does not count
   std::vector<Mat6> m_stiffness;  // axis 3; empty when isotropic
 };
 

@@ -30,7 +30,7 @@ void BodyMaterials::set(int tet, double S) {
   m_saturation(tet) = S;
   const bool has_own_modulus = m_body.youngs_modulus.size() > 0;
   const double E = has_own_modulus ? m_body.youngs_modulus(tet) : m_params.elastic.youngs_modulus;
-  const material::WetState wet = has_own_modulus ? m_moisture.at(S, E) : m_moisture.at(S);
+  const material::MoistState wet = has_own_modulus ? m_moisture.at(S, E) : m_moisture.at(S);
   solid::set_material(m_solid, m_region, tet, {wet.lambda, wet.mu, wet.yield});
   if (m_params.water.swelling > 0.0) solid::set_swelling(m_solid, tet, 1.0 + m_params.water.swelling * S);
   if (m_params.water.adds_mass) solid::set_water_mass(m_solid, tet, m_water.capacity(tet) * S);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/check.h"
-#include "water/implicit_system.h"
 #include "water/water.h"
 
 namespace argil::water {

@@ -6,11 +6,6 @@
 
 namespace argil::water {
 
-// Two tets that both hold less than this pass nothing. Else an explicit scheme would wet one layer of tets a
-// substep with saturations like 1e-100, and a local touch would cost as much as the whole body. What is held
-// back is not lost: it stays where it is, and is booked.
-inline constexpr double kTrace = 1e-12;
-
 /// Matrix V + h L of an implicit step and its factor. L: conductances of the faces.
 struct ImplicitSystem {
   linear::SparseCholesky factor;

@@ -20,6 +20,11 @@ struct Stencil {
   double monotone_step = 0.0;  ///< min V_t/Σ conductance [s]: longest explicit step with a maximum principle
 };
 
+/// Saturation [–]: two tets that both hold less pass nothing. Else an explicit scheme would wet one layer of
+/// tets a substep with saturations like 1e-100, and a local touch would cost as much as the whole body. What
+/// is held back is not lost: it stays where it is, and is booked.
+inline constexpr double kTrace = 1e-12;
+
 /// Row where the three entries of a corner begin.
 inline Eigen::Index row_of(int corner) {
   return Eigen::Index{3} * corner;

@@ -63,9 +63,9 @@ class PoreWater {
   /// Explicit substeps that `diffuse(step_s)` takes with the present water.
   double num_substeps(double step_s) const;
 
-  /// Tets that hold water, or are next to such, or were since the last drying, increasing: in no others has
-  /// the saturation changed, but in those that the last drying left dry.
+  /// Tets that may hold water, in increasing order. Saturation changes in these and in dried() alone.
   std::span<const int> active() const { return m_active; }
+  /// Tets that the last transfer to a drying tool left dry; they are no longer active.
   std::span<const int> dried() const { return m_dried; }
 
   const Field& saturation() const { return m_state.saturation; }

@@ -12,10 +12,10 @@ constexpr Elastic kClay{1e5, 0.3};
 constexpr double kYield = 0.02;
 constexpr double kPorosity = 0.4;
 
-double youngs_modulus(const WetState& s) {
+double youngs_modulus(const MoistState& s) {
   return s.mu * (3.0 * s.lambda + 2.0 * s.mu) / (s.lambda + s.mu);
 }
-double poissons_ratio(const WetState& s) {
+double poissons_ratio(const MoistState& s) {
   return s.lambda / (2.0 * (s.lambda + s.mu));
 }
 
@@ -28,7 +28,7 @@ TEST(MoistureTable, FollowsTheEffectiveMediumToTheInterpolationError) {
       const MoistureTable table(kClay, kYield, moisture, kPorosity);
       for (double S = 0.0; S <= 1.0; S += 0.01237) {
         const MediumResult exact = compute_effective_medium(kClay, moisture.medium, kPorosity * S);
-        const WetState wet = table.at(S);
+        const MoistState wet = table.at(S);
         // h²/8 of the curvature: 1.2e-7·|f''|; the scheme's moduli bend by less than 5 of themselves over S.
         EXPECT_NEAR(wet.mu, exact.shear_modulus, 6e-7 * exact.shear_modulus) << S;
         EXPECT_NEAR(wet.lambda + 2.0 / 3.0 * wet.mu, exact.bulk_modulus, 2e-6 * exact.bulk_modulus) << S;
