@@ -49,7 +49,9 @@ void HandSide::serialize(Archive& archive) {
   serialize_contacts(archive);
   archive.number("ledger/port_energy", m_state.port_energy);
   archive.number("ledger/passivity_energy", m_state.passivity_energy);
-  if (archive.is_restoring()) commit();
+  if (!archive.is_restoring()) return;
+  m_still_detections = 0;  // m_contacts are of another state
+  commit();
 }
 
 /// Kinematics are a function of what was saved and are found again.

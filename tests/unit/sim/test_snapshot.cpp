@@ -117,6 +117,38 @@ TEST(Snapshot, ResumedAtAnyStepItEndsInTheSameBits) {
   }
 }
 
+/// Presses to `depth` [m] and stands still; the surface stands still, too, until the first step.
+void press_and_stand(Simulation& simulation, double depth, Tick last) {
+  device::DeviceSample sample;
+  for (Tick k = simulation.clock().tick + 1; k <= last; ++k) {
+    sample.position = {0.0201, 0.0197, 0.02 + kToolRadius - depth};
+    ASSERT_TRUE(simulation.tick(sample).is_ok()) << k;
+  }
+}
+
+// Contacts of a tool and a surface that stand still are not found again. Those that a simulation has when it
+// is restored are of another state, however long its tool had stood still.
+TEST(Snapshot, RestoredWhereAToolStoodStillItFindsContactsAnew) {
+  Params params = make_params();
+  params.fidelity.mode = FidelityMode::automatic;
+  params.rates.between_frames = BetweenFrames::re_evaluate;
+  params.rates.physics_period_ticks = params.rates.water_period_ticks = 20;
+  constexpr Tick kAt = 10;
+  Simulation deep = make_simulation(params);
+  press_and_stand(deep, 0.0006, kAt);
+  const Snapshot saved = deep.take_snapshot();
+  Simulation fresh = make_simulation(params);
+  fresh.restore(saved, "run.h5");
+  press_and_stand(fresh, 0.0006, kAt + 3);
+  Simulation used = make_simulation(params);
+  press_and_stand(used, 0.0002, kAt);
+  ASSERT_LT(used.hand_state().hand_force.norm(), 0.9 * deep.hand_state().hand_force.norm());
+  used.restore(saved, "run.h5");
+  press_and_stand(used, 0.0006, kAt + 3);
+  EXPECT_EQ(used.haptic_record().force, fresh.haptic_record().force);
+  EXPECT_EQ(used.state_hash(), fresh.state_hash());
+}
+
 TEST(Snapshot, OfAnotherSceneIsRefusedByTheFieldsName) {
   const Snapshot saved = make_simulation(make_params()).take_snapshot();
   Simulation larger = make_simulation(make_params(), 5);
