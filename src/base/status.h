@@ -10,7 +10,7 @@ namespace argil {
 
 /// Why a run that started well could not go on. Ends the program with exit code 3.
 struct Failure {
-  Tick tick = 0;         ///< haptic tick in which it was seen
+  Tick tick = 0;         ///< number, from 1, of the tick that was refused or could not be made
   std::string stage;     ///< stage of the step: "contact", "water", "solid", …
   int element = -1;      ///< tet, vertex or triangle concerned; -1: none in particular
   std::string quantity;  ///< what was out of bounds, with unit

@@ -27,6 +27,8 @@ using Tets = Eigen::Matrix<int, 4, Eigen::Dynamic>;  ///< 4×m vertex numbers, p
 using Field = Eigen::VectorXd;                       ///< one scalar per entity
 using TensorField = Eigen::Matrix<double, 6, Eigen::Dynamic>;  ///< one symmetric tensor per entity, Mandel
 
-using Tick = std::int64_t;  ///< count of haptic periods since the start of the run
+/// Count of haptic periods since the start of the run. Ticks are numbered from 1 by the count at their end: a
+/// clock that has made k ticks is about to make, or is making, tick k + 1.
+using Tick = std::int64_t;
 
 }  // namespace argil

@@ -79,12 +79,13 @@ class BodySide {
   // body_side.cpp
   void begin_step(const ContactLoad& load, StepResult& result);
   void serialize_water(Archive& archive);
-  /// At the end of the present step, and the tick in which it began.
+  /// At the end of the present step [s].
   double time_at_end() const {
     return static_cast<double>(m_state.steps * m_params.rates.physics_period_ticks) *
            m_params.rates.haptic_period;
   }
-  Tick tick() const { return m_state.hand.ticks - 1; }
+  /// Number of the tick at whose end the present step began.
+  Tick tick() const { return m_state.hand.ticks; }
   // body_records.cpp
   TensorField mean_plastic_strain() const;
 

@@ -4,13 +4,14 @@
 
 namespace argil::sim {
 
-/// Integer time. Tick k covers [kδ, (k+1)δ]; what has a period of p ticks is due at the end of every p-th.
+/// Integer time. Tick k, from 1, covers [(k−1)δ, kδ]; what has a period of p ticks is due at the end of every
+/// p-th.
 struct Clock {
-  Tick tick = 0;          ///< tick that is being computed
+  Tick tick = 0;          ///< ticks made; the one under way has the number tick + 1
   double period = 0.001;  ///< δ [s]
 
+  /// At the end of the tick under way?
   bool due(int period_ticks) const { return (tick + 1) % period_ticks == 0; }
-  double time_at_end() const { return static_cast<double>(tick + 1) * period; }  ///< [s]
   double seconds(int ticks) const { return ticks * period; }
   void advance() { ++tick; }
 };

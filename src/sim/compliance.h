@@ -35,7 +35,7 @@ struct BodyBetweenSteps {
   const ContactSurface& surface;
   const solid::SolidState& state;
   double step_s = 0.0;
-  Tick tick = 0;
+  Tick tick = 0;  ///< number of the tick under way
 };
 
 /// How the surface yields between two physics steps: u = C (F − G), with F the present forces on its

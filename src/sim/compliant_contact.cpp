@@ -9,7 +9,7 @@ namespace argil::sim {
 /// springs of the last contacts let it, then comes to balance with those that are found. The hand feels the
 /// force of the place where it is; pairs that came and went within the tick add their mean.
 StepStatus HandSide::find_compliant_force() {
-  const BodyBetweenSteps body = m_body.between_steps(m_state.clock.tick);
+  const BodyBetweenSteps body = m_body.between_steps(m_state.clock.tick + 1);
   follow_with_springs();
   const bool has_deflected = m_compliance.num_known() > 0;
   ARGIL_TRY(m_compliance.press(body, m_springs));
@@ -57,7 +57,7 @@ void HandSide::release_springs() {
 
 StepStatus HandSide::update_compliance() {
   if (m_params.rates.between_frames != BetweenFrames::compliant) return StepStatus::ok();
-  return m_compliance.begin_frame(m_body.between_steps(m_state.clock.tick), m_body.x_before());
+  return m_compliance.begin_frame(m_body.between_steps(m_state.clock.tick + 1), m_body.x_before());
 }
 
 /// The springs of the last detection go with the tool.

@@ -70,7 +70,7 @@ class Shrinking {
   scenario::Scenario make_scenario() const {
     scenario::Scenario s = m_map.load_place(m_place, m_variation);
     if (const auto failure = output::ResultReader(m_place.result.file).read_failure())
-      s.trace.duration = static_cast<double>(failure->tick + 1) * s.params.rates.haptic_period;
+      s.trace.duration = static_cast<double>(failure->tick) * s.params.rates.haptic_period;
     return s;
   }
   const Place& place() const { return m_place; }

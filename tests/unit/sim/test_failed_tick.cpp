@@ -105,6 +105,7 @@ TEST_P(FailedTick, LeavesTheStateOfTheTickBefore) {
   for (int again = 0; again < 2; ++again) {
     const StepStatus status = simulation.tick(fault.sample);
     ASSERT_FALSE(status.is_ok());
+    EXPECT_EQ(status.failure().tick, kBefore);
     EXPECT_NE(status.failure().quantity.find(fault.quantity), std::string::npos) << status.failure().quantity;
     const Snapshot after = simulation.take_snapshot();
     for (const auto& [name, value] : snapshot) {

@@ -73,7 +73,7 @@ TEST_F(Failures, ThatEndEarlyKeepWhatTheyNeedAlone) {
   const auto failure = output::ResultReader(run_file(file, {}, run::kRunFailed)).read_failure();
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->quantity.find("volume ratio"), 0U) << failure->quantity;
-  EXPECT_DOUBLE_EQ(s.trace.duration, 1e-3 * static_cast<double>(failure->tick + 1));
+  EXPECT_DOUBLE_EQ(s.trace.duration, 1e-3 * static_cast<double>(failure->tick));
   run_file(file, {set("/trace/duration_s", 1e-3 * static_cast<double>(failure->tick - 1))}, run::kDone);
 }
 
