@@ -64,9 +64,10 @@ class BodySide {
 
   // Stages of these: body_stages.cpp.
   void transfer_water(const ContactLoad& load, double step_s);
+  void diffuse(double step_s);
   StepStatus refresh_materials();
   StepStatus predict(const ContactLoad& load);
-  bool assemble();
+  bool assemble_or_stop();
   StepStatus solve(bool& is_solved);
   void apply_deflection(const ContactLoad& load, device::Wrench& felt);
   void scale_velocity(const ContactPatch& patch);

@@ -15,8 +15,12 @@ void BodySide::transfer_water(const ContactLoad& load, double step_s) {
   const bool wets = load.mode == device::ToolMode::wet;
   if (wets || load.mode == device::ToolMode::dry)
     m_water.transfer(load.touched_tet, load.touched_area, wets ? 1 : -1, step_s);
-  m_water.diffuse(step_s);
   m_has_moved_water = true;
+}
+
+void BodySide::diffuse(double step_s) {
+  const StageScope scope(m_observer, Stage::water);
+  m_water.diffuse(step_s);
 }
 
 /// Brings the solid up to date with the water. Other moduli under strain, another weight or size: another
@@ -47,8 +51,8 @@ StepStatus BodySide::predict(const ContactLoad& load) {
                            {m_params.rates.step_seconds(), time_at_end(), tick()});
 }
 
-/// True when nothing is left to solve for.
-bool BodySide::assemble() {
+/// True when nothing is left to solve for, also because the body stops where it is (`economy.h`).
+bool BodySide::assemble_or_stop() {
   const StageScope scope(m_observer, Stage::assemble);
   const bool is_solved = solid::assemble(m_solid, m_region, m_loads);
   return m_economy.stops(m_state, m_loads, m_force.contacts(), m_flow.is_anywhere()) || is_solved;
@@ -71,7 +75,6 @@ void BodySide::apply_deflection(const ContactLoad& load, device::Wrench& felt) {
     felt.force -= change;
     felt.torque -= (load.levers[i].point - load.hand.tool.position).cross(change);
   }
-  solid::take_velocity(m_solid, m_region.part(), m_state.solid);
 }
 
 /// v ← G_d^{h/h_ref}(r) v with r from the point of contact (eq. 9). A body that nothing presses is left free,
@@ -133,7 +136,6 @@ void BodySide::flow() {
 
 void BodySide::find_surface(StepResult& result) {
   const StageScope scope(m_observer, Stage::plasticity);
-  m_economy.finish_step(m_state);
   const Points& x = m_state.solid.x;
   result.is_whole = !m_surface.find_moved(m_region.part().nodes, x, result.moved, result.surface_x);
   if (result.is_whole) m_surface.find_positions(x, result.surface_x);

@@ -15,16 +15,6 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
   m_hand.place_surface(surface_now());
 }
 
-StepStatus tick(HandSide& hand, BodySteps& steps, const device::DeviceSample& sample, const TickPlan& plan,
-                ContactLoad* load) {
-  StepStatus status = make_tick(hand, steps, sample, plan);
-  if (status.is_ok())
-    hand.commit();
-  else
-    hand.roll_back(load);
-  return status;
-}
-
 StepStatus Simulation::tick(const device::DeviceSample& sample) {
   const bool is_due = clock().due(m_params.rates.physics_period_ticks);
   return tick(sample, {.begins_step = is_due, .waits_for_step = is_due});

@@ -2,7 +2,8 @@
 
 namespace argil::sim {
 
-/// Stages of a tick, in the order of step.cpp.
+/// What is timed of a tick. Several functions of step.cpp may share one, and cheap ones have none: `solve`
+/// has also deflection and clay kernel, `kinematics` the energy check, `plasticity` the surface.
 enum class Stage { contact, water, assemble, solve, kinematics, plasticity, count };
 
 /// Watches the stages from outside, for instance with a clock; the simulation itself never looks at one.

@@ -19,6 +19,16 @@ StepStatus make_tick(HandSide& hand, BodySteps& steps, const device::DeviceSampl
   return StepStatus::ok();
 }
 
+StepStatus tick(HandSide& hand, BodySteps& steps, const device::DeviceSample& sample, const TickPlan& plan,
+                ContactLoad* load) {
+  StepStatus status = make_tick(hand, steps, sample, plan);
+  if (status.is_ok())
+    hand.commit();
+  else
+    hand.roll_back(load);
+  return status;
+}
+
 /// Detection over the last `ticks` ticks against the surface of the last physics step.
 void HandSide::find_penalty_force(int ticks) {
   release_springs();
@@ -33,26 +43,29 @@ void HandSide::find_penalty_force(int ticks) {
 StepStatus BodySide::move_water(const ContactLoad& load) {
   const double h = m_params.rates.haptic_period * m_params.rates.water_period_ticks;
   transfer_water(load, h);
+  diffuse(h);
   return refresh_materials();
 }
 
-/// Eq. 2: the velocity v' at the end of the step.
+/// Eq. 2: the velocity v' at the end of the step, or the body stops where it is and is at rest from now on.
 StepStatus BodySide::find_velocity(const ContactLoad& load) {
   ARGIL_TRY(predict(load));  // x̂, v̂, τ
   for (bool is_solved = false; !is_solved;) {
-    is_solved = assemble();                       // A, b from F, R, ε
+    is_solved = assemble_or_stop();               // A, b from F, R, ε
     if (!is_solved) ARGIL_TRY(solve(is_solved));  // A δv = b
   }
   return StepStatus::ok();
 }
 
 StepStatus BodySide::move_solid(const ContactLoad& load, StepResult& result) {
-  apply_deflection(load, result.felt);                   // what contacts lose as the body moves on
-  scale_velocity(load.patch);                            // v ← G_d^{h/h_ref} v (eq. 9)
-  solid::move(m_solid, m_region.part(), m_state.solid);  // x ← x̂ + τ v'
+  apply_deflection(load, result.felt);                            // what contacts lose as the body moves on
+  solid::take_velocity(m_solid, m_region.part(), m_state.solid);  // v ← v'
+  scale_velocity(load.patch);                                     // v ← G_d^{h/h_ref} v (eq. 9)
+  solid::move(m_solid, m_region.part(), m_state.solid);           // x ← x̂ + τ v
   ARGIL_TRY(check_energy());
   ARGIL_TRY(update_kinematics());  // F → R → ε
   flow();                          // ε_p
+  m_economy.finish_step(m_state);  // what the next step may leave out
   find_surface(result);
   return StepStatus::ok();
 }
