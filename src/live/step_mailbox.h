@@ -20,7 +20,7 @@ class StepMailbox final : public sim::BodySteps {
   bool is_free() const { return m_phase.load(std::memory_order_acquire) == Phase::idle; }
   bool has_result() const { return m_phase.load(std::memory_order_acquire) == Phase::ended; }
   /// With has_result(). A step that failed ends the session.
-  StepStatus deliver(sim::HandSide& hand) override {
+  StepStatus receive_step(sim::HandSide& hand) override {
     if (!m_status.is_ok()) return m_status;
     hand.receive(m_result);
     m_received = m_result.step;
@@ -28,7 +28,7 @@ class StepMailbox final : public sim::BodySteps {
     return StepStatus::ok();
   }
   /// With is_free().
-  void begin(sim::HandSide& hand) override {
+  void start_step(sim::HandSide& hand) override {
     hand.hand_over(m_load);
     m_begun_at = monotonic_now();
     m_phase.store(Phase::begun, std::memory_order_release);

@@ -17,16 +17,16 @@ Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& 
 
 StepStatus Simulation::tick(const device::DeviceSample& sample) {
   const bool is_due = clock().due(m_params.rates.physics_period_ticks);
-  return tick(sample, {.begins_step = is_due, .waits_for_step = is_due});
+  return tick(sample, {.begins_step = is_due, .waits_for_result = is_due});
 }
 
 StepStatus Simulation::tick(const device::DeviceSample& sample, const TickPlan& plan) {
-  ARGIL_ASSERT(plan.begins_step == plan.waits_for_step ||
+  ARGIL_ASSERT(plan.begins_step == plan.waits_for_result ||
                m_params.rates.between_frames != BetweenFrames::compliant);
-  return sim::tick(m_hand, *this, sample, plan, plan.waits_for_step ? &m_load : nullptr);
+  return sim::tick(m_hand, *this, sample, plan, plan.waits_for_result ? &m_load : nullptr);
 }
 
-void Simulation::begin(HandSide& hand) {
+void Simulation::start_step(HandSide& hand) {
   hand.hand_over(m_load);
   m_step_status = m_body_side.step(m_load, m_result);
   if (m_step_status.is_ok() && m_result.has_moved) m_step_status = hand.update_compliance();
@@ -36,7 +36,7 @@ void Simulation::begin(HandSide& hand) {
     m_body_side.roll_back();
 }
 
-StepStatus Simulation::deliver(HandSide& hand) {
+StepStatus Simulation::receive_step(HandSide& hand) {
   if (m_step_status.is_ok()) hand.receive(m_result);
   return m_step_status;
 }

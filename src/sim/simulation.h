@@ -71,8 +71,8 @@ class Simulation final : private BodySteps {
   }
 
  private:
-  void begin(HandSide& hand) override;
-  StepStatus deliver(HandSide& hand) override;
+  void start_step(HandSide& hand) override;
+  StepStatus receive_step(HandSide& hand) override;
   void serialize(Archive& archive);
   Points surface_now() const;  // 3×vertices of the touched surface
 

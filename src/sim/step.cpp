@@ -10,11 +10,11 @@ namespace argil::sim {
 StepStatus make_tick(HandSide& hand, BodySteps& steps, const device::DeviceSample& sample,
                      const TickPlan& plan) {
   ARGIL_TRY(hand.status());
-  if (plan.receives_step) ARGIL_TRY(steps.deliver(hand));
+  if (plan.receives_step) ARGIL_TRY(steps.receive_step(hand));
   hand.advance(sample);                                  // the tool's path on [t, t + δ]
   ARGIL_TRY(hand.find_contact_force(plan.begins_step));  // eqs. 7 and 8; reaction to the hand
-  if (plan.begins_step) steps.begin(hand);               // the body under what the hand has gathered
-  if (plan.waits_for_step) ARGIL_TRY(steps.deliver(hand));
+  if (plan.begins_step) steps.start_step(hand);          // the body under what the hand has gathered
+  if (plan.waits_for_result) ARGIL_TRY(steps.receive_step(hand));
   hand.render(plan.feed);  // the last force, old or new
   return StepStatus::ok();
 }
