@@ -15,7 +15,7 @@ struct FrameInfo {
   std::string name;  ///< in /frames, "000123"
   Tick tick = 0;
   double time = 0.0;       ///< [s]
-  std::string state_hash;  ///< SHA-256 of the whole state
+  std::string state_hash;  ///< SHA-256, of what sim::Frame says
 };
 
 /// A result file opened for reading, complete or not. Throws IoError when it cannot be read, InputError when

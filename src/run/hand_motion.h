@@ -12,7 +12,8 @@ namespace argil::run {
 class HandMotion {
  public:
   HandMotion(const scenario::Scenario& s, const device::Trace& trace);
-  /// The hand at the end of tick k, one after the last call's; `felt`: what the device renders meanwhile [N].
+  /// The hand at the end of tick k, one after the last call's; `felt`: what the device renders meanwhile [N],
+  /// after passivity and gate.
   device::DeviceSample advance(Tick k, const Vec3& felt);
   /// Adds to a checkpoint what advance takes from earlier calls, or takes it back.
   void serialize(Archive& archive);

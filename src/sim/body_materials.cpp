@@ -16,10 +16,10 @@ BodyMaterials::BodyMaterials(const Body& body, const Params& params, const water
       m_solid(solid),
       m_region(region),
       m_moisture(params.elastic, params.plasticity.yield, params.moisture, params.water.porosity),
-      m_saturation(water.saturation()),
+      m_saturation_used(water.saturation()),
       m_needs_shape_stiffness(params.plasticity.enabled && params.plasticity.deviatoric) {
   m_changed.reserve(static_cast<std::size_t>(body.mesh.num_tets()));
-  m_before.reserve(m_changed.capacity());
+  m_used_before.reserve(m_changed.capacity());
 }
 
 void BodyMaterials::set_all() {
@@ -27,11 +27,11 @@ void BodyMaterials::set_all() {
 }
 
 void BodyMaterials::set(int tet, double S) {
-  m_saturation(tet) = S;
+  m_saturation_used(tet) = S;
   const bool has_own_modulus = m_body.youngs_modulus.size() > 0;
   const double E = has_own_modulus ? m_body.youngs_modulus(tet) : m_params.elastic.youngs_modulus;
-  const material::MoistState wet = has_own_modulus ? m_moisture.at(S, E) : m_moisture.at(S);
-  solid::set_material(m_solid, m_region, tet, {wet.lambda, wet.mu, wet.yield});
+  const material::MoistState moist = has_own_modulus ? m_moisture.at(S, E) : m_moisture.at(S);
+  solid::set_material(m_solid, m_region, tet, {moist.lambda, moist.mu, moist.yield});
   if (m_params.water.swelling > 0.0) solid::set_swelling(m_solid, tet, 1.0 + m_params.water.swelling * S);
   if (m_params.water.adds_mass) solid::set_water_mass(m_solid, tet, m_water.capacity(tet) * S);
   if (m_moisture.is_isotropic()) return;
@@ -45,7 +45,7 @@ std::span<const int> BodyMaterials::refresh(double tolerance) {
   const std::size_t first = m_changed.size();
   const auto collect = [&](std::span<const int> tets) {
     for (const int t : tets)
-      if (std::abs(m_water.saturation()(t) - m_saturation(t)) > tolerance) m_changed.push_back(t);
+      if (std::abs(m_water.saturation()(t) - m_saturation_used(t)) > tolerance) m_changed.push_back(t);
   };
   collect(m_water.active());
   collect(m_water.dried());
@@ -53,23 +53,23 @@ std::span<const int> BodyMaterials::refresh(double tolerance) {
   std::sort(begin, m_changed.end());
   m_changed.erase(std::unique(begin, m_changed.end()), m_changed.end());  // dried, and wet again
   const std::span<const int> changed = std::span(m_changed).subspan(first);
-  m_before.resize(first);
+  m_used_before.resize(first);
   for (const int t : changed) {
-    m_before.push_back(m_saturation(t));
+    m_used_before.push_back(m_saturation_used(t));
     set(t, m_water.saturation()(t));
   }
   return changed;
 }
 
 void BodyMaterials::roll_back() {
-  for (std::size_t i = m_changed.size(); i-- > 0;) set(m_changed[i], m_before[i]);
+  for (std::size_t i = m_changed.size(); i-- > 0;) set(m_changed[i], m_used_before[i]);
   m_changed.clear();
 }
 
 void BodyMaterials::serialize(Archive& archive) {
-  archive.array("materials/saturation", m_saturation);
+  archive.array("materials/saturation", m_saturation_used);
   if (archive.is_restoring())
-    for (int t = 0; t < m_body.mesh.num_tets(); ++t) set(t, m_saturation(t));
+    for (int t = 0; t < m_body.mesh.num_tets(); ++t) set(t, m_saturation_used(t));
 }
 
 }  // namespace argil::sim

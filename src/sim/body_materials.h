@@ -16,7 +16,7 @@ class BodyMaterials {
   BodyMaterials(const Body& body, const Params& params, const water::PoreWater& water, solid::Body& solid,
                 solid::ActiveRegion& region);
 
-  /// Brings every tet up to date.
+  /// Brings every tet up to date. Called once, by the owner, when the solid is ready for it.
   void set_all();
   /// Brings up to date the tets whose saturation moved by more than `tolerance` since they last were.
   /// Returns them, increasing.
@@ -35,10 +35,10 @@ class BodyMaterials {
   solid::Body& m_solid;
   solid::ActiveRegion& m_region;
   material::MoistureTable m_moisture;
-  Field m_saturation;  // S of each tet for which it was last brought up to date
+  Field m_saturation_used;  // of each tet [–]: the one that its moduli were made for
   bool m_needs_shape_stiffness;
-  std::vector<int> m_changed;    // since the last commit
-  std::vector<double> m_before;  // S of these before
+  std::vector<int> m_changed;         // since the last commit
+  std::vector<double> m_used_before;  // saturation used by these before
 };
 
 }  // namespace argil::sim

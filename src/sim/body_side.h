@@ -29,10 +29,12 @@ class BodySide {
   BodySide(const BodySide&) = delete;
   BodySide& operator=(const BodySide&) = delete;
 
-  /// One physics step under `load`, after the water's when that is due. Nothing of it counts before commit();
-  /// after one that fails comes roll_back(). Also a step that fails has a result.
+  /// One physics step under `load`, after the water's when that is due. Called by Simulation::start_step and
+  /// live::StepMailbox::make, which then commit it, or roll it back where it failed. Also a step that fails
+  /// has a result.
   StepStatus step(const ContactLoad& load, StepResult& result);
   void commit();
+  /// Materials go back before the solid, which needs their moduli, sizes and masses; the rest in any order.
   void roll_back();
   /// To the elastic equilibrium under the loads, without the tool.
   StepStatus find_equilibrium();
@@ -42,7 +44,7 @@ class BodySide {
   const ContactSurface& surface() const { return m_surface; }
   const solid::Body& solid() const { return m_solid; }
   const water::PoreWater& pore_water() const { return m_water; }
-  const HandPose& hand() const { return m_state.hand; }           ///< of the last step
+  const HandPose& hand() const { return m_state.hand; }  ///< when it handed over the load of the last step
   const Points& x_before() const { return m_solid.committed.x; }  ///< nodes before the last move
   BodyBetweenSteps between_steps(Tick tick);
   /// Of each triangle of the touched surface, as the body is now.
@@ -79,7 +81,6 @@ class BodySide {
 
   // body_side.cpp
   void begin_step(const ContactLoad& load, StepResult& result);
-  void serialize_water(Archive& archive);
   /// At the end of the present step [s].
   double time_at_end() const {
     return static_cast<double>(m_state.steps * m_params.rates.physics_period_ticks) *
@@ -87,6 +88,8 @@ class BodySide {
   }
   /// Number of the tick at whose end the present step began.
   Tick tick() const { return m_state.hand.ticks; }
+  // snapshot.cpp, as serialize()
+  void serialize_water(Archive& archive);
   // body_records.cpp
   TensorField mean_plastic_strain() const;
 

@@ -42,8 +42,8 @@ struct ContactLoad {
   int detections = 1;  ///< whose mean the body gets
   double scale = 1.0;  ///< by which the sum of `forces` has yet to be multiplied for that
   device::ToolMode mode = device::ToolMode::push;
-  std::vector<int> touched_tet;      ///< under a tool that wets or dries, in the steps that move water
-  std::vector<double> touched_area;  ///< [m²] of each
+  std::vector<int> touched_tet;      ///< by a tool that wets or dries in the tick that hands over
+  std::vector<double> touched_area;  ///< [m²] of each, for the whole water period
   // Tick by tick.
   ContactPatch patch;
   std::vector<SurfaceForce> forces;  ///< on the body

@@ -40,22 +40,23 @@ class HandSide {
   /// thread, as the body's have theirs at the same time.
   void prepare_alone();
 
-  // Stages of a tick, in the order of tick().
+  // Stages of a tick, in the order of make_tick().
   /// Failed when the force has trembled for so long that there may be no further tick.
   StepStatus status() const;
-  /// A step of the body has ended; takes the result's arrays and leaves others of their size. What the hand
-  /// felt has fallen where no detection has found it anew since.
+  /// A step of the body has ended; takes the result's arrays and leaves others of their size. If no detection
+  /// has come since the step began, the hand takes the force that the step left.
   void receive(StepResult& result);
-  /// The tool goes to where the hand is at the end of the tick.
+  /// The tool goes to where the hand is at the end of the tick; books the work of the last force on the way.
   void advance(const device::DeviceSample& sample);
   /// Contacts over the path since the last detection, and the force on the hand. `begins_step`: the tick ends
-  /// by hand_over().
+  /// by hand_over(). In `hold` only then; in other ticks the last force stays.
   StepStatus find_contact_force(bool begins_step);
   /// Exchanges what was gathered since the last step for an empty load.
   void hand_over(ContactLoad& load);
   /// The force, old or new, through the passivity controller and the device's limits; ends the tick.
   void render(device::HandFeed feed);
 
+  // Called by sim::tick alone.
   /// The tick is made.
   void commit();
   /// All is as after the last tick that was made. `load`: what this one has handed over; null: nothing.
@@ -95,7 +96,6 @@ class HandSide {
   void make_springs();
   void press(const contact::Contact& contact, const Vec3& on_hand, const ContactSpring& spring);
   void release_springs();
-  void serialize_springs(Archive& archive);
   // hand_side.cpp
   void prepare_detection(const Points& x);
   bool is_compliant() const;
@@ -104,7 +104,9 @@ class HandSide {
   void find_contacts(int ticks);
   bool finds_same_contacts();
   void gather_contact_forces();
+  // snapshot.cpp, as serialize()
   void serialize_contacts(Archive& archive);
+  void serialize_springs(Archive& archive);
 
   const Params& m_params;
   const ContactSurface& m_surface;

@@ -14,8 +14,8 @@ struct HapticRecord {
   double time = 0.0;                  ///< [s]
   Vec3 tool_position = Vec3::Zero();  ///< [m]
   Quat tool_orientation = Quat::Identity();
-  Vec3 force = Vec3::Zero();         ///< [N] on the hand, before the gate
-  Vec3 torque = Vec3::Zero();        ///< [N m] about the hand's point
+  Vec3 force = Vec3::Zero();         ///< [N] on the hand, before passivity and gate
+  Vec3 torque = Vec3::Zero();        ///< [N m] about the hand's point, likewise
   Vec3 device_force = Vec3::Zero();  ///< [N] after the output gate
   device::ToolMode mode = device::ToolMode::push;
   int force_age = 0;  ///< [ticks] since the force was computed
@@ -56,7 +56,9 @@ struct Frame {
   Points skin_position;        ///< 3×k, empty without a skin
   Field skin_saturation;       ///< k
   Field skin_influence;        ///< k, region of influence
-  std::string state_hash;  ///< SHA-256 of all that a tick, or in a session a step, takes from earlier ones
+  /// SHA-256 of all that a tick takes from earlier ones. In a session the first frame, and a last one that no
+  /// step made, have this; the others hash what a step takes, the body's side alone.
+  std::string state_hash;
 };
 
 }  // namespace argil::sim

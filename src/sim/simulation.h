@@ -45,6 +45,7 @@ class Simulation final : private BodySteps {
   const solid::Body& solid() const { return m_body_side.solid(); }
   const contact::Contacts& contacts() const { return m_hand.contacts(); }
   const Params& params() const { return m_params; }
+  /// Batch only, where the hand waits for every step: did the last tick make one?
   bool physics_due_last_tick() const {
     return clock().tick > 0 && clock().tick % m_params.rates.physics_period_ticks == 0;
   }

@@ -17,7 +17,8 @@ namespace argil::sim {
 
 struct Params;
 
-/// The body as a scene gives it; nothing in it changes during a run.
+/// The body as a scene gives it; nothing in it changes during a run. Steps change BodyState and what water,
+/// materials, economy and flow keep.
 struct Body {
   mesh::TetMesh mesh;
   mesh::Topology topology;
@@ -30,7 +31,7 @@ struct Body {
   embed::Embedding skin_embedding;
 };
 
-/// The hand as it is known outside: what a picture and its hash take from it.
+/// The hand at the end of some tick, as it is known outside: what a picture and its hash take from it.
 struct HandPose {
   Tick ticks = 0;  ///< that it has made
   contact::Pose tool;
@@ -43,7 +44,7 @@ struct HandState {
   Clock clock;
   Tick steps_begun = 0;        ///< of the body
   int ticks_since_step = 0;    ///< since the last of these began
-  bool has_felt_anew = false;  ///< some detection since then
+  bool has_felt_anew = false;  ///< some detection since then has found the force anew
   // device
   contact::Pose tool;  ///< at the end of the last tick
   device::ToolMode mode = device::ToolMode::push;
@@ -53,11 +54,11 @@ struct HandState {
   device::OutputGate gate;
   device::GatedForce gated;
   // contact
-  contact::Pose contact_tool;                           ///< tool at the end of the last detection
-  Vec3 hand_force = Vec3::Zero();                       ///< [N] that the hand feels
-  Vec3 hand_torque = Vec3::Zero();                      ///< [N m] about the hand's point
-  int force_age = 0;                                    ///< [ticks] since it was computed
-  int num_contacts = 0;                                 ///< of the last detection
+  contact::Pose contact_tool;       ///< tool at the end of the last detection
+  Vec3 hand_force = Vec3::Zero();   ///< [N] that the hand feels, before passivity and gate
+  Vec3 hand_torque = Vec3::Zero();  ///< [N m] about the hand's point
+  int force_age = 0;                ///< [ticks] since it was computed
+  int num_contacts = 0;             ///< of the last detection
   contact::Yielding yielding = contact::Yielding::yes;  ///< pressure: of the body, since the tool touches it
   // ledgers
   double port_energy = 0.0;       ///< [J] work of the device's force on the hand since the start
@@ -76,7 +77,8 @@ struct BodyProgress {
   double energy_given = 0.0;         ///< [J] to the body by hand, loads and supports, recoils not taken off
 };
 
-/// What the body's side changes in a step. Water and materials keep their own.
+/// Positions, velocities and ledgers, which the body's side changes in a step. Water, materials, economy and
+/// flow keep their own.
 struct BodyState : BodyProgress {
   solid::SolidState solid;
 };

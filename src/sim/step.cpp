@@ -12,7 +12,7 @@ StepStatus make_tick(HandSide& hand, BodySteps& steps, const device::DeviceSampl
   ARGIL_TRY(hand.status());
   if (plan.receives_step) ARGIL_TRY(steps.receive_step(hand));
   hand.advance(sample);                                  // the tool's path on [t, t + δ]
-  ARGIL_TRY(hand.find_contact_force(plan.begins_step));  // eqs. 7 and 8; reaction to the hand
+  ARGIL_TRY(hand.find_contact_force(plan.begins_step));  // eqs. 7 and 8; reaction to the hand; may be held
   if (plan.begins_step) steps.start_step(hand);          // the body under what the hand has gathered
   if (plan.waits_for_result) ARGIL_TRY(steps.receive_step(hand));
   hand.render(plan.feed);  // the last force, old or new
@@ -29,7 +29,8 @@ StepStatus tick(HandSide& hand, BodySteps& steps, const device::DeviceSample& sa
   return status;
 }
 
-/// Detection over the last `ticks` ticks against the surface of the last physics step.
+/// Detection over the last `ticks` ticks against the surface of the last physics step; in `hold` only in the
+/// ticks that begin a step.
 void HandSide::find_penalty_force(int ticks) {
   release_springs();
   find_contacts(ticks);

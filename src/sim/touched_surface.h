@@ -29,10 +29,10 @@ class TouchedSurface {
   /// How far any vertex has moved since the last detection along an axis, at most [m]; nothing where finding
   /// out takes a look at all of them.
   std::optional<double> find_motion() const;
-  /// A detection has found it where it is.
+  /// A detection has found it where it is. At most once between two commits.
   void advance();
 
-  /// What the last advance() and the motion that it took up were before the last commit comes back.
+  /// The surface and its motion are again as at the last commit.
   /// `x`: nodes of a body whose surface has deflected since, null where it has not.
   void roll_back(const Points* x);
   void commit();
