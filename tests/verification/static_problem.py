@@ -120,6 +120,12 @@ def run_argil(argil, folder, scenario, expected_exit=0):
                 result["frames/000000/position"][:])
 
 
+def count_linearisations(folder):
+    """That argil's last run took, over all shares of the load."""
+    with h5py.File(folder / "out.h5") as result:
+        return int(result["physics/newton_iterations"][-1])
+
+
 def read_body(argil, folder, body):
     """Vertices and tets of a scenario's body, as argil numbers them: every vertex held, nothing moves."""
     held = {"kind": "half_space", "normal": [0, 0, 1], "offset_m": 1e300}
