@@ -60,6 +60,11 @@ MoistState interpolate_state(const std::vector<MoistState>& states, double satur
 
 }  // namespace
 
+bool is_isotropic(const Moisture& moisture) {
+  return moisture.law != MoistureLaw::effective_medium || !moisture.softens_elasticity ||
+         is_isotropic(moisture.medium);
+}
+
 double compute_liquidity_factor(const Moisture& m, double saturation) {
   const double index =
       (saturation - m.plastic_limit_saturation) / (m.liquid_limit_saturation - m.plastic_limit_saturation);

@@ -12,6 +12,10 @@ struct MoistState {
   double yield = 0.0;   ///< elastic strain norm at which it flows [–]
 };
 
+/// False where water gives the clay a preferred axis: aligned inclusions that are no spheres, in a law that
+/// uses them.
+bool is_isotropic(const Moisture& moisture);
+
 /// Modulus and yield stress over those of dry clay between the limits of the measured law: r^{I_L}, r =
 /// saturated_strength_ratio, I_L = (S − S_P)/(S_L − S_P) the liquidity index; 1 below the plastic limit,
 /// where the law was not measured [Vardanega2014: r = 1/35, 0.2 < I_L < 1.1]. For water contents w by dry
@@ -50,8 +54,7 @@ class MoistureTable {
   /// costs a scheme each time, for C(E, K_I) is not E times C(1, K_I).  `table`: E(S)/E(0) counts.
   MoistState at(double saturation, double youngs_modulus) const;
   Mat6 stiffness_at(double saturation, const Vec3& axis, double youngs_modulus) const;
-  /// False only for aligned inclusions that are no spheres, in a law that uses them.
-  bool is_isotropic() const;
+  bool is_isotropic() const;  ///< of its law
 
  private:
   MoistState with_strength(MoistState state, double saturation) const;

@@ -10,7 +10,7 @@ const std::string kPrefix = "full/";  // of its names in a checkpoint
 
 sim::Params make_full(sim::Params params) {
   params.fidelity.mode = sim::FidelityMode::full;
-  params.solid.extent = solid::Extent::whole;
+  params.extent = sim::Extent::whole;
   return params;
 }
 

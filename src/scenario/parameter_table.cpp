@@ -382,9 +382,9 @@ void bind_dynamics(Binder& b, Scenario& s) {
       "pcg: a solve that takes more over diagonal blocks goes on with a kept factor, as do all later ones.");
   b.integer("/dynamics/solver/refactor_iterations", d.solver.refactor_iterations, between(1, 1e6),
             "A solve with more iterations over a kept factor has it renewed.");
-  b.choice<solid::Extent>(
-      "/dynamics/extent", d.extent,
-      {{solid::Extent::automatic, "auto"}, {solid::Extent::whole, "whole"}, {solid::Extent::local, "local"}},
+  b.choice<sim::Extent>(
+      "/dynamics/extent", s.params.extent,
+      {{sim::Extent::automatic, "auto"}, {sim::Extent::whole, "whole"}, {sim::Extent::local, "local"}},
       "Solve for the whole body, or for the region that moves, where the rest stays as it is, with its "
       "strain, until it would move; auto: under /fidelity auto for the region in bodies of 1500 free nodes "
       "or "

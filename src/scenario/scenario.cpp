@@ -10,10 +10,11 @@
 #include <utility>
 
 #include "base/error.h"
-#include "material/effective_medium.h"
+#include "material/moisture.h"
 #include "scenario/medium_check.h"
 #include "scenario/parameter_table.h"
 #include "scenario/setting.h"
+#include "sim/extent.h"
 
 namespace argil::scenario {
 namespace {
@@ -185,42 +186,17 @@ void check_pore_axes(Scenario& s) {
                          "water leaves this clay isotropic (moisture law, scheme and aspect)");
 }
 
-/// Do aligned pores give the wet clay a preferred axis?
-bool is_anisotropic(const material::Moisture& m) {
-  return m.law == material::MoistureLaw::effective_medium && m.softens_elasticity &&
-         !material::is_isotropic(m.medium);
-}
-
-/// A step of a region needs elements that go in lanes, a solve of part of the rows, and loads that stay.
+/// An extent that a run cannot have: refused where it is asked for, else `whole` instead of `automatic`.
 void check_extent(Scenario& s) {
-  solid::SolidParams& p = s.params.solid;
-  if (p.extent == solid::Extent::whole) return;
-  const bool is_asked_for = p.extent == solid::Extent::local;
-  const auto require = [&](bool is_met, const std::string& what, const std::string& remedy) {
-    if (!is_met) p.extent = solid::Extent::whole;
-    if (!is_met && is_asked_for)
-      throw InputError(s.file, "/dynamics/extent", "local " + what, remedy + ", or use whole");
-  };
-  require(s.mode == Mode::dynamic, "is for steps in time", "set /dynamics/mode to dynamic");
-  // Whether a contact sticks or slides may hang on less than what a region leaves out.
-  if (!is_asked_for && s.params.contact.friction > 0.0) p.extent = solid::Extent::whole;
-  using linear::SolverKind;
-  require(p.element == solid::ElementKind::p1 && find_law(p.model).is_quadratic &&
-              !is_anisotropic(s.params.moisture),
-          "is for p1 elements of the isotropic linear and corotational laws",
-          "change /dynamics or /material");
-  require(p.integrator == solid::Integrator::backward_euler && p.iteration == solid::Iteration::one,
-          "takes one linearised solve of backward_euler",
-          "change /dynamics/integrator and /dynamics/iteration");
-  require((p.solver.kind == SolverKind::pcg || p.solver.kind == SolverKind::pcg_jacobi) &&
-              p.solver.tolerance >= linear::kRoomForFloats,
-          "is solved by pcg or pcg_jacobi to a tolerance of 1e-4 or more", "change /dynamics/solver");
-  require(s.params.rates.between_frames != sim::BetweenFrames::compliant,
-          "does not go with a surface that yields between frames", "use re_evaluate");
-  require(s.params.water.swelling == 0.0, "does not go with clay that swells", "set /water/swelling to 0");
-  require(std::none_of(s.body.fixed.begin(), s.body.fixed.end(),
-                       [](const solid::Support& support) { return support.displacement.norm() > 0.0; }),
-          "needs supports that stay", "leave out their displacement");
+  sim::Extent& extent = s.params.extent;
+  if (extent == sim::Extent::whole) return;
+  std::optional<sim::RegionObstacle> obstacle = sim::find_region_obstacle(s.params, s.body.fixed);
+  if (s.mode != Mode::dynamic) obstacle = {"is for steps in time", "set /dynamics/mode to dynamic"};
+  if (!obstacle) return;
+  if (extent == sim::Extent::local)
+    throw InputError(s.file, "/dynamics/extent", std::string("local ") + obstacle->reason,
+                     std::string(obstacle->remedy) + ", or use whole");
+  extent = sim::Extent::whole;
 }
 
 /// What the elements and laws cannot do together.
@@ -245,7 +221,7 @@ void check_solid(Scenario& s) {
         s.file + ": /dynamics/iteration has no effect: symplectic_euler is explicit and solves nothing");
   const bool takes_full_stiffness = find_law(p.model).takes_full_stiffness;
   const bool needs_isotropy = !takes_full_stiffness || p.element == solid::ElementKind::p1_nodal;
-  if (needs_isotropy && is_anisotropic(s.params.moisture))
+  if (needs_isotropy && !material::is_isotropic(s.params.moisture))
     throw InputError(s.file, takes_full_stiffness ? "/dynamics/element" : "/dynamics/model",
                      "takes isotropic stiffness only, but the pores are aligned spheroids",
                      "use the corotational or linear model with p1 or p2, or orientation random");
@@ -296,7 +272,7 @@ void check_plasticity(Scenario& s) {
   if (law.form == material::FlowForm::j2 && !(law.deviatoric && law.norm == material::StrainNorm::frobenius))
     throw InputError(s.file, place, "j2 is a law of the deviator's Frobenius norm",
                      "set deviatoric to true and norm to \"frobenius\"");
-  if (law.form == material::FlowForm::j2 && is_anisotropic(s.params.moisture))
+  if (law.form == material::FlowForm::j2 && !material::is_isotropic(s.params.moisture))
     throw InputError(s.file, place, "j2 is a law of isotropic clay, but the pores are aligned spheroids",
                      "take rate_to_yield, or orientation random");
   const double flow = law.creep_per_s * s.params.rates.physics_period_ticks * s.params.rates.haptic_period;
@@ -357,7 +333,7 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
     document = below;
   }
   Scenario s;
-  s.params.solid.extent = solid::Extent::automatic;
+  s.params.extent = sim::Extent::automatic;
   s.file = file;
   choose_body(s, document);
   choose_mode(s, document);

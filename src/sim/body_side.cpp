@@ -5,28 +5,18 @@
 #include <utility>
 
 #include "base/check.h"
+#include "sim/extent.h"
 #include "solid/committed.h"
 #include "solid/statics.h"
 #include "solid/step_solver.h"
 
 namespace argil::sim {
-namespace {
-
-/// A full model is whole unless the scenario asks for a region.
-solid::SolidParams make_solid_params(const Params& params) {
-  solid::SolidParams p = params.solid;
-  if (p.extent == solid::Extent::automatic && params.fidelity.mode == FidelityMode::full)
-    p.extent = solid::Extent::whole;
-  return p;
-}
-
-}  // namespace
 
 BodySide::BodySide(Body body, const Params& params)
     : m_params(params),
       m_body(std::move(body)),
-      m_solid(m_body.mesh, m_body.topology, m_body.supports, make_solid_params(params), params.threads),
-      m_region(m_solid),
+      m_solid(m_body.mesh, m_body.topology, m_body.supports, params.solid, params.threads),
+      m_region(m_solid, restricts_to_region(params, m_body.supports, m_solid.model.num_free())),
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation, params.threads),
       m_surface(params.contact_surface, m_body, m_solid.model.elements),
       m_force(solid::compute_load_force(m_solid.model.elements, m_body.topology.boundary, m_body.loads)),

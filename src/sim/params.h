@@ -19,6 +19,13 @@ enum class BetweenFrames {
   compliant,    ///< the same, and the surface yields as the body's own matrix says (compliance.h)
 };
 
+/// How much of a body a step solves for.
+enum class Extent {
+  automatic,  ///< local where that can be and saves time, else whole (extent.h)
+  whole,
+  local,  ///< the region that moves; the rest stays where it is
+};
+
 /// What the tool meets.
 enum class SurfaceKind {
   cage,  ///< the boundary of the solid (the paper)
@@ -47,6 +54,7 @@ struct Params {
   material::ClayKernel kernel;
   water::WaterParams water;
   solid::SolidParams solid;
+  Extent extent = Extent::whole;
   contact::ContactParams contact;
   SurfaceKind contact_surface = SurfaceKind::cage;
   FidelityParams fidelity;

@@ -21,16 +21,11 @@ std::pair<std::size_t, std::size_t> find_rows(int run, std::size_t num_rows) {
   return {begin, std::min(begin + OrderedRuns::kLength, num_rows)};
 }
 
-bool wants_region(const Model& model) {
-  constexpr int kLarge = 1500;  // rows; with fewer, keeping the lists costs what a smaller solve saves
-  const Extent extent = model.params.extent;
-  return extent == Extent::local || (extent == Extent::automatic && model.num_free() >= kLarge);
-}
-
 }  // namespace
 
-ActiveRegion::ActiveRegion(Body& body) : m_body(body), m_whole(body.model), m_part(body.model) {
-  if (wants_region(body.model)) make();
+ActiveRegion::ActiveRegion(Body& body, bool restricts)
+    : m_body(body), m_whole(body.model), m_part(body.model) {
+  if (restricts) make();
   commit();
 }
 

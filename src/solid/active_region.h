@@ -14,7 +14,8 @@ namespace argil::solid {
 /// place, strain and forces. Stages of a step are told the part and know nothing else of it.
 class ActiveRegion {
  public:
-  explicit ActiveRegion(Body& body);
+  /// `restricts`: steps solve for the region that moves, else for all of the body, always.
+  explicit ActiveRegion(Body& body, bool restricts = false);
 
   bool is_used() const { return m_active != nullptr; }  ///< else the whole body moves, always
   const Part& part() const { return m_part; }

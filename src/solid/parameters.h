@@ -28,13 +28,6 @@ enum class Iteration {
   newton,  ///< to convergence, with line search on the incremental potential
 };
 
-/// How much of a body a step solves for.
-enum class Extent {
-  automatic,  ///< local in a body that is so large that this saves time, or whole
-  whole,
-  local,  ///< the region that moves; the rest stays where it is
-};
-
 struct SolidParams {
   StrainModel model = StrainModel::corotational;
   ElementKind element = ElementKind::p1;
@@ -47,9 +40,8 @@ struct SolidParams {
   double rayleigh_stiffness = 0.0;  ///< b [s]
   Vec3 gravity = Vec3::Zero();      ///< [m/s²]
   linear::SolverParams solver;
-  Extent extent = Extent::whole;
   double region_tolerance =
-      1e-3;  ///< local: speed over the fastest node's below which nodes stay where they are
+      1e-3;  ///< of an active region: speed over the fastest node's below which nodes stay where they are
   bool implicit_contact = true;   ///< contact stiffness enters the implicit solve
   double min_volume_ratio = 0.0;  ///< det F at or below which the run stops
   /// Does a step in time solve for its contacts' forces?

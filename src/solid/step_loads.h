@@ -36,16 +36,17 @@ struct PointStiffness {
 struct StepLoads {
   const Points& force;                            ///< 3×n external forces [N] without gravity
   std::span<const PointStiffness> contacts = {};  ///< and how those of contacts grow as the body moves on
-  /// Extent::local: share of a node's speed that the step will leave it; empty: all of it.
+  /// Of an active region: share of a node's speed that the step will leave it; empty: all of it.
   std::function<double(Eigen::Index)> mobility = {};
   /// Forces [N] without balance, Euclidean norm over all nodes, that a step's solve may leave; 0: the
   /// tolerance of the parameters decides.
   double slack = 0.0;
   /// And what it leaves at most where there is slack, whatever the tolerance.
   double limit = std::numeric_limits<double>::infinity();
-  /// Extent::local: by how much the hand's force may be off [N] for what is left as it is; 0: as for slack.
+  /// Of an active region: by how much the hand's force may be off [N] for what is left as it is; 0: as for
+  /// slack.
   double region_slack = 0.0;
-  /// Extent::local: nodes whose force may be another than in the last step; null: any.
+  /// Of an active region: nodes whose force may be another than in the last step; null: any.
   const std::vector<int>* changed = nullptr;
 };
 

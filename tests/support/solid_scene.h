@@ -57,12 +57,12 @@ struct Scene {
   double time = 0.0;
 
   Scene(mesh::TetMesh m, std::vector<solid::Support> supports, const solid::SolidParams& p, double E,
-        double nu, int threads = 1)
+        double nu, int threads = 1, bool restricts = false)
       : mesh(std::move(m)),
         params(p),
         owned_body(
             std::make_unique<solid::Body>(mesh, mesh::make_topology(mesh), std::move(supports), p, threads)),
-        owned_region(std::make_unique<solid::ActiveRegion>(*owned_body)),
+        owned_region(std::make_unique<solid::ActiveRegion>(*owned_body, restricts)),
         solid(*owned_body),
         region(*owned_region),
         state(solid::make_rest_state(solid.model)) {

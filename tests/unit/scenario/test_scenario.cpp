@@ -54,7 +54,7 @@ TEST_F(ScenarioFile, PortableOneIsTheSameWhereverTheFolderLies) {
 
 TEST_F(ScenarioFile, LocalExtentIsRefusedWhereAStepNeedsTheWholeBody) {
   const std::string local = "/dynamics/extent=local";
-  EXPECT_EQ(load({local}).params.solid.extent, solid::Extent::local);
+  EXPECT_EQ(load({local}).params.extent, sim::Extent::local);
   const std::vector<std::vector<std::string>> needs_whole = {
       {"/dynamics/element=p2"},
       {"/dynamics/model=neo_hookean"},
@@ -75,8 +75,7 @@ TEST_F(ScenarioFile, LocalExtentIsRefusedWhereAStepNeedsTheWholeBody) {
 
 TEST_F(ScenarioFile, AnEquilibriumIsOfTheWholeBodyWhateverTheFidelity) {
   for (const std::string fidelity : {"full", "auto", "check"})
-    EXPECT_EQ(load({"/dynamics/mode=static", "/fidelity/mode=" + fidelity}).params.solid.extent,
-              solid::Extent::whole)
+    EXPECT_EQ(load({"/dynamics/mode=static", "/fidelity/mode=" + fidelity}).params.extent, sim::Extent::whole)
         << fidelity;
   ARGIL_EXPECT_THROW_WITH(load({"/dynamics/mode=static", "/dynamics/extent=local"}), InputError,
                           "/dynamics/extent: local");

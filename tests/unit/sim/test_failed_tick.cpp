@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Fault{"kinematics", "volume ratio"},
                     Fault{"kinematics_of_a_region", "volume ratio",
                           [](Params& p) {
-                            p.solid.extent = solid::Extent::local;
+                            p.extent = Extent::local;
                             p.solid.region_tolerance = 0.1;
                           }},
                     Fault{"kinematics_of_bdf2", "volume ratio",

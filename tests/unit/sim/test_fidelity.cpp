@@ -242,10 +242,10 @@ TEST(FidelityAuto, SleepsOnForcesOfNodesThatAreHeld) {
     sample.mode = device::ToolMode::push;
     return sample;
   };
-  for (const solid::Extent extent : {solid::Extent::whole, solid::Extent::local}) {
+  for (const Extent extent : {Extent::whole, Extent::local}) {
     Params params = make_params(FidelityMode::automatic);
     params.plasticity.enabled = false;
-    params.solid.extent = extent;
+    params.extent = extent;
     Simulation simulation(make_body(), contact::make_sphere_tool(kToolRadius, 2), params, hand(0));
     int asleep = 0, switches = 0;
     Rung last = Rung::asleep;
@@ -405,7 +405,7 @@ TEST(FidelityAuto, ABodyOfWhichPartSleepsGivesTheSameBitsOnReturn) {
     return sample;
   };
   Params params = make_params(FidelityMode::automatic);
-  params.solid.extent = solid::Extent::local;
+  params.extent = Extent::local;
   params.solid.solver.tolerance = 1e-4;
   const auto make = [&] {
     return Simulation(test::make_block_body(80, 6, 4, Vec3(0.4, 0.03, kHeight)),

@@ -159,7 +159,7 @@ const Case kCases[] = {
        p.rates.haptic_period = 1e-4;
      }},
     {"newton", [](Params& p) { p.solid.iteration = solid::Iteration::newton; }},
-    {"local", [](Params& p) { p.solid.extent = solid::Extent::local; }},
+    {"local", [](Params& p) { p.extent = Extent::local; }},
     {"pcg_jacobi", [](Params& p) { p.solid.solver.kind = linear::SolverKind::pcg_jacobi; }},
     {"without_friction", [](Params& p) { p.contact.friction = 0.0; }},
     {"fidelity", [](Params& p) { p.fidelity.mode = FidelityMode::automatic; }},
@@ -172,7 +172,7 @@ const Case kCases[] = {
     {"fidelity_local",
      [](Params& p) {
        p.fidelity.mode = FidelityMode::automatic;
-       p.solid.extent = solid::Extent::local;
+       p.extent = Extent::local;
      }},
 };
 
@@ -189,7 +189,7 @@ TEST(TickOfARegion, TakesNothingFromTheHeapWhereItHasNotBeen) {
     params.contact.friction = 0.0;
     params.chatter_limit = 0.999;
     params.kernel.radius = 0.008;
-    params.solid.extent = solid::Extent::automatic;
+    params.extent = Extent::automatic;
     params.threads = threads;
     const auto hand = [](int tick) {
       const double depth = tick < 100 ? 2e-5 * tick : std::max(3e-4, 2e-3 - 2e-5 * (tick - 100));
@@ -220,13 +220,13 @@ TEST(TickOfARegion, TakesNothingFromTheHeapWhereItHasNotBeen) {
 /// What the first touch takes goes with the contacts, and not with the mesh. The bodies differ in what is far
 /// from the tool.
 TEST(FirstTouch, TakesTheSameFromTheHeapOnABodyOfNineTimesAsManyTets) {
-  const auto count_bytes = [](int cells, FidelityMode mode, solid::Extent extent, double tolerance) {
+  const auto count_bytes = [](int cells, FidelityMode mode, Extent extent, double tolerance) {
     Params params = make_params();
     params.solid.solver.tolerance = tolerance;
     params.fidelity.mode = mode;
     params.contact.friction = 0.0;
     params.kernel.radius = 0.008;
-    params.solid.extent = extent;
+    params.extent = extent;
     const auto hand = [](int tick) {
       device::DeviceSample sample;
       sample.position = {0.0153, 0.0153, 0.02 + kToolRadius + 1e-3 - 2e-5 * tick};
@@ -240,11 +240,10 @@ TEST(FirstTouch, TakesTheSameFromTheHeapOnABodyOfNineTimesAsManyTets) {
     EXPECT_GT(simulation.hand_state().hand_force.norm(), 0.01);
     return static_cast<double>(test::count_bytes() - before);
   };
-  for (const auto& [mode, extent, tolerance] :
-       {std::tuple{FidelityMode::full, solid::Extent::local, 1e-3},
-        std::tuple{FidelityMode::automatic, solid::Extent::local, 1e-3},
-        std::tuple{FidelityMode::full, solid::Extent::whole, 1e-3},
-        std::tuple{FidelityMode::full, solid::Extent::whole, 1e-6}}) {
+  for (const auto& [mode, extent, tolerance] : {std::tuple{FidelityMode::full, Extent::local, 1e-3},
+                                                std::tuple{FidelityMode::automatic, Extent::local, 1e-3},
+                                                std::tuple{FidelityMode::full, Extent::whole, 1e-3},
+                                                std::tuple{FidelityMode::full, Extent::whole, 1e-6}}) {
     const double small = count_bytes(12, mode, extent, tolerance);
     const double large = count_bytes(36, mode, extent, tolerance);
     EXPECT_NEAR(large / small, 1.0, 0.1) << small << " and " << large << " bytes";

@@ -18,7 +18,7 @@ namespace {
 constexpr double kToolRadius = 0.006;
 constexpr int kTicks = 150;
 
-Params make_params(solid::Extent extent, double tolerance) {
+Params make_params(Extent extent, double tolerance) {
   Params p;
   p.elastic = {1e5, 0.3};
   p.plasticity.yield = 0.02;
@@ -26,7 +26,7 @@ Params make_params(solid::Extent extent, double tolerance) {
   p.kernel.radius = 0.02;
   p.contact = {200.0, 200.0};
   p.solid.rayleigh_stiffness = 1e-3;
-  p.solid.extent = extent;
+  p.extent = extent;
   p.solid.region_tolerance = tolerance;
   return p;
 }
@@ -85,10 +85,10 @@ double largest_difference(const PressRun& a, const PressRun& b) {
 }
 
 TEST(LocalExtent, IsTheWholeBodyWhereNothingMayBeLeftOut) {
-  Params params = make_params(solid::Extent::whole, 1e-300);
+  Params params = make_params(Extent::whole, 1e-300);
   params.solid.gravity = Vec3(0, 0, -9.81);  // the body does not sleep when the run begins
   const PressRun whole = run(params);
-  params.solid.extent = solid::Extent::local;
+  params.extent = Extent::local;
   const PressRun local = run(params);
   EXPECT_EQ(local.most_active, whole.most_active);
   EXPECT_TRUE((local.x.array() == whole.x.array()).all());
@@ -96,14 +96,14 @@ TEST(LocalExtent, IsTheWholeBodyWhereNothingMayBeLeftOut) {
 }
 
 TEST(LocalExtent, ComesNearerToTheWholeTheLessItLeavesOut) {
-  const PressRun whole = run(make_params(solid::Extent::whole, 1e-3));
+  const PressRun whole = run(make_params(Extent::whole, 1e-3));
   double peak = 0.0;
   for (const Vec3& force : whole.force) peak = std::max(peak, force.norm());
   ASSERT_GT(peak, 0.1);
   double last = peak;
   int last_active = 0;
   for (const double tolerance : {0.1, 0.01, 0.001}) {
-    const PressRun local = run(make_params(solid::Extent::local, tolerance));
+    const PressRun local = run(make_params(Extent::local, tolerance));
     const double error = largest_difference(local, whole);
     EXPECT_LT(error, 0.5 * last) << tolerance;
     EXPECT_GT(local.most_active, last_active) << tolerance;
@@ -111,13 +111,13 @@ TEST(LocalExtent, ComesNearerToTheWholeTheLessItLeavesOut) {
     last_active = local.most_active;
   }
   EXPECT_LT(last, 2e-3 * peak);
-  const PressRun coarse = run(make_params(solid::Extent::local, 0.1));
+  const PressRun coarse = run(make_params(Extent::local, 0.1));
   EXPECT_LT(coarse.most_active, whole.most_active / 2);
 }
 
 TEST(LocalExtent, LeavesTheRestWhereItIsAndSleepsWhenNothingActs) {
   Simulation simulation(make_bar(), contact::make_sphere_tool(kToolRadius, 2),
-                        make_params(solid::Extent::local, 0.05), hand_at(0));
+                        make_params(Extent::local, 0.05), hand_at(0));
   const Points start = simulation.body_state().solid.x;
   for (Tick k = 1; k <= 40; ++k) ASSERT_TRUE(simulation.tick(hand_at(k)).is_ok());
   int moved = 0;
@@ -135,7 +135,7 @@ TEST(LocalExtent, LeavesTheRestWhereItIsAndSleepsWhenNothingActs) {
 
 /// Records know the sums over what did not move from earlier steps; here all of it is looked at anew.
 TEST(LocalExtent, RecordsTheEnergyAndPlasticStrainOfTheWholeBody) {
-  Params params = make_params(solid::Extent::local, 0.05);
+  Params params = make_params(Extent::local, 0.05);
   params.plasticity.yield = 0.001;
   params.plasticity.creep_per_s = 20.0;
   params.plasticity.max = 0.5;
@@ -163,12 +163,12 @@ TEST(LocalExtent, RecordsTheEnergyAndPlasticStrainOfTheWholeBody) {
 TEST(LocalExtent, UnderFidelityKeepsTheForceWithinItsBound) {
   const Body block = test::make_block_body(24, 24, 8, Vec3(0.12, 0.12, 0.04));
   const Vec3 middle(0.0097, 0.0498, 0.025);
-  Params params = make_params(solid::Extent::whole, 1e-3);
+  Params params = make_params(Extent::whole, 1e-3);
   params.plasticity.enabled = false;
   params.kernel.form = material::KernelForm::off;
   const PressRun whole = run(params, block, middle);
   params.fidelity.mode = FidelityMode::automatic;
-  params.solid.extent = solid::Extent::automatic;
+  params.extent = Extent::automatic;
   const PressRun region = run(params, block, middle);
   double error = 0.0;
   for (std::size_t k = 0; k < whole.force.size(); ++k) {
@@ -182,7 +182,7 @@ TEST(LocalExtent, UnderFidelityKeepsTheForceWithinItsBound) {
 
 /// A hand that holds still: body and region sleep, and do not wake at every look.
 TEST(LocalExtent, UnderFidelitySleepsWhileTheHandHoldsStill) {
-  Params params = make_params(solid::Extent::local, 1e-3);
+  Params params = make_params(Extent::local, 1e-3);
   params.fidelity.mode = FidelityMode::automatic;
   params.plasticity.enabled = false;               // whose flow would go on, and
   params.kernel.form = material::KernelForm::off;  // with which it creeps
@@ -202,7 +202,7 @@ TEST(LocalExtent, UnderFidelitySleepsWhileTheHandHoldsStill) {
 
 /// What a step leaves of nodes that have fallen asleep may not come back when they wake.
 TEST(LocalExtent, UnderFidelityReturnsToTheSameBits) {
-  Params params = make_params(solid::Extent::local, 1e-3);
+  Params params = make_params(Extent::local, 1e-3);
   params.fidelity.mode = FidelityMode::automatic;
   params.fidelity.force_floor = 0.002;
   const auto make = [&] {
@@ -245,7 +245,7 @@ TEST(LocalExtent, IsLeftWhereFloatsMakeItsMatrixIndefinite) {
     sample.mode = device::ToolMode::push;
     return sample;
   };
-  const auto make = [&](solid::Extent extent) {
+  const auto make = [&](Extent extent) {
     return Simulation(body, contact::make_sphere_tool(kToolRadius, 2), make_params(extent, 1e-3), hand(0));
   };
   const auto run_on = [&](Simulation& simulation, Tick last) {
@@ -254,7 +254,7 @@ TEST(LocalExtent, IsLeftWhereFloatsMakeItsMatrixIndefinite) {
       ASSERT_TRUE(status.is_ok()) << to_string(status.failure());
     }
   };
-  Simulation local = make(solid::Extent::local);
+  Simulation local = make(Extent::local);
   const Snapshot before = local.take_snapshot();
   run_on(local, 12);
   EXPECT_EQ(local.physics_record().active_nodes, local.solid().model.num_free());
@@ -262,11 +262,11 @@ TEST(LocalExtent, IsLeftWhereFloatsMakeItsMatrixIndefinite) {
   const Snapshot after = local.take_snapshot();
   run_on(local, 20);
   EXPECT_GT(local.hand_state().hand_force.norm(), 0.01);
-  Simulation whole = make(solid::Extent::whole);
+  Simulation whole = make(Extent::whole);
   run_on(whole, 20);
   EXPECT_NEAR((local.hand_state().hand_force - whole.hand_state().hand_force).norm(), 0.0, 1e-3);
 
-  Simulation fresh = make(solid::Extent::local);
+  Simulation fresh = make(Extent::local);
   fresh.restore(after, "run.h5");
   run_on(fresh, 20);
   EXPECT_EQ(fresh.state_hash(), local.state_hash());
@@ -276,7 +276,7 @@ TEST(LocalExtent, IsLeftWhereFloatsMakeItsMatrixIndefinite) {
 }
 
 TEST(LocalExtent, IsTakenByItselfWhereItSaves) {
-  Params params = make_params(solid::Extent::automatic, 1e-3);
+  Params params = make_params(Extent::automatic, 1e-3);
   const auto count_active = [&](const Body& body) {
     Simulation simulation(body, contact::make_sphere_tool(kToolRadius, 2), params, hand_at(0));
     for (Tick k = 1; k <= 10; ++k) EXPECT_TRUE(simulation.tick(hand_at(k)).is_ok());
@@ -293,7 +293,7 @@ TEST(LocalExtent, IsTakenByItselfWhereItSaves) {
 
 TEST(LocalExtent, GivesEqualBitsOnAnyNumberOfThreads) {
   for (const FidelityMode mode : {FidelityMode::full, FidelityMode::automatic}) {
-    Params params = make_params(solid::Extent::local, 0.02);
+    Params params = make_params(Extent::local, 0.02);
     params.fidelity.mode = mode;
     const PressRun one = run(params);
     for (const int threads : {2, 3}) {

@@ -87,7 +87,7 @@ const std::vector<Variant>& variants() {
       {"bdf2", [](Params& p) { p.solid.integrator = solid::Integrator::bdf2; }},
       {"local",
        [](Params& p) {
-         p.solid.extent = solid::Extent::local;
+         p.extent = Extent::local;
          p.solid.region_tolerance = 0.1;
        }},
       {"newmark", [](Params& p) { p.solid.integrator = solid::Integrator::newmark; }},

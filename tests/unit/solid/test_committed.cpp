@@ -24,6 +24,7 @@ struct Kind {
   void (*change)(SolidParams&);
   double slack = 0.0;  ///< [N] of each step
   double poisson = 0.3;
+  bool is_local = false;  ///< steps of the region that moves
 };
 
 void PrintTo(const Kind& kind, std::ostream* out) {
@@ -63,7 +64,7 @@ struct PulledBar {
     wall.region.kind = Region::Kind::plane;
     wall.region.normal = Vec3::UnitX();
     return Scene(test::make_irregular_block(6, 3, 3, Vec3(0.3, 0.1, 0.1)), std::vector{wall}, params, kYoungs,
-                 kind.poisson);
+                 kind.poisson, 1, kind.is_local);
   }
   int tip() const {
     Eigen::Index farthest = 0;
@@ -150,13 +151,10 @@ const Kind kKinds[] = {
      }},
     {"cholesky", [](SolidParams& p) { p.solver.kind = linear::SolverKind::cholesky; }},
     {"matrix_free", [](SolidParams& p) { p.solver.kind = linear::SolverKind::pcg_matrix_free; }},
-    {"local", [](SolidParams& p) { p.extent = Extent::local; }},
-    {"local_lag", [](SolidParams& p) { p.extent = Extent::local; }, 1e-2},
+    {"local", [](SolidParams&) {}, 0.0, 0.3, true},
+    {"local_lag", [](SolidParams&) {}, 1e-2, 0.3, true},
     {"local_short",  // its region is left when a blow is too much for it
-     [](SolidParams& p) {
-       p.extent = Extent::local;
-       p.solver.max_iterations = 9;
-     }},
+     [](SolidParams& p) { p.solver.max_iterations = 9; }, 0.0, 0.3, true},
     {"linear", [](SolidParams& p) { p.model = StrainModel::linear; }},
     {"bdf2", [](SolidParams& p) { p.integrator = Integrator::bdf2; }},
     {"newmark", [](SolidParams& p) { p.integrator = Integrator::newmark; }},
