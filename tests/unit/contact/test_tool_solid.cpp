@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <string>
+#include <vector>
 
+#include "base/rng.h"
 #include "contact/tool_shape.h"
 #include "contact/tool_solid.h"
 
@@ -142,6 +146,123 @@ TEST(ToolSolid, ACubeHasItsFacesEdgesAndCorners) {
   int face = 0;
   EXPECT_NEAR((cube.find_distance({1.3, 0.0, 1.4}, face).outward - Vec3(0.6, 0.0, 0.8)).norm(), 0.0, 1e-12);
   EXPECT_NEAR((cube.find_distance({0.1, 0.2, 1.0}, face).outward - Vec3::UnitZ()).norm(), 0.0, 1e-12);
+}
+
+Vec3 draw_point(Rng& rng, double low, double high) {
+  return {rng.uniform(low, high), rng.uniform(low, high), rng.uniform(low, high)};
+}
+
+/// Signed distance of the convex hull of a ball of radius r about the origin and a disc of radius R at height
+/// L: max over unit n of n·p − h(n), with its support h(n) = max(r, R |n_r| + L n_z).
+double compute_hull_distance(const RoundTool& tool, const Vec3& p) {
+  const double from_axis = std::hypot(p.x(), p.y());
+  const auto height = [&](double angle) {
+    const double n_r = std::cos(angle), n_z = std::sin(angle);
+    const double end =
+        tool.is_flat ? tool.end_radius * n_r + tool.length * n_z : tool.length * n_z + tool.tip_radius;
+    return n_r * from_axis + n_z * p.z() - std::max(tool.tip_radius, end);
+  };
+  constexpr int kAngles = 720;
+  constexpr double kRight = 0.5 * std::numbers::pi;
+  int best = 0;
+  for (int i = 1; i <= kAngles; ++i)
+    if (height(kRight * (2.0 * i / kAngles - 1.0)) > height(kRight * (2.0 * best / kAngles - 1.0))) best = i;
+  double low = kRight * (2.0 * std::max(0, best - 1) / kAngles - 1.0);
+  double high = kRight * (2.0 * std::min(kAngles, best + 1) / kAngles - 1.0);
+  for (int i = 0; i < 80; ++i) {
+    const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
+    (height(a) < height(b) ? low : high) = height(a) < height(b) ? a : b;
+  }
+  return height(0.5 * (low + high));
+}
+
+TEST(ToolSolid, RoundShapesHaveTheDistanceOfTheirSupportFunction) {
+  Rng rng(17);
+  for (const RoundTool& shape : {kBall, kCapsule, kStylus, RoundTool{0.002, 0.003, 0.009, true}}) {
+    ToolSolid tool(shape);
+    for (int i = 0; i < 3000; ++i) {
+      Vec3 p = draw_point(rng, -1.0, 1.0);
+      p = Vec3(0.012 * p.x(), 0.012 * p.y(), 0.5 * shape.length + (0.5 * shape.length + 0.012) * p.z());
+      int face = 0;
+      const ToolDistance found = tool.find_distance(p, face);
+      ASSERT_NEAR(found.distance, compute_hull_distance(shape, p), 1e-12)
+          << shape.length << " " << p.transpose();
+      ASSERT_NEAR(found.outward.norm(), 1.0, 1e-12);
+      // The way out leads to the surface.
+      ASSERT_NEAR(distance(tool, p - found.distance * found.outward), 0.0, 1e-12) << p.transpose();
+    }
+  }
+}
+
+/// Inside and outside a cube of side 2, also on its faces' planes.
+TEST(ToolSolid, ACubeIsExactEverywhere) {
+  Rng rng(19);
+  ToolSolid cube(make_cube());
+  for (int i = 0; i < 10000; ++i) {
+    Vec3 p = draw_point(rng, -2.5, 2.5);
+    for (int k = 0; k < 3; ++k)
+      if (rng.uniform(0.0, 1.0) < 0.2) p(k) = std::round(p(k));
+    const Vec3 beyond = p.cwiseAbs() - Vec3::Ones();
+    const double expected = beyond.cwiseMax(0.0).norm() + std::min(0.0, beyond.maxCoeff());
+    int face = static_cast<int>(rng.uniform(0.0, 12.0));
+    const ToolDistance found = cube.find_distance(p, face);
+    ASSERT_NEAR(found.distance, expected, 1e-14) << p.transpose();
+    ASSERT_NEAR(found.outward.norm(), 1.0, 1e-12) << p.transpose();
+    const Vec3 foot = p - found.distance * found.outward;
+    ASSERT_NEAR((foot.cwiseAbs() - Vec3::Ones()).maxCoeff(), 0.0, 1e-12) << p.transpose();
+  }
+}
+
+double compute_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (p - a - t * (b - a)).norm();
+}
+
+/// Least distance from all triangles; negative where their solid angles sum to 4π [vanOosterom1983].
+double compute_slow_distance(const mesh::TriangleMesh& surface, const Vec3& p) {
+  double least = 1e300;
+  double angle = 0.0;
+  for (Eigen::Index t = 0; t < surface.triangles.cols(); ++t) {
+    std::array<Vec3, 3> x;
+    for (Eigen::Index k = 0; k < 3; ++k)
+      x[static_cast<std::size_t>(k)] = surface.vertices.col(surface.triangles(k, t));
+    const Vec3 n = (x[1] - x[0]).cross(x[2] - x[0]).normalized();
+    bool is_over = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      least = std::min(least, compute_distance_to_segment(p, x[k], x[(k + 1) % 3]));
+      is_over = is_over && n.dot((x[(k + 1) % 3] - x[k]).cross(p - x[k])) >= 0.0;
+    }
+    if (is_over) least = std::min(least, std::abs(n.dot(p - x[0])));
+    const Vec3 a = x[0] - p, b = x[1] - p, c = x[2] - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    angle +=
+        2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return angle > 2.0 * std::numbers::pi ? -least : least;
+}
+
+/// A star with spikes and dents: sharp edges and corners of all kinds.
+TEST(ToolSolid, AMeshHasTheDistanceOfAllItsTriangles) {
+  Rng rng(23);
+  mesh::TriangleMesh star = make_sphere_tool(1.0, 2);
+  for (Eigen::Index v = 0; v < star.vertices.cols(); ++v) star.vertices.col(v) *= rng.uniform(0.4, 1.0);
+  require_closed_surface(star, "star");
+  ToolSolid tool(star);
+  int guess = 0, num_inside = 0;
+  Vec3 last = Vec3::Zero();
+  double last_distance = distance(tool, last);
+  for (int i = 0; i < 10000; ++i) {
+    const Vec3 p = draw_point(rng, -1.1, 1.1);
+    const ToolDistance found = tool.find_distance(p, guess);
+    ASSERT_NEAR(found.distance, compute_slow_distance(star, p), 1e-12) << p.transpose();
+    ASSERT_NEAR(found.outward.norm(), 1.0, 1e-12);
+    ASSERT_NEAR(distance(tool, p - found.distance * found.outward), 0.0, 1e-9) << p.transpose();
+    ASSERT_LE(std::abs(found.distance - last_distance), (p - last).norm() * (1.0 + 1e-12));
+    num_inside += found.distance < 0.0 ? 1 : 0;
+    last = p;
+    last_distance = found.distance;
+  }
+  EXPECT_GT(num_inside, 500);
 }
 
 }  // namespace

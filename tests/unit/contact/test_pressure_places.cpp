@@ -1,0 +1,305 @@
+// Pressure over the touched surface wherever the tool stands, whatever it is drawn with, and however fast it
+// comes. Expected: Hertz, Sneddon, one value for one solid, sums over the points.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "base/rng.h"
+#include "contact/pressure.h"
+#include "contact/tool_shape.h"
+#include "unit/contact/scenes.h"
+
+namespace argil::contact {
+namespace {
+
+using test::make_flat_slab;
+
+constexpr double kRadius = 0.008;
+constexpr RoundTool kBall{kRadius, 0.0, kRadius, false};
+constexpr RoundTool kTip{0.001, 0.03, 0.003, true};
+constexpr double kModulus = 1e5;    // E* [Pa]
+constexpr double kStiffness = 1e8;  // κ [Pa/m]
+constexpr Yielding kBoth[] = {Yielding::yes, Yielding::no};
+
+PressureContact make_contact(const mesh::TriangleMesh& body, ToolSolid tool) {
+  const Eigen::Index count = body.triangles.cols();
+  return {body.triangles, body.num_vertices(), std::move(tool),
+          SurfaceStiffness{Field::Constant(count, kStiffness), Field::Constant(count, kModulus)}};
+}
+
+Contacts press(const mesh::TriangleMesh& body, ToolSolid tool, const Pose& from, const Pose& to,
+               Yielding yielding) {
+  PressureContact pressure = make_contact(body, std::move(tool));
+  Contacts contacts;
+  pressure.find_contacts(body.vertices, from, to, yielding, contacts);
+  return contacts;
+}
+
+Contacts press(const mesh::TriangleMesh& body, ToolSolid tool, const Pose& pose, Yielding yielding) {
+  return press(body, std::move(tool), pose, pose, yielding);
+}
+
+Quat draw_turn(Rng& rng) {
+  const Vec3 axis(rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0));
+  return Quat(Eigen::AngleAxisd(rng.uniform(0.0, 3.0), axis.normalized()));
+}
+
+double find_spread(const std::vector<double>& values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return (*most - *least) / *most;
+}
+
+/// A closed solid of revolution: profile of (radius, height) from the tip up.
+mesh::TriangleMesh make_turned(const std::vector<std::pair<double, double>>& profile, int segments) {
+  mesh::TriangleMesh solid;
+  const int rings = static_cast<int>(profile.size());
+  solid.vertices.resize(3, rings * segments + 2);
+  const int low = rings * segments, high = low + 1;
+  std::vector<Eigen::Vector3i> list;
+  for (int r = 0; r < rings; ++r)
+    for (int s = 0; s < segments; ++s) {
+      const double angle = 2.0 * std::numbers::pi * s / segments;
+      const auto& [radius, z] = profile[static_cast<std::size_t>(r)];
+      solid.vertices.col(r * segments + s) << radius * std::cos(angle), radius * std::sin(angle), z;
+      const int next = (s + 1) % segments;
+      if (r + 1 < rings)
+        list.insert(list.end(), {{r * segments + s, r * segments + next, (r + 1) * segments + next},
+                                 {r * segments + s, (r + 1) * segments + next, (r + 1) * segments + s}});
+    }
+  for (int s = 0; s < segments; ++s) {
+    const int next = (s + 1) % segments;
+    list.push_back({low, next, s});
+    list.push_back({high, (rings - 1) * segments + s, (rings - 1) * segments + next});
+  }
+  solid.vertices.col(low) << 0.0, 0.0, 0.0;
+  solid.vertices.col(high) << 0.0, 0.0, profile.back().second;
+  solid.triangles.resize(3, static_cast<Eigen::Index>(list.size()));
+  for (std::size_t t = 0; t < list.size(); ++t) solid.triangles.col(static_cast<Eigen::Index>(t)) = list[t];
+  return solid;
+}
+
+/// F = 2/π E* tan(α) d² of a cone of half-angle α [Sneddon1965]; its blunt sides are 25° off the surface.
+TEST(HeldPressure, IsSneddonUnderACone) {
+  constexpr double kHeight = 0.01;
+  const double slope = std::tan(65.0 / 180.0 * std::numbers::pi);
+  const mesh::TriangleMesh cone = make_turned({{slope * kHeight, kHeight}}, 96);
+  require_closed_surface(cone, "cone");
+  for (const double depth : {0.0005, 0.001, 0.002}) {
+    const double expected = 2.0 / std::numbers::pi * kModulus * slope * depth * depth;
+    const Contacts found =
+        press(make_flat_slab(), ToolSolid(cone), Pose{{0.0011, 0.0023, -depth}}, Yielding::no);
+    EXPECT_NEAR(found.force_on_tool.z() / expected, 1.0, 0.1) << depth;
+  }
+}
+
+/// Mean distance of a drawn ball's facets from the ball that they are inscribed in, by the volume between.
+double find_sagitta(const mesh::TriangleMesh& ball) {
+  double volume = 0.0;
+  for (Eigen::Index t = 0; t < ball.triangles.cols(); ++t) {
+    const Eigen::Vector3i v = ball.triangles.col(t);
+    volume +=
+        Vec3(ball.vertices.col(v(0))).dot(Vec3(ball.vertices.col(v(1))).cross(ball.vertices.col(v(2)))) / 6.0;
+  }
+  const double whole = 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3);
+  return (whole - volume) / (4.0 * std::numbers::pi * kRadius * kRadius);
+}
+
+/// One ball, as meshes in all positions: within a hundredth of a ball that is as much smaller as its facets
+/// lie inside.
+TEST(HeldPressure, OfABallsMeshDoesNotDependOnItsTurn) {
+  Rng rng(3);
+  const mesh::TriangleMesh plane = make_flat_slab(20);
+  for (const double depth : {0.0008, 0.002})
+    for (const int level : {3, 4}) {
+      const Vec3 place(0.0011, 0.0023, kRadius - depth);
+      const double exact = press(plane, ToolSolid(kBall), Pose{place}, Yielding::no).force_on_tool.z();
+      const mesh::TriangleMesh drawn = make_sphere_tool(kRadius, level);
+      const double expected = exact * std::pow(1.0 - find_sagitta(drawn) / depth, 1.5);
+      for (int i = 0; i < 10; ++i) {
+        const Contacts found = press(plane, ToolSolid(drawn), Pose{place, draw_turn(rng)}, Yielding::no);
+        EXPECT_NEAR(found.force_on_tool.z() / expected, 1.0, 0.01) << depth << " " << level;
+      }
+    }
+}
+
+TEST(Pressure, OfABallsMeshDoesNotDependOnItsTurn) {
+  Rng rng(3);
+  const mesh::TriangleMesh plane = make_flat_slab(80);
+  const Vec3 place(0.0011, 0.0023, kRadius - 0.002);
+  const double exact = press(plane, ToolSolid(kBall), Pose{place}, Yielding::yes).force_on_tool.z();
+  for (int i = 0; i < 10; ++i) {
+    const Contacts found =
+        press(plane, ToolSolid(make_sphere_tool(kRadius, 4)), Pose{place, draw_turn(rng)}, Yielding::yes);
+    EXPECT_NEAR(found.force_on_tool.z() / exact, 1.0, 0.02);
+  }
+}
+
+TEST(Pressure, OfAnExactBallDoesNotDependOnItsTurn) {
+  Rng rng(5);
+  const mesh::TriangleMesh plane = make_flat_slab(20);
+  const Vec3 place(0.0011, 0.0023, kRadius - 0.001);
+  for (const Yielding yielding : kBoth) {
+    const Contacts plain = press(plane, ToolSolid(kBall), Pose{place}, yielding);
+    for (int i = 0; i < 5; ++i) {
+      const Contacts turned = press(plane, ToolSolid(kBall), Pose{place, draw_turn(rng)}, yielding);
+      EXPECT_LT((turned.force_on_tool - plain.force_on_tool).norm(), 1e-12 * plain.force_on_tool.norm());
+    }
+  }
+}
+
+/// 1 mm tip on faces of 20 mm: over a node, an edge, a face's centre, and at random; 0.3 to 1 mm deep.
+TEST(Pressure, OfAFineTipOnLargeFacesIsTheSameEverywhere) {
+  Rng rng(7);
+  const mesh::TriangleMesh plane = make_flat_slab(5);
+  std::vector<Vec3> places = {{0.01, 0.01, 0.0}, {0.01, 0.003, 0.0}, {0.0033, 0.0033, 0.0}, {0.0, 0.0, 0.0}};
+  for (int i = 0; i < 20; ++i) places.emplace_back(rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03), 0.0);
+  for (const Yielding yielding : kBoth)
+    for (const double depth : {0.0003, 0.001}) {
+      std::vector<double> forces;
+      for (const Vec3& place : places)
+        forces.push_back(press(plane, ToolSolid(kTip), Pose{place + Vec3(0.0, 0.0, 0.001 - depth)}, yielding)
+                             .force_on_tool.z());
+      EXPECT_GT(*std::min_element(forces.begin(), forces.end()), 0.0);
+      EXPECT_LT(find_spread(forces), 0.05) << depth;
+    }
+}
+
+/// Forces on body and tool are opposite, at the points where the contacts say; so are their moments.
+TEST(Pressure, SumsToTheToolsForceAndTorque) {
+  const mesh::TriangleMesh hill =
+      test::make_slab(16, 0.1, 0.02, [](double x, double y) { return 0.004 * std::cos(60 * x + 20 * y); });
+  const RoundTool capsule{0.004, 0.02, 0.004, false};
+  const Pose from{{0.003, -0.002, 0.0075}, Quat(Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()))};
+  const Pose to{{0.004, -0.001, 0.0060}, Quat(Eigen::AngleAxisd(0.5, Vec3(1, 2, 2).normalized()))};
+  for (const Yielding yielding : kBoth) {
+    const Contacts found = press(hill, ToolSolid(capsule), from, to, yielding);
+    ASSERT_GT(found.force_on_tool.norm(), 0.1);
+    Vec3 force = Vec3::Zero();
+    Vec3 torque = Vec3::Zero();
+    for (const Contact& c : found.contacts) {
+      force += c.force;
+      torque += (c.point - to.position).cross(c.force);
+      Vec3 point = Vec3::Zero();
+      double sum = 0.0;
+      for (std::size_t k = 0; k < 3 && c.vertex[k] >= 0; ++k) {
+        point += c.weight[k] * hill.vertices.col(c.vertex[k]);
+        sum += c.weight[k];
+      }
+      ASSERT_NEAR(sum, 1.0, 1e-12);
+      ASSERT_LT((point - c.point).norm(), 1e-15);
+      ASSERT_NEAR(c.normal.norm(), 1.0, 1e-12);
+      ASSERT_LT(c.force.cross(c.normal).norm(), 1e-12 * c.force.norm() + 1e-300);
+    }
+    EXPECT_LT((force + found.force_on_tool).norm(), 1e-12 * force.norm());
+    EXPECT_LT((torque + found.torque_on_tool).norm(), 1e-12 * force.norm() * kRadius);
+  }
+}
+
+/// Plates thinner than the tool is deep, from both sides, as a thick block.
+TEST(Pressure, OfAThinPlateIsThatOfAThickOne) {
+  for (const Yielding yielding : kBoth)
+    for (const double thickness : {0.0001, 0.0007, 0.003}) {
+      const mesh::TriangleMesh plate = make_flat_slab(20, 0.1, thickness);
+      for (const double depth : {0.0005, 0.002, 0.004}) {
+        const Vec3 above(0.001, 0.002, kRadius - depth);
+        const Vec3 below(0.001, 0.002, -thickness - kRadius + depth);
+        const double thick =
+            press(make_flat_slab(20), ToolSolid(kBall), Pose{above}, yielding).force_on_tool.z();
+        EXPECT_NEAR(press(plate, ToolSolid(kBall), Pose{above}, yielding).force_on_tool.z() / thick, 1.0,
+                    0.01)
+            << thickness << " " << depth;
+        EXPECT_NEAR(press(plate, ToolSolid(kBall), Pose{below}, yielding).force_on_tool.z() / thick, -1.0,
+                    0.01)
+            << thickness << " " << depth;
+      }
+    }
+}
+
+/// How many of `trials` tools that come at this plate, from both sides, at `way` an interval are not met
+/// in any interval, or are drawn through when they are.
+struct Misses {
+  int missed = 0, drawn = 0;
+};
+
+Misses shoot(const RoundTool& tool, double thickness, double way, int trials) {
+  Rng rng(11);
+  const mesh::TriangleMesh plate = make_flat_slab(10, 0.1, thickness);
+  Misses misses;
+  for (int trial = 0; trial < trials; ++trial) {
+    const double side = trial % 2 == 0 ? 1.0 : -1.0;
+    const double apart = rng.uniform(1e-5, way);
+    const double start = side > 0.0 ? tool.tip_radius + apart : -thickness - tool.tip_radius - apart;
+    const Quat turn(Eigen::AngleAxisd(side > 0.0 ? 0.0 : std::numbers::pi, Vec3::UnitX()));
+    Pose pose{{rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03), start}, turn};
+    PressureContact pressure = make_contact(plate, ToolSolid(tool));
+    Contacts contacts;
+    for (int call = 0; call < 20 && contacts.contacts.empty(); ++call) {
+      const Pose next{pose.position - Vec3(0.0, 0.0, side * way), turn};
+      pressure.find_contacts(plate.vertices, pose, next, Yielding::yes, contacts);
+      pose = next;
+    }
+    misses.missed += contacts.contacts.empty() ? 1 : 0;
+    misses.drawn += !contacts.contacts.empty() && !(side * contacts.force_on_tool.z() > 0.0) ? 1 : 0;
+  }
+  return misses;
+}
+
+TEST(Pressure, TurnsBackWhatComesAtFiveMetresASecond) {
+  for (const RoundTool& tool : {kBall, kTip})
+    for (const double thickness : {0.0002, 0.001, 0.005}) {
+      const Misses misses = shoot(tool, thickness, 0.005, 40);
+      EXPECT_EQ(misses.missed, 0) << tool.tip_radius << " " << thickness;
+      EXPECT_EQ(misses.drawn, 0) << tool.tip_radius << " " << thickness;
+    }
+}
+
+/// Steps of 0.8 µm to nearly its radius, while large faces are split through many levels.
+TEST(Pressure, OfAFineTipHasNoJumpAsItGoesDown) {
+  for (const Yielding yielding : kBoth)
+    for (const int n : {5, 33}) {
+      const mesh::TriangleMesh plane = make_flat_slab(n);
+      PressureContact pressure = make_contact(plane, ToolSolid(kTip));
+      Contacts contacts;
+      std::vector<double> forces;
+      for (int i = 0; i <= 1000; ++i) {
+        const Pose pose{{0.0033, 0.0027, 0.001 - 8e-7 * i}};
+        pressure.find_contacts(plane.vertices, pose, pose, yielding, contacts);
+        forces.push_back(contacts.force_on_tool.z());
+      }
+      double largest = 0.0;
+      for (std::size_t i = 2; i < forces.size(); ++i)
+        largest = std::max(largest, std::abs(forces[i] - 2.0 * forces[i - 1] + forces[i - 2]));
+      EXPECT_LT(largest / forces.back(), 0.02) << n;
+    }
+}
+
+/// 50 mm/s over a plane of large faces: from tick to tick the force changes by little.
+TEST(HeldPressure, IsSmoothOverEdgesAndNodes) {
+  for (const int n : {5, 20, 45}) {
+    const mesh::TriangleMesh plane = make_flat_slab(n);
+    PressureContact pressure = make_contact(plane, ToolSolid(kBall));
+    Contacts contacts;
+    std::vector<double> normal;
+    double side = 0.0;
+    for (int i = 0; i < 800; ++i) {
+      const Pose pose{{-0.02 + 5e-5 * i, 0.003 + 1e-5 * i, kRadius - 0.001}};
+      pressure.find_contacts(plane.vertices, pose, pose, Yielding::no, contacts);
+      normal.push_back(contacts.force_on_tool.z());
+      side = std::max(side, contacts.force_on_tool.head<2>().norm());
+    }
+    double largest = 0.0;
+    for (std::size_t i = 1; i < normal.size(); ++i)
+      largest = std::max(largest, std::abs(normal[i] - normal[i - 1]));
+    const double peak = *std::max_element(normal.begin(), normal.end());
+    EXPECT_LT(largest / peak, 0.002) << n;
+    EXPECT_LT(side / peak, 0.01) << n;
+    EXPECT_LT(find_spread(normal), 0.02) << n;
+  }
+}
+
+}  // namespace
+}  // namespace argil::contact
