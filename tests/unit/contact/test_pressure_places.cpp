@@ -151,6 +151,19 @@ TEST(Pressure, OfAnExactBallDoesNotDependOnItsTurn) {
   }
 }
 
+TEST(HeldPressure, IsTheSameInAnyPlace) {
+  Rng rng(13);
+  for (const int n : {5, 10, 20, 60}) {
+    const mesh::TriangleMesh plane = make_flat_slab(n);
+    std::vector<double> forces;
+    for (int i = 0; i < 20; ++i) {
+      const Vec3 place(rng.uniform(-0.02, 0.02), rng.uniform(-0.02, 0.02), kRadius - 0.001);
+      forces.push_back(press(plane, ToolSolid(kBall), Pose{place}, Yielding::no).force_on_tool.z());
+    }
+    EXPECT_LT(find_spread(forces), 0.01) << n;
+  }
+}
+
 /// 1 mm tip on faces of 20 mm: over a node, an edge, a face's centre, and at random; 0.3 to 1 mm deep.
 TEST(Pressure, OfAFineTipOnLargeFacesIsTheSameEverywhere) {
   Rng rng(7);
