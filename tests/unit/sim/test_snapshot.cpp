@@ -91,6 +91,11 @@ const std::vector<Variant>& variants() {
          p.solid.region_tolerance = 0.1;
        }},
       {"newmark", [](Params& p) { p.solid.integrator = solid::Integrator::newmark; }},
+      {"pressure",
+       [](Params& p) {
+         p.contact.law = contact::ContactLaw::pressure;
+         p.contact.grip_strength = 1e4;
+       }},
   };
   return kVariants;
 }

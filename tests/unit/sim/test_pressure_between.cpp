@@ -1,0 +1,343 @@
+// Pressure in the loop at every rate and with every method between frames: rest, friction, impulses of hand
+// and body, modes, and states that are saved and restored. Expected: one static force, Coulomb's ratio, equal
+// impulses, equal bits.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "unit/sim/pressure_scene.h"
+
+namespace argil::sim {
+namespace {
+
+using device::ToolMode;
+using test::lead;
+using test::make_pressed_block;
+using test::make_pressure_params;
+using test::press_block;
+
+constexpr BetweenFrames kMethods[] = {BetweenFrames::hold, BetweenFrames::re_evaluate,
+                                      BetweenFrames::compliant};
+
+std::string name_of(BetweenFrames method) {
+  return method == BetweenFrames::hold          ? "hold"
+         : method == BetweenFrames::re_evaluate ? "re_evaluate"
+                                                : "compliant";
+}
+
+class EveryMethod : public testing::TestWithParam<std::tuple<BetweenFrames, int>> {
+ protected:
+  BetweenFrames method() const { return std::get<0>(GetParam()); }
+  int ticks() const { return std::get<1>(GetParam()); }
+  Params params() const { return make_pressure_params(ticks(), method()); }
+};
+
+/// What hand and body exchange while something changes.
+class Exchange : public EveryMethod {};
+
+/// Steps so short that a stab is too much for one of them.
+class Stab : public EveryMethod {};
+
+/// The static force of a step of one tick.
+double find_static_force(double depth) {
+  Simulation simulation = make_pressed_block(make_pressure_params());
+  lead(simulation, press_block(depth), 100);
+  return lead(simulation, press_block(depth), 600).back().z();
+}
+
+TEST_P(EveryMethod, RestIsTheStaticForce) {
+  Simulation simulation = make_pressed_block(params());
+  lead(simulation, press_block(1e-3), 140);
+  lead(simulation, press_block(1e-3), 560);
+  const std::vector<Vec3> rest = lead(simulation, press_block(1e-3), 280);
+  ASSERT_GT(rest.back().z(), 0.1);
+  for (const Vec3& force : rest) ASSERT_LT((force - rest.back()).norm(), 1e-3 * rest.back().norm());
+  static const double kStatic = find_static_force(1e-3);
+  EXPECT_NEAR(rest.back().z() / kStatic, 1.0, 1e-3);
+}
+
+/// A ball that comes down in fourteen ticks and stops.
+TEST_P(EveryMethod, ASuddenStopDecaysWithoutAlternation) {
+  Simulation simulation = make_pressed_block(params());
+  lead(simulation, press_block(2e-3), 14);
+  const std::vector<Vec3> forces = lead(simulation, press_block(2e-3), 700);
+  const double last = forces.back().z();
+  std::vector<double> off;  // at the steps' ends
+  for (std::size_t i = 0; i < forces.size(); i += static_cast<std::size_t>(ticks()))
+    off.push_back(forces[i].z() / last - 1.0);
+  int num_turns = 0;
+  for (std::size_t i = off.size() / 2; i + 1 < off.size(); ++i) {
+    EXPECT_LT(std::abs(off[i]), 1e-3) << i;
+    num_turns += off[i] * off[i + 1] < -1e-10 ? 1 : 0;
+  }
+  EXPECT_LE(num_turns, 3);
+}
+
+/// |F_t| over F_n, with what the block's shape does to the side force taken off; rms of its second
+/// difference from step to step.
+struct Slide {
+  std::vector<double> ratio;
+  double trembling = 0.0;
+};
+
+Slide slide(const Params& params, const std::vector<Vec3>* smooth, std::vector<Vec3>& forces) {
+  Simulation simulation = make_pressed_block(params);
+  lead(simulation, press_block(1e-3, -0.006), 140);
+  lead(simulation, press_block(1e-3, -0.002), 280);
+  forces = lead(simulation, press_block(1e-3, 0.002), 280);
+  Slide found;
+  if (!smooth || smooth->size() != forces.size()) return found;
+  for (std::size_t i = static_cast<std::size_t>(params.rates.physics_period_ticks) - 1; i < forces.size();
+       i += static_cast<std::size_t>(params.rates.physics_period_ticks))
+    found.ratio.push_back(((*smooth)[i].x() - forces[i].x()) / forces[i].z());
+  for (std::size_t i = 1; i + 1 < found.ratio.size(); ++i)
+    found.trembling += std::pow(found.ratio[i + 1] - 2.0 * found.ratio[i] + found.ratio[i - 1], 2);
+  found.trembling = std::sqrt(found.trembling / static_cast<double>(found.ratio.size() - 2));
+  return found;
+}
+
+TEST_P(Exchange, SlidingCarriesCoulombsForceSteadily) {
+  constexpr double kFriction = 0.3;
+  std::vector<Vec3> smooth, rough;
+  Params p = params();
+  slide(p, nullptr, smooth);
+  p.contact.friction = kFriction;
+  const Slide found = slide(p, &smooth, rough);
+  ASSERT_GT(found.ratio.size(), 10U);
+  double mean = 0.0;
+  for (const double ratio : found.ratio) mean += ratio / static_cast<double>(found.ratio.size());
+  EXPECT_NEAR(mean, kFriction, 0.03 * kFriction);
+  EXPECT_LT(found.trembling, 0.01);
+}
+
+/// A free block that is tapped: what the hand felt is the momentum that the block has, one step after the
+/// ball has left; before, they differ by no more than the hand's impulse in one step.
+TEST_P(Exchange, HandAndBodyGetTheSameImpulse) {
+  for (const double friction : {0.0, 0.4}) {
+    Params p = params();
+    p.contact.friction = friction;
+    Simulation simulation = make_pressed_block(p, ToolMode::push, 1, false);
+    Vec3 felt = Vec3::Zero();
+    double most = 0.0, most_apart = 0.0;
+    const Field& mass = simulation.solid().materials.mass();
+    const auto go = [&](const device::DeviceSample& to, int ticks) {
+      const Vec3 from = simulation.hand_state().tool.position;
+      for (int k = 1; k <= ticks; ++k) {
+        device::DeviceSample sample = to;
+        sample.position = from + (to.position - from) * (static_cast<double>(k) / ticks);
+        ASSERT_TRUE(simulation.tick(sample).is_ok());
+        const Vec3 force = simulation.hand_state().hand_force;
+        felt += p.rates.haptic_period * force;
+        most = std::max(most, p.rates.step_seconds() * force.norm());
+        const Vec3 momentum = simulation.body_state().solid.v * mass.matrix();
+        most_apart = std::max(most_apart, (felt + momentum).norm());
+      }
+    };
+    go(press_block(1e-3, 1e-3), 6 * ticks());
+    go(press_block(-6e-3, 2e-3), 6 * ticks());
+    go(press_block(-6e-3, 2e-3), 2 * ticks());
+    const Vec3 momentum = simulation.body_state().solid.v * mass.matrix();
+    ASSERT_GT(momentum.norm(), 1e-4);
+    EXPECT_LT((felt + momentum).norm(), 1e-6 * momentum.norm()) << friction;
+    EXPECT_LE(most_apart, most * (1.0 + 1e-6)) << friction;
+  }
+}
+
+/// From tick to tick by no more than 5 % or 0.05 N, after the mode that the ball was pressed in with has
+/// changed.
+TEST_P(Exchange, NoChangeOfModeKicks) {
+  for (const auto& [before, after] :
+       {std::pair{ToolMode::push, ToolMode::wet}, std::pair{ToolMode::wet, ToolMode::push},
+        std::pair{ToolMode::push, ToolMode::pull}, std::pair{ToolMode::pull, ToolMode::dry}}) {
+    Simulation simulation = make_pressed_block(params(), before);
+    lead(simulation, press_block(2e-3, 0.0, before), 140);
+    std::vector<Vec3> forces = lead(simulation, press_block(2e-3, 0.0, before), 140);
+    const std::vector<Vec3> then = lead(simulation, press_block(2e-3, 0.0, after), 140);
+    forces.insert(forces.end(), then.begin(), then.end());
+    ASSERT_GT(forces.back().z(), 0.3);
+    for (std::size_t i = 121; i < forces.size(); ++i)
+      ASSERT_LT((forces[i] - forces[i - 1]).norm(), std::max(0.05, 0.05 * forces[i - 1].norm())) << i;
+  }
+}
+
+/// Presses, slides, wets, pulls and tears off: a run that was restored at any step ends in the same bits.
+TEST_P(EveryMethod, IsRestoredToTheBit) {
+  Params p = params();
+  p.contact.friction = 0.4;
+  p.contact.grip_strength = 20000.0;
+  const Tick step = ticks();
+  const auto hand = [&](Tick k) {
+    const double t = static_cast<double>(k) / static_cast<double>(step);  // steps
+    const double depth = t < 8 ? -1e-3 + 3e-4 * t : t < 14 ? 1.4e-3 : 1.4e-3 - 1e-4 * (t - 14);
+    device::DeviceSample sample = press_block(depth, 1e-4 * std::clamp(t - 8.0, 0.0, 6.0));
+    sample.mode = t < 10 ? ToolMode::push : t < 12 ? ToolMode::wet : ToolMode::pull;
+    return sample;
+  };
+  const auto run = [&](Simulation& simulation, Tick last) {
+    for (Tick k = simulation.clock().tick + 1; k <= last; ++k)
+      ASSERT_TRUE(simulation.tick(hand(k)).is_ok()) << k;
+  };
+  const Tick end = 40 * step;
+  Simulation whole = make_pressed_block(p);
+  std::vector<Snapshot> saved;
+  double pulled = 0.0;
+  for (Tick at = 0; at < end; at += step) {
+    saved.push_back(whole.take_snapshot());
+    run(whole, at + step);
+    pulled = std::min(pulled, whole.hand_state().hand_force.z());
+  }
+  if (method() == BetweenFrames::hold) {
+    EXPECT_LT(pulled, -1e-3);  // it gripped
+  }
+  const std::string hash = whole.state_hash();
+  for (std::size_t i = 3; i < saved.size(); i += 5) {
+    Simulation resumed = make_pressed_block(p);
+    resumed.restore(saved[i], "saved");
+    const Snapshot again = resumed.take_snapshot();
+    ASSERT_EQ(again.size(), saved[i].size());
+    for (const auto& [name, value] : saved[i]) {
+      const Eigen::MatrixXd& is = again.at(name);
+      ASSERT_TRUE(is.rows() == value.rows() && is.cols() == value.cols() && is == value)
+          << name << " step " << i;
+    }
+    run(resumed, end);
+    ASSERT_EQ(resumed.state_hash(), hash) << "step " << i;
+  }
+}
+
+/// A stab far too deep ends in a tick that fails; it leaves nothing behind.
+TEST_P(Stab, AFailedTickLeavesNothing) {
+  Params p = params();
+  p.contact.friction = 0.4;
+  p.contact.grip_strength = 20000.0;
+  p.solid.min_volume_ratio = 0.6;
+  for (const ToolMode mode : {ToolMode::push, ToolMode::pull}) {
+    Simulation simulation = make_pressed_block(p, mode);
+    Simulation twin = make_pressed_block(p, mode);
+    for (Simulation* s : {&simulation, &twin}) {
+      lead(*s, press_block(1.5e-3, 1e-3, mode), 6 * ticks());
+      lead(*s, press_block(1.0e-3, 1.5e-3, mode), 4 * ticks() + ticks() / 2);
+    }
+    std::string before;
+    bool is_ok = true;
+    for (int k = 0; k < 2 * ticks() && is_ok; ++k) {
+      before = simulation.state_hash();
+      ASSERT_EQ(twin.state_hash(), before);
+      is_ok = simulation.tick(press_block(0.018, 0.0, ToolMode::push)).is_ok();
+      if (is_ok) {
+        ASSERT_TRUE(twin.tick(press_block(0.018, 0.0, ToolMode::push)).is_ok());
+      }
+    }
+    ASSERT_FALSE(is_ok);
+    EXPECT_EQ(simulation.state_hash(), before);
+    for (int k = 0; k < 3 * ticks(); ++k) {
+      const device::DeviceSample next = press_block(0.8e-3, 1.5e-3 + 1e-5 * k, mode);
+      ASSERT_EQ(simulation.tick(next).is_ok(), twin.tick(next).is_ok());
+      ASSERT_EQ(simulation.hand_state().hand_force, twin.hand_state().hand_force);
+    }
+    EXPECT_EQ(simulation.state_hash(), twin.state_hash());
+  }
+}
+
+std::string name_rate(const testing::TestParamInfo<std::tuple<BetweenFrames, int>>& rate) {
+  return name_of(std::get<0>(rate.param)) + "_" + std::to_string(std::get<1>(rate.param));
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, EveryMethod,
+                         testing::Combine(testing::ValuesIn(kMethods), testing::Values(1, 7, 14)), name_rate);
+INSTANTIATE_TEST_SUITE_P(Rates, Stab, testing::Combine(testing::ValuesIn(kMethods), testing::Values(1, 7)),
+                         name_rate);
+INSTANTIATE_TEST_SUITE_P(Hold, Exchange,
+                         testing::Combine(testing::Values(BetweenFrames::hold), testing::Values(1, 7, 14)),
+                         name_rate);
+
+/// κ as the body's stiffness asks for, and twice that, under a ball whose patch is two cells of 4 mm in
+/// radius.
+TEST(PressureStiffness, DoubledChangesNoForceByAHundredth) {
+  constexpr double kLarge = 0.016;
+  constexpr double kDepth = 4e-3;
+  const auto hand = [](double depth) {
+    device::DeviceSample sample = press_block(0.0);
+    sample.position.z() = test::kBlockHeight + kLarge - depth;
+    return sample;
+  };
+  std::vector<double> forces;
+  double automatic = 0.0;
+  for (const double factor : {0.0, 1.0, 2.0}) {
+    Params params = make_pressure_params();
+    params.contact.round_tool = contact::RoundTool{kLarge, 0.0, kLarge, false};
+    params.contact.pressure_stiffness = factor * automatic;
+    Simulation simulation(argil::test::make_block_body(10, 10, 5, Vec3(0.04, 0.04, test::kBlockHeight)),
+                          contact::make_sphere_tool(kLarge, 2), params, hand(-1e-3));
+    if (factor == 0.0) automatic = simulation.body_side().find_surface_stiffness().per_area.mean();
+    lead(simulation, hand(kDepth), 100);
+    forces.push_back(lead(simulation, hand(kDepth), 200).back().z());
+  }
+  EXPECT_NEAR(forces[1] / forces[0], 1.0, 0.002);
+  EXPECT_NEAR(forces[2] / forces[1], 1.0, 0.01);
+}
+
+/// Torn off, a pulling tool holds nothing more until it has left and come again.
+TEST(GripInTheLoop, HoldsAgainOnlyAfterTheToolHasLeft) {
+  Params params = make_pressure_params();
+  const auto sample = [](double depth) { return press_block(depth, 0.0, ToolMode::pull); };
+  const auto find_pull = [&](double strength, std::vector<double>& pulls) {
+    params.contact.grip_strength = strength;
+    Simulation simulation = make_pressed_block(params, ToolMode::pull);
+    const auto go = [&](double depth, int ticks) {
+      double most = 0.0;
+      for (const Vec3& force : lead(simulation, sample(depth), ticks)) most = std::max(most, -force.z());
+      return most;
+    };
+    go(1.5e-3, 150);
+    go(1.5e-3, 100);
+    pulls.push_back(go(-0.5e-3, 600));  // the grip tears or not
+    pulls.push_back(go(1.2e-3, 300));   // back before it has left; where torn, it presses anew
+    pulls.push_back(go(-0.5e-3, 600));
+    pulls.push_back(go(-3e-3, 200));  // leaves
+    go(1.5e-3, 300);                  // and comes again
+    pulls.push_back(go(-0.5e-3, 600));
+  };
+  std::vector<double> strong, weak;
+  find_pull(1e9, strong);
+  ASSERT_GT(strong[0], 0.1);
+  ASSERT_GT(strong[3], strong[0]);
+  find_pull(6000.0, weak);
+  ASSERT_GT(weak[0], 0.0);
+  EXPECT_LT(weak[0], strong[0]);
+  EXPECT_LT(weak[3], 1e-9);
+  EXPECT_NEAR(weak[4], weak[0], 0.2 * weak[0]);
+}
+
+/// Force against the hand's height while it draws up an elastic block: a straight line, into tension.
+TEST(GripInTheLoop, DrawsAnElasticBlockByAStraightLine) {
+  Simulation simulation = make_pressed_block(make_pressure_params(), ToolMode::pull);
+  lead(simulation, press_block(1.5e-3, 0.0, ToolMode::pull), 150);
+  lead(simulation, press_block(1.5e-3, 0.0, ToolMode::pull), 150);
+  constexpr int kHeights = 15;
+  std::vector<double> force;
+  for (int i = 0; i <= kHeights; ++i)
+    force.push_back(lead(simulation, press_block(1.5e-3 - 1e-4 * i, 0.0, ToolMode::pull), 60).back().z());
+  ASSERT_GT(force.front(), 0.1);
+  ASSERT_LT(force.back(), -0.05);
+  double mean_h = 0.0, mean_f = 0.0, hh = 0.0, hf = 0.0, ff = 0.0;
+  for (int i = 0; i <= kHeights; ++i)
+    mean_h += i / (kHeights + 1.0), mean_f += force[static_cast<std::size_t>(i)] / (kHeights + 1.0);
+  for (int i = 0; i <= kHeights; ++i) {
+    const double h = i - mean_h, f = force[static_cast<std::size_t>(i)] - mean_f;
+    hh += h * h, hf += h * f, ff += f * f;
+  }
+  EXPECT_GT(hf * hf / (hh * ff), 0.999);
+  for (int i = 0; i <= kHeights; ++i)
+    EXPECT_NEAR(force[static_cast<std::size_t>(i)], mean_f + hf / hh * (i - mean_h),
+                0.02 * (force.front() - force.back()))
+        << i;
+}
+
+}  // namespace
+}  // namespace argil::sim
