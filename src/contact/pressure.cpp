@@ -22,10 +22,11 @@ Vec3 centre_of(const std::array<Vec3, 3>& piece) {
 }  // namespace
 
 PressureContact::PressureContact(const Triangles& surface, int num_vertices, ToolSolid tool,
-                                 SurfaceStiffness stiffness)
+                                 SurfaceStiffness stiffness, bool is_solved_for)
     : m_surface(surface),
       m_tool(std::move(tool)),
       m_stiffness(std::move(stiffness)),
+      m_is_solved_for(is_solved_for),
       m_corner_of_vertex(static_cast<std::size_t>(num_vertices), -1) {
   ARGIL_ASSERT(m_stiffness.per_area.size() == surface.cols(), m_stiffness.per_area.size());
   m_places.reserve(kMostPlaces);
@@ -184,6 +185,10 @@ PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
     point.outward += std::max(0.0, point.end) * found.outward;
     before = found;
   }
+  if (m_is_solved_for && point.begin > 0.0 && point.end <= 0.0) {
+    point.mean = 0.5 * (point.begin + point.end);
+    point.share = 1.0;
+  }
   const double length = point.outward.norm();
   point.outward = length > 0.0 ? Vec3(point.outward / length) : before.outward;
   return point;
@@ -198,6 +203,7 @@ PressureContact::PointDepth PressureContact::find_held_depth(const Vec3& p, cons
     if (!(found.distance < 0.0)) continue;
     point.mean += facing_share(found.outward, normal) * find_way_out(p, -normal, place) / places;
   }
+  point.end = point.mean;
   point.outward = -normal;
   return point;
 }
@@ -212,7 +218,7 @@ double PressureContact::facing_share(const Vec3& outward, const Vec3& normal) {
 void PressureContact::add_contact(const std::array<int, 3>& vertex, const Vec3& weight,
                                   const PointDepth& depth, double area, double stiffness, const Vec3& point,
                                   Contacts& out) const {
-  if (!(depth.mean > 0.0 && stiffness > 0.0)) return;
+  if (!((depth.mean > 0.0 || depth.begin > 0.0) && stiffness > 0.0)) return;
   Contact c;
   c.vertex = vertex;
   c.weight = {weight(0), weight(1), weight(2)};
@@ -259,7 +265,7 @@ PressureContact::Cover PressureContact::press_pieces(const Face& face, const Pie
   }
   const bool yields = m_yielding == Yielding::yes;
   const PointDepth depth = yields ? find_depth(x) : find_held_depth(x, face.normal);
-  if (depth.mean > 0.0) {
+  if (depth.mean > 0.0 || depth.begin > 0.0) {
     const Vec3 a = face.at(piece[1]) - face.at(piece[0]);
     const Vec3 b = face.at(piece[2]) - face.at(piece[0]);
     const double area = share * 0.5 * a.cross(b).norm() * facing_share(depth.outward, face.normal);
@@ -328,7 +334,8 @@ void PressureContact::hold_shape(Contacts& out) const {
   for (Contact& c : out.contacts) {
     c.force *= held;
     c.end_force *= held;
-    c.stiffness = c.end_stiffness = 0.0;
+    c.stiffness = 0.0;
+    c.end_stiffness *= held;
   }
 }
 

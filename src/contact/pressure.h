@@ -30,8 +30,11 @@ enum class Yielding {
 /// Only what faces the tool counts: the far side of a thin part does not.
 class PressureContact {
  public:
-  /// `surface`: 3×m triangles of body vertex numbers, outward.
-  PressureContact(const Triangles& surface, int num_vertices, ToolSolid tool, SurfaceStiffness stiffness);
+  /// `surface`: 3×m triangles of body vertex numbers, outward. `is_solved_for`: an implicit step finds how
+  /// far the body comes along with a tool that draws back, and lets go what would draw. A contact that the
+  /// tool has left by the end of its way then has the force of the mean depth, even below zero.
+  PressureContact(const Triangles& surface, int num_vertices, ToolSolid tool, SurfaceStiffness stiffness,
+                  bool is_solved_for = false);
 
   /// Makes for a body that is here what the next call would else make first.
   void prepare(const Points& x);
@@ -59,10 +62,10 @@ class PressureContact {
   };
   /// How deep a point of the body is below the tool's surface.
   struct PointDepth {
-    double mean = 0.0;            ///< of max(0, depth) over the way [m]
+    double mean = 0.0;            ///< of max(0, depth) over the way [m]; of depth itself where a step lets go
     double begin = 0.0;           ///< at its start, negative outside [m]
     double end = 0.0;             ///< at its end, negative outside [m]
-    double share = 0.0;           ///< of the way below the surface
+    double share = 0.0;           ///< of the way below the surface; 1 where a step lets go
     Vec3 outward = Vec3::Zero();  ///< unit mean of the way out of the tool, weighted by depth
   };
   /// What of a triangle the tool has covered.
@@ -115,6 +118,7 @@ class PressureContact {
   Triangles m_surface;
   ToolSolid m_tool;
   SurfaceStiffness m_stiffness;
+  bool m_is_solved_for;
   std::optional<BoundingTree> m_tree;
   // Of the present call.
   std::vector<Place> m_places;  // along the tool's way, the end last

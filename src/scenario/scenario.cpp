@@ -107,12 +107,9 @@ void check_contact(Scenario& s) {
   if (c.damping > 0.0)
     throw InputError(s.file, "/contact/damping_s_per_m", "is of the pairs' law, not of the pressure law",
                      "leave it out, or set /contact/law to pairs");
-  if (c.friction > 0.0 &&
-      (!s.params.solid.solves_contact() || s.params.rates.between_frames != sim::BetweenFrames::hold))
-    throw InputError(s.file, "/contact/friction",
-                     "of the pressure law is found in an implicit step with one detection",
-                     "set /haptics/between_frames to hold and /dynamics/implicit_contact to true, or set "
-                     "/contact/law to pairs");
+  if (c.friction > 0.0 && !s.params.solid.solves_contact())
+    throw InputError(s.file, "/contact/friction", "of the pressure law is found in an implicit step",
+                     "set /dynamics/implicit_contact to true, or set /contact/law to pairs");
   const material::Plasticity& flow = s.params.plasticity;
   if (c.grip_strength > 0.0 || !flow.enabled || !(flow.yield > 0.0)) return;
   const double shear_modulus =

@@ -94,6 +94,9 @@ void BodySide::begin_step(const ContactLoad& load, StepResult& result) {
   result.step = m_state.steps;
   result.has_moved = false;
   result.felt = load.hand.felt;
+  result.friction.setZero();
+  for (const solid::PointStiffness& entry : load.stiffness)
+    if (entry.friction > 0.0) result.friction -= entry.force;
 }
 
 void BodySide::commit() {

@@ -71,7 +71,7 @@ class BodySide {
   StepStatus predict(const ContactLoad& load);
   bool assemble_or_stop();
   StepStatus solve(bool& is_solved);
-  void apply_deflection(const ContactLoad& load, device::Wrench& felt);
+  void apply_deflection(const ContactLoad& load, StepResult& result);
   void scale_velocity(const ContactPatch& patch);
   StepStatus update_kinematics();
   void flow();

@@ -65,15 +65,16 @@ StepStatus BodySide::solve(bool& is_solved) {
 
 /// The deflection of the body under the tool lets the forces of its contacts fall: those on the body, and of
 /// the last detection those that the hand feels. With one detection a step, both are equal and opposite.
-void BodySide::apply_deflection(const ContactLoad& load, device::Wrench& felt) {
+void BodySide::apply_deflection(const ContactLoad& load, StepResult& result) {
   const StageScope scope(m_observer, Stage::solve);
   solid::apply_contact_stiffness(m_solid, load.stiffness, m_force.contacts().at);
   for (std::size_t i = load.last_detection; i < load.stiffness.size(); ++i) {
     const Vec3 at_rest = load.levers[i].force_at_rest * load.stiffness[i].normal;
     const Vec3 change =
         load.detections * (at_rest + solid::compute_contact_change(m_solid, load.stiffness, i));
-    felt.force -= change;
-    felt.torque -= (load.levers[i].point - load.hand.tool.position).cross(change);
+    result.felt.force -= change;
+    if (load.stiffness[i].friction > 0.0) result.friction -= change;
+    result.felt.torque -= (load.levers[i].point - load.hand.tool.position).cross(change);
   }
 }
 

@@ -56,8 +56,7 @@ LoadCollector::LoadCollector(const Params& params, const ContactSurface& surface
     : m_params(params),
       m_surface(surface),
       m_elements(elements),
-      m_share(params.rates.between_frames == BetweenFrames::hold ? 1.0
-                                                                 : 1.0 / params.rates.physics_period_ticks) {}
+      m_share(params.detects_once_a_step() ? 1.0 : 1.0 / params.rates.physics_period_ticks) {}
 
 void LoadCollector::begin_detection() {
   m_load.patch.is_pressed = false;
@@ -74,6 +73,11 @@ void LoadCollector::add_force(const contact::Contact& c, const Vec3& force) {
   patch.weight += weight;
   patch.is_pressed = patch.weight > 0.0;
   if (weight > 0.0) patch.centre += weight / patch.weight * (c.point - patch.centre);
+}
+
+void LoadCollector::add_reaction(const SurfaceForce& force) {
+  m_load.patch.is_touched = true;
+  m_load.forces.push_back(force);
 }
 
 /// The force falls by the contact's stiffness, by damping with the speed, and along the surface while it
@@ -159,16 +163,17 @@ void LoadCollector::add_stiffness_along(const contact::Contact& c, const Vec3& d
                                        : ContactLever{x.col(c.vertex[i]), c.weight[i] * force_at_rest});
 }
 
-/// In `hold` there is one detection a step; otherwise each tick's contacts count with the share that they
-/// have in a step of the planned length, which is set right here where it was shorter or longer.
+/// Where there is one detection a step, it counts as it is; otherwise each tick's contacts count with the
+/// share that they have in a step of the planned length, which is set right here where it was shorter or
+/// longer.
 void LoadCollector::hand_over(const HandPose& hand, device::ToolMode mode, int num_ticks,
                               const contact::Contacts& contacts, ContactLoad& load) {
   const int planned = m_params.rates.physics_period_ticks;
-  const bool holds = m_params.rates.between_frames == BetweenFrames::hold;
+  const bool once = m_params.detects_once_a_step();
   m_load.hand = hand;
   m_load.num_ticks = num_ticks;
-  m_load.scale = holds || num_ticks == planned ? 1.0 : static_cast<double>(planned) / num_ticks;
-  m_load.detections = holds ? 1 : num_ticks;
+  m_load.scale = once || num_ticks == planned ? 1.0 : static_cast<double>(planned) / num_ticks;
+  m_load.detections = once ? 1 : num_ticks;
   m_load.mode = mode;
   if (m_load.scale != 1.0) {
     for (solid::PointStiffness& entry : m_load.stiffness) {

@@ -90,6 +90,8 @@ class LoadCollector {
   std::size_t num_entries() const { return m_load.stiffness.size(); }
   /// How a bond's force changes as the body moves on: alike in all directions, whether it pushes or draws.
   void add_bond(const contact::Contact& bond, const Points& x);
+  /// A force on the body that no contact of the present has: for a whole step.
+  void add_reaction(const SurfaceForce& force);
   /// Contacts from here on change the force that the hand feels; those before have been felt as they are.
   void begin_felt() { m_load.last_detection = m_load.stiffness.size(); }
 

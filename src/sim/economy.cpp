@@ -61,8 +61,7 @@ void Economy::find_reach(const BodyState& state, const OrderedItems& nodes) {
 /// step after each frame in which it was touched.
 bool Economy::sleeps_on(BodyState& state, const ContactLoad& load, const NodalForce& contacts) {
   m_fidelity.begin_step(load.hand.felt.force);
-  if (load.patch.is_touched && m_params.rates.between_frames == BetweenFrames::compliant)
-    state.is_at_rest = false;
+  if (load.patch.is_touched && m_params.deflects_between_steps()) state.is_at_rest = false;
   if (!state.is_at_rest) {
     find_reach(state, m_region.part().nodes);
     return false;
@@ -84,7 +83,7 @@ void Economy::set_budget(solid::StepLoads& loads) const {
 
 bool Economy::stops(BodyState& state, const solid::StepLoads& loads, const NodalForce& contacts, bool flows) {
   if (m_fidelity.is_full() || m_solid.history.counters.newton_iterations > 0) return false;
-  if (m_is_moved || m_params.rates.between_frames == BetweenFrames::compliant) return false;
+  if (m_is_moved || m_params.deflects_between_steps()) return false;
   if (!m_fidelity.falls_asleep(solid::compute_imbalance(m_solid, m_region, loads), m_region.held_back(),
                                flows))
     return false;

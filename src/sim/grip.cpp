@@ -60,7 +60,7 @@ void Grip::find_contacts(const Points& x, const contact::Pose& from, const conta
     c.weight = bond.weight;
     c.normal = to.orientation * bond.normal;
     c.force = bond.stiffness * mean;
-    c.stiffness = c.end_stiffness = bond.stiffness;
+    c.stiffness = c.end_stiffness = c.spring = bond.stiffness;
     c.end_force = bond.stiffness * c.normal.dot(end);
     c.area = bond.area;
     c.point = point;

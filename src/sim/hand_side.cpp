@@ -30,9 +30,13 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
     m_pressure.emplace(
         surface.triangles(), surface.num_vertices(),
         params.contact.round_tool ? contact::ToolSolid(*params.contact.round_tool) : contact::ToolSolid(tool),
-        body.find_surface_stiffness());
+        body.find_surface_stiffness(), params.solid.takes_contact_at_end());
   if (m_pressure && params.contact.friction > 0.0)
     m_friction.emplace(params.contact.friction, surface.num_vertices());
+  if (m_pressure && params.rates.between_frames != BetweenFrames::hold &&
+      params.rates.physics_period_ticks > 1)
+    m_between.emplace(params.rates);
+  m_unpressed.with_touched = false;
   begin_at(start);
 }
 
@@ -73,6 +77,8 @@ void HandSide::receive(StepResult& result) {
     m_state.hand_torque = result.felt.torque;
   }
   m_touched.receive(result);
+  m_has_met_surface = false;
+  if (m_between) m_between->receive(result.felt, result.friction);
 }
 
 /// The device holds its last force on the way to where the hand is at the end of the tick, so that the work
@@ -94,8 +100,7 @@ bool HandSide::is_wetting() const {
 /// Does the surface deflect between physics steps? Tools that do not deform the body meet it as it is, and so
 /// does a pulling one, whose negative stiffness has no balance with the body where it is the stiffer.
 bool HandSide::is_compliant() const {
-  return m_params.rates.between_frames == BetweenFrames::compliant && m_state.mode != ToolMode::pull &&
-         !keeps_shape();
+  return m_params.deflects_between_steps() && m_state.mode != ToolMode::pull && !keeps_shape();
 }
 
 StepStatus HandSide::find_contact_force(bool begins_step) {
@@ -105,7 +110,9 @@ StepStatus HandSide::find_contact_force(bool begins_step) {
   ++m_state.force_age;
   choose_yielding();
   if (is_compliant()) return find_compliant_force();
-  if (m_params.rates.between_frames != BetweenFrames::hold)
+  if (m_pressure && !keeps_shape())
+    find_pressure_force(begins_step);
+  else if (m_params.rates.between_frames != BetweenFrames::hold)
     find_penalty_force(1);
   else if (begins_step)
     find_penalty_force(m_state.ticks_since_step);
@@ -154,16 +161,24 @@ void HandSide::gather_contact_forces() {
 }
 
 void HandSide::hand_over(ContactLoad& load) {
+  if (m_between) {
+    m_between->tell(keeps_shape() ? contact::Contacts{} : m_contacts, m_told_tool, m_state.tool);
+    m_between->repay(keeps_shape() || m_contacts.contacts.empty(), m_collector);
+  }
   HandPose hand = pose();
   ++hand.ticks;  // this one ends
   m_collector.hand_over(hand, m_state.mode, m_state.ticks_since_step, m_contacts, load);
   m_state.ticks_since_step = 0;
   ++m_state.steps_begun;
   m_state.has_felt_anew = false;
+  if (!m_pressure || keeps_shape()) return;
+  m_state.hand_force = m_felt.force;  // until the body answers
+  m_state.hand_torque = m_felt.torque;
 }
 
 /// The last force, old or new, less what would generate energy, through the device's limits.
 void HandSide::render(device::HandFeed feed) {
+  if (m_between) feel_between_steps();
   m_state.chatter.add(m_state.hand_force);
   const device::Wrench felt{m_state.hand_force, m_state.hand_torque};
   device::Wrench sent = felt;
@@ -187,14 +202,15 @@ void HandSide::commit() {
   m_detector.commit();
   m_grip.commit();
   if (m_friction) m_friction->commit();
+  if (m_between) m_between->commit();
   m_collector.commit();
-  if (m_params.rates.between_frames != BetweenFrames::compliant) return;
+  if (!m_params.deflects_between_steps()) return;
   m_compliance.commit();
   m_committed_springs = m_springs;
 }
 
 void HandSide::roll_back(ContactLoad* load) {
-  const bool is_compliant = m_params.rates.between_frames == BetweenFrames::compliant;
+  const bool is_compliant = m_params.deflects_between_steps();
   const bool has_handed_over = m_state.steps_begun != m_committed.steps_begun;
   if (load && has_handed_over) m_collector.take_back(*load);
   m_state = m_committed;
@@ -203,6 +219,8 @@ void HandSide::roll_back(ContactLoad* load) {
   if (m_pressure) m_pressure->forget();
   m_grip.roll_back();
   if (m_friction) m_friction->roll_back();
+  if (m_between) m_between->roll_back();
+  m_has_met_surface = false;
   m_collector.roll_back();
   m_still_detections = 0;
   if (!is_compliant) return;

@@ -11,6 +11,7 @@
 #include "sim/compliance.h"
 #include "sim/contact_load.h"
 #include "sim/contact_surface.h"
+#include "sim/force_between_steps.h"
 #include "sim/grip.h"
 #include "sim/params.h"
 #include "sim/record.h"
@@ -89,6 +90,9 @@ class HandSide {
   bool keeps_shape() const;
   void update_grip();
   void find_pressure();
+  void find_pressure_force(bool begins_step);
+  void feel_between_steps();
+  void meet_surface();
   void gather_pressure();
   // compliant_contact.cpp
   StepStatus find_compliant_force();
@@ -116,8 +120,13 @@ class HandSide {
   contact::ContactDetector m_detector;
   std::optional<contact::PressureContact> m_pressure;  // in place of the detector's pairs
   std::optional<contact::SurfaceFriction> m_friction;  // with pressure
+  std::optional<ForceBetweenSteps> m_between;          // likewise, where it is not held
   Grip m_grip;                                         // of a pulling tool, with pressure
   contact::Contacts m_contacts;                        // of the last detection
+  contact::Contacts m_unpressed;                       // with the surface as if it had kept its shape
+  contact::Pose m_told_tool;                           // where the present detection began
+  device::Wrench m_felt;                               // in the present tick, where a step begins
+  bool m_has_met_surface = false;                      // m_pressure knows where the surface is now
   int m_still_detections = 0;  // in a row, in which neither tool nor surface had moved
   LoadCollector m_collector;
   LocalCompliance m_compliance;

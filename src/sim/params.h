@@ -68,6 +68,15 @@ struct Params {
   /// counted and no recoil, beyond which the run stops. 0: no limit; none where clay swells.
   double energy_limit = 10.0;
   int threads = 1;
+
+  /// The body gets the contacts of one detection a step, over the tool's whole motion since the last.
+  bool detects_once_a_step() const {
+    return rates.between_frames == BetweenFrames::hold || contact.law == contact::ContactLaw::pressure;
+  }
+  /// The surface that the tool meets deflects between two steps.
+  bool deflects_between_steps() const {
+    return rates.between_frames == BetweenFrames::compliant && contact.law == contact::ContactLaw::pairs;
+  }
 };
 
 }  // namespace argil::sim

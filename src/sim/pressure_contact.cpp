@@ -31,8 +31,47 @@ void HandSide::update_grip() {
   m_grip.hold(m_contacts, m_state.hand_force, m_state.contact_tool);
 }
 
+void HandSide::meet_surface() {
+  if (!m_has_met_surface) m_pressure->advance(m_touched.x_t0(), m_touched.x_t1(), m_touched.find_motion());
+  m_has_met_surface = true;
+}
+
+/// The body is told of one detection a step; until it answers, the hand feels the last answer.
+void HandSide::find_pressure_force(bool begins_step) {
+  if (!begins_step) return;
+  m_felt = {m_state.hand_force, m_state.hand_torque};
+  m_told_tool = m_state.contact_tool;
+  find_penalty_force(m_state.ticks_since_step);
+}
+
+/// What the clay would add by now to its last answer.
+void HandSide::feel_between_steps() {
+  const StageScope scope(m_observer, Stage::contact);
+  if (keeps_shape()) return m_between->feel(Vec3::Zero());
+  meet_surface();
+  const auto find_unpressed = [this](const contact::Pose& tool) {
+    m_pressure->find_contacts(m_touched.x_t1(), tool, tool, contact::Yielding::no, m_unpressed);
+  };
+  if (m_between->wants_stiffness()) {
+    find_unpressed(m_between->tool());
+    double stiffness = 0.0;
+    for (const contact::Contact& c : m_unpressed.contacts) stiffness += c.end_stiffness;
+    m_between->set_stiffness(stiffness);
+  }
+  ForceBetweenSteps::Limits limits{m_grip.holds(), m_params.contact.friction};
+  if (!limits.holds) {
+    find_unpressed(m_state.tool);
+    limits.at_least = m_unpressed.force_on_tool;
+  }
+  const device::Wrench felt = m_between->forecast(m_state.tool, limits);
+  m_state.hand_force = felt.force;
+  m_state.hand_torque = felt.torque;
+  m_state.force_age = 0;
+  m_between->feel(felt.force);
+}
+
 void HandSide::find_pressure() {
-  m_pressure->advance(m_touched.x_t0(), m_touched.x_t1(), m_touched.find_motion());
+  meet_surface();
   update_grip();
   if (m_grip.holds())
     return m_grip.find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.tool, m_contacts);

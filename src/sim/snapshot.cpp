@@ -125,9 +125,11 @@ void HandSide::serialize_contacts(Archive& archive) {
     archive.number("contact/yielding", m_state.yielding);
     m_grip.serialize(archive);
     if (m_friction) m_friction->serialize(archive);
+    if (m_between) m_between->serialize(archive);
   }
   if (!archive.is_restoring()) return;
   if (m_pressure) m_pressure->forget();
+  m_has_met_surface = false;
   m_state.gate.restore(gate_count, gate_force, gate_withdrawn);
   inside.edges.clear();
   for (std::size_t i = 0; i < tool_edge.size(); ++i) inside.edges.emplace_back(tool_edge[i], body_edge.at(i));

@@ -59,7 +59,7 @@ StepStatus BodySide::find_velocity(const ContactLoad& load) {
 }
 
 StepStatus BodySide::move_solid(const ContactLoad& load, StepResult& result) {
-  apply_deflection(load, result.felt);                            // what contacts lose as the body moves on
+  apply_deflection(load, result);                                 // what contacts lose as the body moves on
   solid::take_velocity(m_solid, m_region.part(), m_state.solid);  // v ← v'
   scale_velocity(load.patch);                                     // v ← G_d^{h/h_ref} v (eq. 9)
   solid::move(m_solid, m_region.part(), m_state.solid);           // x ← x̂ + τ v

@@ -16,6 +16,8 @@ struct StepResult {
   Points surface_x;  ///< places of all vertices of the touched surface, or of these [m], where it has moved
   device::Wrench felt;  ///< what the hand felt, less what the body's deflection has taken from it
 
+  Vec3 friction = Vec3::Zero();  ///< [N] part of that force: of a pressure's friction
+
   /// Takes storage for a touched surface of `num_vertices`.
   explicit StepResult(Eigen::Index num_vertices) : surface_x(3, num_vertices) {
     moved.reserve(static_cast<std::size_t>(num_vertices));

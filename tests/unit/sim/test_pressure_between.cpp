@@ -256,6 +256,12 @@ INSTANTIATE_TEST_SUITE_P(Hold, Exchange,
                          testing::Combine(testing::Values(BetweenFrames::hold), testing::Values(1, 7, 14)),
                          name_rate);
 
+INSTANTIATE_TEST_SUITE_P(BetweenFrames, Exchange,
+                         testing::Combine(testing::Values(BetweenFrames::re_evaluate,
+                                                          BetweenFrames::compliant),
+                                          testing::Values(1, 7, 14)),
+                         name_rate);
+
 /// κ as the body's stiffness asks for, and twice that, under a ball whose patch is two cells of 4 mm in
 /// radius.
 TEST(PressureStiffness, DoubledChangesNoForceByAHundredth) {

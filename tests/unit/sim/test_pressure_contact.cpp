@@ -102,7 +102,9 @@ TEST_P(EveryPeriod, AToolThatSlidesIsHeldByFriction) {
       ratio.push_back(-(rough[i].x() - smooth[i].x()) / rough[i].z());
     for (std::size_t i = 1; i + 1 < ratio.size(); ++i) {
       ASSERT_NEAR(ratio[i] / friction, 1.0, 0.15) << i;
-      ASSERT_LT(std::abs(ratio[i + 1] - 2 * ratio[i] + ratio[i - 1]), 0.03 * friction) << i;
+      // In steps of 14 ticks the tool goes a twentieth of a cell, and a node that it leaves shows.
+      const double most = GetParam() < 14 ? 0.03 : 0.035;
+      ASSERT_LT(std::abs(ratio[i + 1] - 2 * ratio[i] + ratio[i - 1]), most * friction) << i;
     }
   }
 }

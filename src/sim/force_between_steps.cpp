@@ -1,0 +1,147 @@
+#include "sim/force_between_steps.h"
+
+#include <algorithm>
+
+#include "solid/response.h"
+
+namespace argil::sim {
+namespace {
+
+constexpr double kAlongSurface = 0.8;  // of K [Mindlin1949]: 2 (1 − ν)/(2 − ν), 0.82 for ν = 0.3
+
+/// Where a place that was `point` with the tool at `from` has gone with it.
+Vec3 carry(const Vec3& point, const contact::Pose& from, const contact::Pose& to) {
+  return to.position + to.orientation * (from.orientation.conjugate() * (point - from.position));
+}
+
+}  // namespace
+
+ForceBetweenSteps::ForceBetweenSteps(const RateParams& rates)
+    : m_period(rates.haptic_period), m_planned(rates.physics_period_ticks) {}
+
+/// The force of a mean over the tool's way is that of the tool in its middle.
+void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::Pose& from,
+                             const contact::Pose& to) {
+  Place& told = m_state.told;
+  told.tool = {0.5 * (from.position + to.position), from.orientation.slerp(0.5, to.orientation)};
+  told.centre = told.tool.position;
+  told.outward.setZero();
+  told.springs = 0.0;
+  told.stiffness = -1.0;
+  Vec3 centre = Vec3::Zero();
+  Vec3 inward = Vec3::Zero();
+  for (const contact::Contact& c : contacts.contacts) {
+    told.springs += c.spring;
+    centre += c.spring * c.point;
+    inward += c.spring * c.normal;
+  }
+  if (!(told.springs > 0.0)) return;
+  told.centre = carry(centre / told.springs, to, told.tool);
+  told.outward = -inward.normalized();
+  m_state.shares.clear();
+  for (const contact::Contact& c : contacts.contacts)
+    m_state.shares.push_back({c.vertex, c.weight, Vec3::Constant(c.spring / told.springs)});
+}
+
+/// A quarter of the debt a step: with more, a force that comes to rest would swing. There the debt of a step
+/// is its change, so that of what is off, z² − z + β = 0 remains from step to step.
+void ForceBetweenSteps::repay(bool has_left, LoadCollector& load) {
+  constexpr double kPart = 0.25;        // β
+  constexpr double kNegligible = 1e-9;  // of what the hand feels
+  if (m_state.owed.isZero(0.0) || m_state.shares.empty()) return;
+  const double step_s = m_planned * m_period;
+  const bool all = has_left || m_state.owed.norm() < kNegligible * step_s * m_state.answer.force.norm();
+  const Vec3 given = all ? m_state.owed : Vec3(kPart * m_state.owed);
+  m_state.owed = all ? Vec3(Vec3::Zero()) : Vec3(m_state.owed - given);
+  for (const SurfaceForce& share : m_state.shares)
+    load.add_reaction({share.vertex, share.weight, share.force.cwiseProduct(-given / step_s)});
+}
+
+/// Where the force grows steadily from answer to answer, by ΔF, the hand has felt (N − ½) ΔF more in the N
+/// ticks after the first than that: that the body gets with the next one.
+void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& friction) {
+  const double ahead = (m_planned - 0.5) * m_period;
+  m_state.owed += m_period * (m_state.excess + (m_state.ticks - m_planned) * m_state.answer.force) +
+                  ahead * (m_state.answer.force - answer.force);
+  m_state.excess.setZero();
+  m_state.ticks = 0;
+  m_state.answer = answer;
+  m_state.friction = friction;
+  m_state.place = m_state.told;
+  const Vec3 pressure = answer.force - friction;
+  if (presses() && pressure.dot(m_state.place.outward) > 0.0)
+    m_state.place.outward = pressure.normalized();  // so that of pressure nothing is along the surface
+}
+
+StepStatus ForceBetweenSteps::find_stiffness(const BodyBetweenSteps& body) {
+  Place& told = m_state.told;
+  if (told.outward.isZero(0.0) || !(told.springs > 0.0)) return StepStatus::ok();
+  const auto each_node = [&](auto use) {
+    for (const SurfaceForce& share : m_state.shares)
+      for (std::size_t i = 0; i < 3 && share.vertex[i] >= 0; ++i) {
+        const std::span<const int> nodes = body.surface.nodes(share.vertex[i]);
+        const std::span<const double> weights = body.surface.weights(share.vertex[i]);
+        for (std::size_t k = 0; k < nodes.size(); ++k)
+          use(nodes[k], share.weight[i] * weights[k] * share.force.x());
+      }
+  };
+  m_load.setZero(3, body.state.x.cols());
+  each_node([&](int node, double weight) { m_load.col(node) += weight * told.outward; });
+  solid::prepare_response(body.solid, body.part, body.state, body.step_s);
+  ARGIL_TRY(solid::find_response(body.solid, body.part, m_load, body.tick, m_response));
+  double deflection = 0.0;
+  each_node([&](int node, double weight) { deflection += weight * told.outward.dot(m_response.col(node)); });
+  told.stiffness = 1.0 / (deflection + 1.0 / told.springs);
+  return StepStatus::ok();
+}
+
+device::Wrench ForceBetweenSteps::forecast(const contact::Pose& tool, const Limits& limits) const {
+  const Place& place = m_state.place;
+  if (!presses()) return {limits.at_least, Vec3::Zero()};
+  const Vec3& n = place.outward;
+  const Vec3 path = carry(place.centre, place.tool, tool) - place.centre;
+  const Vec3 answered = m_state.answer.force - m_state.friction;
+  double pressing = n.dot(answered) - place.stiffness * n.dot(path);
+  Vec3 along = m_state.answer.force - n.dot(answered) * n;
+  if (limits.holds || limits.friction > 0.0)
+    along -= kAlongSurface * place.stiffness * (path - n.dot(path) * n);
+  if (!limits.holds) {
+    pressing = std::max({0.0, pressing, n.dot(limits.at_least)});
+    const double most = limits.friction * pressing;
+    if (const double length = along.norm(); length > most) along *= most / length;
+  }
+  const Vec3 force = pressing * n + along;
+  return {force, m_state.answer.torque + (place.centre - tool.position).cross(force - m_state.answer.force)};
+}
+
+void ForceBetweenSteps::feel(const Vec3& force) {
+  ++m_state.ticks;
+  m_state.excess += force - m_state.answer.force;
+}
+
+void ForceBetweenSteps::serialize(Archive& archive) {
+  const auto place = [&](const std::string& name, Place& p) {
+    archive.array(name + "_position", p.tool.position);
+    archive.quaternion(name + "_orientation", p.tool.orientation);
+    archive.array(name + "_centre", p.centre);
+    archive.array(name + "_outward", p.outward);
+    archive.number(name + "_springs", p.springs);
+    archive.number(name + "_stiffness", p.stiffness);
+  };
+  place("between/told", m_state.told);
+  place("between/place", m_state.place);
+  archive.array("between/force", m_state.answer.force);
+  archive.array("between/torque", m_state.answer.torque);
+  archive.array("between/friction", m_state.friction);
+  archive.number("between/ticks", m_state.ticks);
+  archive.array("between/excess", m_state.excess);
+  archive.array("between/owed", m_state.owed);
+  archive.records("between/shares", m_state.shares, [](SurfaceForce& share, auto field) {
+    for (int& vertex : share.vertex) field(vertex);
+    for (double& weight : share.weight) field(weight);
+    for (double& value : share.force) field(value);
+  });
+  if (archive.is_restoring()) commit();
+}
+
+}  // namespace argil::sim

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <vector>
+
+#include "base/archive.h"
+#include "contact/contact.h"
+#include "device/gate.h"
+#include "sim/compliance.h"
+#include "sim/contact_load.h"
+#include "sim/params.h"
+
+namespace argil::sim {
+
+/// What the hand feels between two steps of a body that a pressure deforms, and what the body gets for it.
+///
+/// A step answers where the tool was with one force. As the tool goes on, that force grows like the one of an
+/// elastic body under a patch that keeps its size, whose stiffness is K along the patch's normal and
+/// less along the surface; friction keeps Coulomb's limit. Deep in a surface that has not been pressed yet,
+/// it is no less than Hertz's force there.
+///
+/// That is a forecast. What the hand felt more than the body got is owed to the body: a part of it is given
+/// with every step, and all of it once the tool has left. So both get the same impulse.
+class ForceBetweenSteps {
+ public:
+  explicit ForceBetweenSteps(const RateParams& rates);
+
+  /// The body is told of these contacts, found while the tool went from `from` to `to`.
+  void tell(const contact::Contacts& contacts, const contact::Pose& from, const contact::Pose& to);
+  /// Gives the body its part of what is owed, as forces in `load`.
+  void repay(bool has_left, LoadCollector& load);
+  /// The body has answered with this on the hand; `friction` is a part of its force [N].
+  void receive(const device::Wrench& answer, const Vec3& friction);
+
+  /// K of what the body was told, from its own matrix, before it answers: how it yields in a step to forces
+  /// that are shared as those of its contacts.
+  StepStatus find_stiffness(const BodyBetweenSteps& body);
+  /// K of the last answer is not known.
+  bool wants_stiffness() const { return presses() && m_state.place.stiffness < 0.0; }
+  void set_stiffness(double stiffness) { m_state.place.stiffness = stiffness; }
+  const contact::Pose& tool() const { return m_state.place.tool; }  ///< for which the body has answered
+
+  /// How the force is limited as the tool goes on.
+  struct Limits {
+    bool holds = false;            ///< a grip: it draws as it pushes, and does not slide
+    double friction = 0.0;         ///< μ
+    Vec3 at_least = Vec3::Zero();  ///< of clay that has not been pressed yet [N], on the hand
+  };
+  /// On the hand, with the tool at `tool` now.
+  device::Wrench forecast(const contact::Pose& tool, const Limits& limits) const;
+
+  /// The hand has felt this for a tick.
+  void feel(const Vec3& force);
+
+  void commit() { m_committed = m_state; }
+  void roll_back() { m_state = m_committed; }
+  void serialize(Archive& archive);
+
+ private:
+  /// Where the body was told of the tool.
+  struct Place {
+    contact::Pose tool;
+    Vec3 centre = Vec3::Zero();   // of what is touched [m]
+    Vec3 outward = Vec3::Zero();  // unit: from the clay to the tool; zero without contacts
+    double springs = 0.0;         // stiffness of the contacts themselves [N/m]
+    double stiffness = -1.0;      // K [N/m]; negative: not known
+  };
+  struct State {
+    Place told;   // the body has not answered yet
+    Place place;  // of the last answer
+    device::Wrench answer;
+    Vec3 friction = Vec3::Zero();      // of its force [N]
+    int ticks = 0;                     // that the hand has felt since the answer
+    Vec3 excess = Vec3::Zero();        // Σ of what it felt beyond the answer in each [N]
+    Vec3 owed = Vec3::Zero();          // to the body [N s]: its reaction is what the hand has felt too much
+    std::vector<SurfaceForce> shares;  // of the last contacts, by their springs; sum 1 [–]
+  };
+
+  bool presses() const { return !m_state.place.outward.isZero(0.0); }
+
+  double m_period;  // δ [s]
+  int m_planned;    // ticks of a step
+  State m_state, m_committed;
+  Points m_load, m_response;  // 3×nodes, of find_stiffness
+};
+
+}  // namespace argil::sim
