@@ -39,6 +39,13 @@ void PressureContact::prepare(const Points& x) {
   m_tree.emplace(x, m_surface);
 }
 
+void PressureContact::exchange(std::span<StiffnessOfTriangle> list) {
+  for (StiffnessOfTriangle& of : list) {
+    std::swap(of.per_area, m_stiffness.per_area(of.triangle));
+    std::swap(of.modulus, m_stiffness.modulus(of.triangle));
+  }
+}
+
 /// Places of the tool along its way, in pieces that are no longer than it is thick: their ends, or for a body
 /// that keeps its shape, where nothing hangs on the end, their middles.
 void PressureContact::place_tool(const Pose& pose_t0, const Pose& pose_t1) {

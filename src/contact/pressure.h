@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "contact/bounding_tree.h"
@@ -14,6 +15,13 @@ namespace argil::contact {
 struct SurfaceStiffness {
   Field per_area;  ///< κ [Pa/m] of a tool that the body yields to
   Field modulus;   ///< E/(1 − ν²) [Pa] of the body under it, for a tool that it does not yield to
+};
+
+/// The same of one triangle.
+struct StiffnessOfTriangle {
+  int triangle = -1;
+  double per_area = 0.0;
+  double modulus = 0.0;
 };
 
 /// How the body answers the tool.
@@ -38,6 +46,9 @@ class PressureContact {
 
   /// Makes for a body that is here what the next call would else make first.
   void prepare(const Points& x);
+  /// Gives these triangles what is listed, and lists what they had before.
+  void exchange(std::span<StiffnessOfTriangle> list);
+  SurfaceStiffness& stiffness() { return m_stiffness; }
   /// The next call may start anywhere.
   void forget() { m_tree.reset(); }
 

@@ -1,7 +1,5 @@
 #include "sim/body_side.h"
 
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "base/check.h"
@@ -19,6 +17,7 @@ BodySide::BodySide(Body body, const Params& params)
       m_region(m_solid, restricts_to_region(params, m_body.supports, m_solid.model.num_free())),
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation, params.threads),
       m_surface(params.contact_surface, m_body, m_solid.model.elements),
+      m_surface_moduli(m_surface, m_solid, params.contact),
       m_force(solid::compute_load_force(m_solid.model.elements, m_body.topology.boundary, m_body.loads)),
       m_loads{m_force.total()},
       m_materials(m_body, params, m_water, m_solid, m_region),
@@ -50,37 +49,13 @@ StepStatus BodySide::find_equilibrium() {
   return StepStatus::ok();
 }
 
-/// κ = kChosenStiffness E*/h with E* = E/(1 − ν²) and h the edge of a regular tet of the size of the one
-/// below: a patch of radius a yields by some E*/a, so that κ is stiff against the body where a is two cells
-/// and more.
-contact::SurfaceStiffness BodySide::find_surface_stiffness() const {
-  const solid::Elements& elements = m_solid.model.elements;
-  const double nodes_per_edge = elements.nodes_per_tet == 4 ? 1.0 : 2.0;
-  const Eigen::Index count = m_surface.triangles().cols();
-  contact::SurfaceStiffness stiffness{Field(count), Field(count)};
-  for (Eigen::Index t = 0; t < count; ++t) {
-    const int tet = m_surface.tet_under(static_cast<int>(t));
-    const solid::TetMaterial material = m_solid.materials.of(tet);
-    const double lambda = material.lambda, mu = material.mu;
-    stiffness.modulus(t) = 4.0 * mu * (lambda + mu) / (lambda + 2.0 * mu);
-    double volume = 0.0;
-    for (int p = 0; p < elements.points_per_tet; ++p)
-      volume += m_solid.materials.weight()(tet * elements.points_per_tet + p);
-    const double cell = std::cbrt(6.0 * std::numbers::sqrt2 * volume) / nodes_per_edge;
-    stiffness.per_area(t) = m_params.contact.pressure_stiffness > 0.0
-                                ? m_params.contact.pressure_stiffness
-                                : contact::kChosenStiffness * stiffness.modulus(t) / cell;
-  }
-  return stiffness;
-}
-
 BodyBetweenSteps BodySide::between_steps(Tick tick) {
   return {m_solid, m_region.part(), m_surface, m_state.solid, m_params.rates.step_seconds(), tick};
 }
 
 StepStatus BodySide::step(const ContactLoad& load, StepResult& result) {
   begin_step(load, result);
-  if (m_params.rates.moves_water(m_state.steps)) ARGIL_TRY(move_water(load));
+  if (m_params.rates.moves_water(m_state.steps)) ARGIL_TRY(move_water(load, result));
   if (m_economy.rests(m_state, load, m_force.contacts())) return StepStatus::ok();
   ARGIL_TRY(find_velocity(load));
   if (m_state.is_at_rest) return StepStatus::ok();
@@ -94,6 +69,7 @@ void BodySide::begin_step(const ContactLoad& load, StepResult& result) {
   result.step = m_state.steps;
   result.has_moved = false;
   result.felt = load.hand.felt;
+  result.stiffness.clear();
   result.friction.setZero();
   for (const solid::PointStiffness& entry : load.stiffness)
     if (entry.friction > 0.0) result.friction -= entry.force;

@@ -17,6 +17,7 @@
 #include "sim/stage.h"
 #include "sim/state.h"
 #include "sim/step_result.h"
+#include "sim/surface_moduli.h"
 
 namespace argil::sim {
 
@@ -48,7 +49,7 @@ class BodySide {
   const Points& x_before() const { return m_solid.committed.x; }  ///< nodes before the last move
   BodyBetweenSteps between_steps(Tick tick);
   /// Of each triangle of the touched surface, as the body is now.
-  contact::SurfaceStiffness find_surface_stiffness() const;
+  contact::SurfaceStiffness find_surface_stiffness() const { return m_surface_moduli.find_all(); }
   PhysicsRecord make_record();                   ///< of the last step
   Frame make_frame(const HandPose& hand) const;  ///< the body as it is now, with the hand there
   /// The same with the hand of the last step, and the hash of the body's side alone: where the hand goes on
@@ -60,14 +61,14 @@ class BodySide {
 
  private:
   // step.cpp
-  StepStatus move_water(const ContactLoad& load);
+  StepStatus move_water(const ContactLoad& load, StepResult& result);
   StepStatus find_velocity(const ContactLoad& load);
   StepStatus move_solid(const ContactLoad& load, StepResult& result);
 
   // Stages of these: body_stages.cpp.
   void transfer_water(const ContactLoad& load, double step_s);
   void diffuse(double step_s);
-  StepStatus refresh_materials();
+  StepStatus refresh_materials(StepResult& result);
   StepStatus predict(const ContactLoad& load);
   bool assemble_or_stop();
   StepStatus solve(bool& is_solved);
@@ -101,6 +102,7 @@ class BodySide {
   solid::ActiveRegion m_region;
   water::PoreWater m_water;
   ContactSurface m_surface;
+  SurfaceModuli m_surface_moduli;
   ExternalForce m_force;
   solid::StepLoads m_loads;  // of the present step
   BodyMaterials m_materials;

@@ -25,9 +25,10 @@ void BodySide::diffuse(double step_s) {
 
 /// Brings the solid up to date with the water. Other moduli under strain, another weight or size: another
 /// balance, for which the body wakes.
-StepStatus BodySide::refresh_materials() {
+StepStatus BodySide::refresh_materials(StepResult& result) {
   const StageScope scope(m_observer, Stage::water);
   const std::span<const int> changed = m_materials.refresh(m_params.moisture.refresh_tolerance);
+  m_surface_moduli.find_above(changed, result.stiffness);
   for (const int tet : changed)
     if (m_state.is_at_rest && solid::is_strained(m_solid.strained(m_state.solid.plastic_strain), tet))
       m_state.is_at_rest = false;

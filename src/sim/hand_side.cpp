@@ -31,6 +31,7 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
         surface.triangles(), surface.num_vertices(),
         params.contact.round_tool ? contact::ToolSolid(*params.contact.round_tool) : contact::ToolSolid(tool),
         body.find_surface_stiffness(), params.solid.takes_contact_at_end());
+  m_stiffness_before.reserve(static_cast<std::size_t>(surface.triangles().cols()));
   if (m_pressure && params.contact.friction > 0.0)
     m_friction.emplace(params.contact.friction, surface.num_vertices());
   if (m_pressure && params.rates.between_frames != BetweenFrames::hold &&
@@ -78,6 +79,10 @@ void HandSide::receive(StepResult& result) {
   }
   m_touched.receive(result);
   m_has_met_surface = false;
+  if (m_pressure) {
+    m_pressure->exchange(result.stiffness);
+    m_stiffness_before.swap(result.stiffness);
+  }
   if (m_between) m_between->receive(result.felt, result.friction);
 }
 
@@ -200,6 +205,7 @@ void HandSide::commit() {
   m_committed = m_state;
   m_touched.commit();
   m_detector.commit();
+  m_stiffness_before.clear();
   m_grip.commit();
   if (m_friction) m_friction->commit();
   if (m_between) m_between->commit();
@@ -216,7 +222,11 @@ void HandSide::roll_back(ContactLoad* load) {
   m_state = m_committed;
   m_touched.roll_back(is_compliant ? &m_body.state().solid.x : nullptr);
   m_detector.roll_back();
-  if (m_pressure) m_pressure->forget();
+  if (m_pressure) {
+    m_pressure->exchange(m_stiffness_before);
+    m_pressure->forget();
+  }
+  m_stiffness_before.clear();
   m_grip.roll_back();
   if (m_friction) m_friction->roll_back();
   if (m_between) m_between->roll_back();

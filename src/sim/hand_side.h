@@ -119,6 +119,8 @@ class HandSide {
   TouchedSurface m_touched;
   contact::ContactDetector m_detector;
   std::optional<contact::PressureContact> m_pressure;  // in place of the detector's pairs
+  std::vector<contact::StiffnessOfTriangle>
+      m_stiffness_before;                              // of m_pressure, where this tick has changed it
   std::optional<contact::SurfaceFriction> m_friction;  // with pressure
   std::optional<ForceBetweenSteps> m_between;          // likewise, where it is not held
   Grip m_grip;                                         // of a pulling tool, with pressure

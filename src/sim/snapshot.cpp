@@ -123,6 +123,8 @@ void HandSide::serialize_contacts(Archive& archive) {
   m_compliance.serialize(archive, m_surface);
   if (m_pressure) {
     archive.number("contact/yielding", m_state.yielding);
+    archive.array("contact/stiffness_per_area", m_pressure->stiffness().per_area);
+    archive.array("contact/modulus", m_pressure->stiffness().modulus);
     m_grip.serialize(archive);
     if (m_friction) m_friction->serialize(archive);
     if (m_between) m_between->serialize(archive);

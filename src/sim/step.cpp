@@ -41,11 +41,11 @@ void HandSide::find_penalty_force(int ticks) {
 }
 
 /// Uptake from or to the tool, diffusion, then moduli and yield of the tets whose saturation moved (eq. 6).
-StepStatus BodySide::move_water(const ContactLoad& load) {
+StepStatus BodySide::move_water(const ContactLoad& load, StepResult& result) {
   const double h = m_params.rates.haptic_period * m_params.rates.water_period_ticks;
   transfer_water(load, h);
   diffuse(h);
-  return refresh_materials();
+  return refresh_materials(result);
 }
 
 /// Eq. 2: the velocity v' at the end of the step, or the body stops where it is and is at rest from now on.

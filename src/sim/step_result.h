@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "contact/pressure.h"
 #include "device/gate.h"
 
 namespace argil::sim {
@@ -18,9 +19,12 @@ struct StepResult {
 
   Vec3 friction = Vec3::Zero();  ///< [N] part of that force: of a pressure's friction
 
+  std::vector<contact::StiffnessOfTriangle> stiffness;  ///< where the water has changed it: pressure law
+
   /// Takes storage for a touched surface of `num_vertices`.
   explicit StepResult(Eigen::Index num_vertices) : surface_x(3, num_vertices) {
     moved.reserve(static_cast<std::size_t>(num_vertices));
+    stiffness.reserve(2 * moved.capacity());
   }
 };
 

@@ -1,0 +1,52 @@
+#include "sim/surface_moduli.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace argil::sim {
+
+SurfaceModuli::SurfaceModuli(const ContactSurface& surface, const solid::Body& solid,
+                             const contact::ContactParams& params)
+    : m_surface(surface), m_solid(solid), m_params(params) {
+  if (params.law != contact::ContactLaw::pressure) return;
+  for (int t = 0; t < static_cast<int>(surface.triangles().cols()); ++t)
+    m_above.emplace_back(surface.tet_under(t), t);
+  std::sort(m_above.begin(), m_above.end());
+}
+
+contact::StiffnessOfTriangle SurfaceModuli::find(int triangle, int tet) const {
+  const solid::Elements& elements = m_solid.model.elements;
+  const double nodes_per_edge = elements.nodes_per_tet == 4 ? 1.0 : 2.0;
+  const solid::TetMaterial material = m_solid.materials.of(tet);
+  const double lambda = material.lambda, mu = material.mu;
+  const double modulus = 4.0 * mu * (lambda + mu) / (lambda + 2.0 * mu);
+  double volume = 0.0;
+  for (int p = 0; p < elements.points_per_tet; ++p)
+    volume += m_solid.materials.weight()(tet * elements.points_per_tet + p);
+  const double cell = std::cbrt(6.0 * std::numbers::sqrt2 * volume) / nodes_per_edge;
+  const double chosen = contact::kChosenStiffness * modulus / cell;
+  return {triangle, m_params.pressure_stiffness > 0.0 ? m_params.pressure_stiffness : chosen, modulus};
+}
+
+contact::SurfaceStiffness SurfaceModuli::find_all() const {
+  const Eigen::Index count = m_surface.triangles().cols();
+  contact::SurfaceStiffness all{Field(count), Field(count)};
+  for (const auto& [tet, triangle] : m_above) {
+    const contact::StiffnessOfTriangle found = find(triangle, tet);
+    all.per_area(triangle) = found.per_area;
+    all.modulus(triangle) = found.modulus;
+  }
+  return all;
+}
+
+void SurfaceModuli::find_above(std::span<const int> tets,
+                               std::vector<contact::StiffnessOfTriangle>& out) const {
+  if (m_above.empty()) return;
+  for (const int tet : tets) {
+    auto at = std::lower_bound(m_above.begin(), m_above.end(), std::pair(tet, -1));
+    for (; at != m_above.end() && at->first == tet; ++at) out.push_back(find(at->second, tet));
+  }
+}
+
+}  // namespace argil::sim
