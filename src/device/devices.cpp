@@ -30,6 +30,36 @@ std::unique_ptr<HapticDevice> make_haply_at(const std::string& place, const Devi
   return internal::make_haply(host.empty() ? "127.0.0.1" : host, port, options);
 }
 
+/// What may follow a kind's name after a colon.
+enum class Place { none, optional, required };
+
+struct Kind {
+  const char* name;
+  const char* about;  ///< one line
+  Place place;
+  std::unique_ptr<HapticDevice> (*make)(const std::string& place, const DeviceOptions& options);
+  bool is_built = true;  ///< else `make` says what this program lacks
+};
+
+#ifdef ARGIL_HAS_SPNAV
+constexpr bool kHasSpacenav = true;
+#else
+constexpr bool kHasSpacenav = false;
+#endif
+
+/// Every kind of device that make_device knows.
+constexpr Kind kKinds[] = {
+    {"simulated", "a hand model that follows a trace and yields to the force", Place::none,
+     [](const std::string&, const DeviceOptions& options) { return internal::make_simulated(options); }},
+    {"haply", "Inverse3 by the Haply Inverse Service on this machine, or haply:HOST:PORT", Place::optional,
+     make_haply_at},
+    {"spacenav", "6-DoF controller by spacenavd, without force", Place::none,
+     [](const std::string&, const DeviceOptions& options) { return internal::make_spacenav(options); },
+     kHasSpacenav},
+    {"plugin", "plugin:FILE[,ARGUMENT], a shared library of a device's own (plugin_api.h)", Place::required,
+     internal::make_plugin},
+};
+
 /// "NAME, 3.3 N at most, …", and "not stated" for what the device does not say.
 std::string print(const DeviceInfo& info) {
   const auto limit = [](double value, const char* unit, const char* of) {
@@ -54,12 +84,10 @@ std::string print(const DeviceInfo& info) {
 }  // namespace
 
 std::vector<DeviceKind> device_kinds() {
-  return {{"simulated", "a hand model that follows a trace and yields to the force"},
-          {"haply", "Inverse3 by the Haply Inverse Service on this machine, or haply:HOST:PORT"},
-#ifdef ARGIL_HAS_SPNAV
-          {"spacenav", "6-DoF controller by spacenavd, without force"},
-#endif
-          {"plugin", "plugin:FILE[,ARGUMENT], a shared library of a device's own (plugin_api.h)"}};
+  std::vector<DeviceKind> kinds;
+  for (const Kind& kind : kKinds)
+    if (kind.is_built) kinds.push_back({kind.name, kind.about});
+  return kinds;
 }
 
 std::unique_ptr<HapticDevice> make_device(const std::string& name, const DeviceOptions& options) {
@@ -68,12 +96,13 @@ std::unique_ptr<HapticDevice> make_device(const std::string& name, const DeviceO
   if (!(options.stale_after > 0.0))
     refuse(name, "stale after " + std::to_string(options.stale_after) + " s", "give more than 0 s");
   const std::size_t colon = name.find(':');
-  const std::string kind = name.substr(0, colon);
-  const std::string place = colon == std::string::npos ? "" : name.substr(colon + 1);
-  if (name == "simulated") return internal::make_simulated(options);
-  if (kind == "haply") return make_haply_at(place, options);
-  if (kind == "plugin" && !place.empty()) return internal::make_plugin(place, options);
-  if (name == "spacenav") return internal::make_spacenav(options);
+  const bool has_place = colon != std::string::npos;
+  const std::string place = has_place ? name.substr(colon + 1) : "";
+  for (const Kind& kind : kKinds) {
+    const bool fits =
+        kind.place == Place::none ? !has_place : kind.place == Place::optional || !place.empty();
+    if (name.substr(0, colon) == kind.name && fits) return kind.make(place, options);
+  }
   std::string known;
   for (const DeviceKind& each : device_kinds()) known += (known.empty() ? "" : ", ") + each.name;
   throw InputError("--device", "", "unknown device \"" + name + "\"", "choose one of " + known);

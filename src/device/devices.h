@@ -28,8 +28,9 @@ struct DeviceKind {
 /// The kinds that this program was built with.
 std::vector<DeviceKind> device_kinds();
 
-/// A device by name, not started: "simulated", "haply" or "haply:HOST:PORT", "spacenav", "plugin:FILE".
-/// Throws InputError for any other name, for a simulated hand without an intent and for options out of range.
+/// A device, not started, by the name of its kind and, after a colon, where it is: "simulated",
+/// "haply:HOST:PORT". Throws InputError for any other name, for a simulated hand without an intent and for
+/// options out of range.
 std::unique_ptr<HapticDevice> make_device(const std::string& name, const DeviceOptions& options);
 
 /// A line for each name of what the device there is: state, name and limits, or why it is not there. Each is
