@@ -1,8 +1,8 @@
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <locale>
 #include <ostream>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -50,16 +50,15 @@ struct Picture {
   const char* topology;
   const char* position;
   const char* centre;
-  std::array<Attribute, 2> attributes;
+  std::span<const Attribute> attributes;
 };
 
-constexpr Picture kCage = {
-    "cage",     "tets", "Tetrahedron",
-    "position", "Cell", {{{"saturation", "saturation"}, {"plastic_strain_norm", "plastic_strain_norm"}}}};
-constexpr Picture kSkin = {
-    "skin",     "skin_triangles",
-    "Triangle", "skin_position",
-    "Node",     {{{"saturation", "skin_saturation"}, {"influence", "skin_influence"}}}};
+constexpr Picture::Attribute kOnCage[] = {{"saturation", "saturation"},
+                                          {"plastic_strain_norm", "plastic_strain_norm"}};
+constexpr Picture::Attribute kOnSkin[] = {{"saturation", "skin_saturation"}, {"influence", "skin_influence"}};
+
+constexpr Picture kCage = {"cage", "tets", "Tetrahedron", "position", "Cell", kOnCage};
+constexpr Picture kSkin = {"skin", "skin_triangles", "Triangle", "skin_position", "Node", kOnSkin};
 
 void write_collection(Writer& out, const Picture& picture, const Group& root) {
   const Dataset elements = root.open_group("mesh").open_dataset(picture.elements);
