@@ -32,7 +32,7 @@ SCENE = {
                  "clay_kernel": {"k1_per_m": 2, "k2_per_m": 60, "radius_m": 0.03}},
     "water": {"diffusivity_m2_per_s": 1e-5, "wetting_flux_kg_per_m2_s": 50, "drying_flux_kg_per_m2_s": 50},
     "tool": {"shape": {"kind": "sphere", "radius_m": 0.006, "subdivisions": 2}},
-    "contact": {"vertex_face_stiffness_N_per_m": 400, "edge_edge_stiffness_N_per_m": 400, "friction": 0.3},
+    "contact": {"law": "pairs", "vertex_face_stiffness_N_per_m": 400, "edge_edge_stiffness_N_per_m": 400, "friction": 0.3},
     "dynamics": {"rayleigh_stiffness_s": 0.001},
     "haptics": {"frame_period_ticks": 56},
     "output": {"checkpoint_period_ticks": 40},

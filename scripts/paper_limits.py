@@ -29,7 +29,7 @@ KERNEL = {**COARSE, "/material/clay_kernel/k1_per_m": 100, "/haptics/period_s": 
           "/haptics/frame_period_ticks": SELDOM}
 LOCKING = {"/body/shape/target_tets": 1200, "/material/plasticity/enabled": False, "/dynamics/allow_locking": True,
            "/material/poissons_ratio": NEARLY_INCOMPRESSIBLE, "/haptics/physics_period_ticks": 2}
-HAND = {**COARSE, "/tool/shape/subdivisions": 3, "/contact/vertex_face_stiffness_N_per_m": 100,
+HAND = {**COARSE, "/tool/shape/subdivisions": 3, "/contact/law": "pairs", "/contact/vertex_face_stiffness_N_per_m": 100,
         "/contact/edge_edge_stiffness_N_per_m": 0, "/hand/kind": "simulated", "/hand/mass_kg": 0.1,
         "/hand/stiffness_N_per_m": 100, "/hand/damping_N_s_per_m": 1, "/haptics/device/max_force_N": 100,
         "/haptics/device/max_force_rate_N_per_s": 1e6, "/haptics/physics_period_ticks": 14,

@@ -31,7 +31,7 @@ def scenario(body, trace, mode, tets):
                                "target_tets": tets, "skin_triangles": 20000},
                      "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 0.02}]}
     stiffness = 5 if mode == "pull" else 15  # [N/m] a pair; a pull feeds itself where the contact is not the softer one
-    scene["contact"] = {"vertex_face_stiffness_N_per_m": stiffness, "edge_edge_stiffness_N_per_m": stiffness}
+    scene["contact"] = {"law": "pairs", "vertex_face_stiffness_N_per_m": stiffness, "edge_edge_stiffness_N_per_m": stiffness}
     scene["tool"]["mode"] = mode
     del scene["dynamics"]["solver"]  # its default, as other rates are measured with
     scene["haptics"] = {"physics_period_ticks": 1, "water_period_ticks": 1, "frame_period_ticks": 400}

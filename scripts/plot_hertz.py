@@ -157,7 +157,7 @@ def press(argil, folder, tool, cells, stiffness, element):
                      "clay_kernel": {"form": "off"}, "plasticity": {"enabled": False}},
         "tool": {"shape": {"kind": "mesh", "file": "tool.obj"}},
         "contact": stiffness if isinstance(stiffness, dict) else {
-            "penalty": "discrete", "vertex_face_stiffness_N_per_m": stiffness * REDUCED * CONTACT_RADIUS,
+            "penalty": "discrete", "law": "pairs", "vertex_face_stiffness_N_per_m": stiffness * REDUCED * CONTACT_RADIUS,
             "edge_edge_stiffness_N_per_m": stiffness * REDUCED * CONTACT_RADIUS},
         "dynamics": {"model": "linear", "element": element,
                      "solver": {"kind": "pcg_jacobi", "max_iterations": 100000}},

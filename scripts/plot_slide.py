@@ -31,7 +31,7 @@ SCENARIO = {
                  "clay_kernel": {"form": "off"}},
     # A drying tool feels a force and deforms nothing; the body is dry.
     "tool": {"shape": {"kind": "sphere", "radius_m": TOOL_RADIUS, "subdivisions": 2}, "mode": "dry"},
-    "contact": {"vertex_face_stiffness_N_per_m": 100, "edge_edge_stiffness_N_per_m": 100},
+    "contact": {"law": "pairs", "vertex_face_stiffness_N_per_m": 100, "edge_edge_stiffness_N_per_m": 100},
     "haptics": {"physics_period_ticks": 14, "water_period_ticks": 14, "frame_period_ticks": 700},
     "trace": {"file": "slide.csv"},
 }

@@ -15,6 +15,8 @@
 #include "run/export.h"
 #include "run/files.h"
 #include "run/run.h"
+#include "run/start.h"
+#include "scenario/build.h"
 #include "scenario/model_summary.h"
 #include "scenario/tolerance_file.h"
 
@@ -66,6 +68,16 @@ void print_devices(std::vector<std::string> names) {
     std::puts("");
   }
   std::fputs(device::describe_devices(names, kPatience).c_str(), stdout);
+}
+
+/// The note says what a default only gives a rule for.
+void show(const run::RunOptions& options) {
+  const scenario::Scenario s = run::load(options);
+  std::cout << scenario::print_resolved(s) << std::flush;
+  if (s.mode != scenario::Mode::dynamic || s.params.contact.law != contact::ContactLaw::pressure) return;
+  const sim::BodySide body(scenario::build_scene(s).body, s.params);
+  std::fprintf(stderr, "argil: note: /contact: %s\n",
+               run::describe_contact_stiffness(body, s.params.contact).c_str());
 }
 
 int validate(const run::RunOptions& options) {
@@ -122,9 +134,9 @@ void add_run_commands(CLI::App& app, int& code) {
   add_scenario(check);
   check->callback([o, &code] { code = validate(o->run); });
 
-  CLI::App* show = app.add_subcommand("show", "print a scenario with every default written out");
-  add_scenario(show);
-  show->callback([o] { std::cout << scenario::print_resolved(run::load(o->run)); });
+  CLI::App* show_command = app.add_subcommand("show", "print a scenario with every default written out");
+  add_scenario(show_command);
+  show_command->callback([o] { show(o->run); });
 
   CLI::App* schema = app.add_subcommand("schema", "print the JSON Schema of a scenario");
   schema->add_flag("--reference", o->reference, "print the reference page (Markdown) instead");

@@ -179,6 +179,10 @@ void describe_timing(std::ostream& out, std::vector<std::pair<std::string, doubl
 void describe_provenance(std::ostream& out, const ResultHeader& header) {
   for (const auto& [name, text] : header.provenance) {
     if (name == "about" || name == "scenario") continue;
+    if (name == "contact") {
+      out << label("contact law") << text << '\n';
+      continue;
+    }
     std::istringstream lines(text);
     std::string joined;
     for (std::string line; std::getline(lines, line);) {

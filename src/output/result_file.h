@@ -25,7 +25,7 @@ struct ResultHeader {
   double haptic_period = 0.0;   ///< [s]
   sim::FidelityMode fidelity = sim::FidelityMode::full;
   std::vector<std::pair<std::string, std::string>>
-      provenance;  ///< name → text: resolved scenario, hashes, numerics tag
+      provenance;  ///< name → text: resolved scenario, contact's stiffness, hashes, numerics tag
 };
 
 /// Where a live session began.

@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "base/error.h"
 #include "base/print.h"
@@ -11,6 +12,21 @@
 #include "mesh/order.h"
 
 namespace argil::run {
+
+std::string describe_contact_stiffness(const sim::BodySide& body, const contact::ContactParams& params) {
+  if (params.law != contact::ContactLaw::pressure) return "";
+  std::ostringstream text;
+  text << std::setprecision(3);
+  if (params.pressure_stiffness > 0.0) {
+    text << "pressure, " << params.pressure_stiffness << " Pa/m as given";
+    return text.str();
+  }
+  Field list = body.find_surface_stiffness().per_area;
+  std::sort(list.begin(), list.end());
+  text << "pressure, " << list(list.size() / 2) << " Pa/m (" << list(0) << " to " << list(list.size() - 1)
+       << ") as chosen, " << contact::kChosenStiffness << " E*/cell";
+  return text.str();
+}
 
 output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulation& simulation,
                                  const scenario::Scene& scene, const mesh::TriangleMesh& tool,
@@ -30,6 +46,8 @@ output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulat
                        {"trace_sha256", scene.trace.sha256},
                        {"effective_medium", scene.medium_status},
                        {"notes", notes}};
+  if (std::string text = describe_contact_stiffness(simulation.body_side(), s.params.contact); !text.empty())
+    header.provenance.emplace_back("contact", std::move(text));
   for (const auto& [name, text] : identity.provenance()) header.provenance.emplace_back(name, text);
   return header;
 }

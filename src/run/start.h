@@ -9,6 +9,10 @@
 
 namespace argil::run {
 
+/// κ of the pressure law over the touched surface at the start, for a person: given or chosen, median and
+/// range [Pa/m]; empty with another law.
+std::string describe_contact_stiffness(const sim::BodySide& body, const contact::ContactParams& params);
+
 /// What a result says before its first record.
 output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulation& simulation,
                                  const scenario::Scene& scene, const mesh::TriangleMesh& tool,

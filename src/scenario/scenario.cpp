@@ -27,7 +27,7 @@ constexpr const char* kPaperPreset = R"({
     "clay_kernel": {"form": "per_step"}
   },
   "water": {"uptake": "increment"},
-  "contact": {"face_blend": 0},
+  "contact": {"law": "pairs", "face_blend": 0},
   "dynamics": {"model": "linear", "implicit_contact": false},
   "haptics": {"physics_period_ticks": 14, "water_period_ticks": 14, "frame_period_ticks": 98, "between_frames": "hold"}
 })";
@@ -98,6 +98,19 @@ std::optional<contact::RoundTool> find_round_tool(const ToolSpec& t) {
       break;
   }
   return std::nullopt;
+}
+
+/// A scenario that was written for the pairs' law, which once was the only one.
+void note_pair_stiffness(Scenario& s, const Json& document) {
+  const Json contact = document.value("contact", Json::object());
+  if (!contact.is_object() || contact.contains("law")) return;
+  for (const char* key : {"vertex_face_stiffness_N_per_m", "edge_edge_stiffness_N_per_m"})
+    if (contact.contains(key)) {
+      s.warnings.push_back(s.file + ": /contact/" + key +
+                           ": is of the pairs' law; the pressure law acts, whose stiffness follows from the "
+                           "clay. Leave it out, or set /contact/law to pairs");
+      return;
+    }
 }
 
 void check_contact(Scenario& s) {
@@ -318,6 +331,11 @@ void check_combinations(Scenario& s) {
 
 }  // namespace
 
+Scenario::Scenario() {
+  params.extent = sim::Extent::automatic;
+  params.contact.law = contact::ContactLaw::pressure;
+}
+
 Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings) {
   Json document = read_json(file);
   if (!document.is_object())
@@ -330,8 +348,8 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
     document = below;
   }
   Scenario s;
-  s.params.extent = sim::Extent::automatic;
   s.file = file;
+  note_pair_stiffness(s, document);
   choose_body(s, document);
   choose_mode(s, document);
   read_parameters(make_parameter_table(s, file), document, file, "");

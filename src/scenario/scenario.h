@@ -78,6 +78,8 @@ struct HandSpec {
 
 /// A validated scene in SI units; paths resolved against the scenario's folder.
 struct Scenario {
+  Scenario();  ///< extent and law of contact as they are where a scenario does not say
+
   std::string file;
   std::string about;
   Preset preset = Preset::none;

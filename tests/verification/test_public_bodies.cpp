@@ -53,7 +53,7 @@ std::string make_scenario(const std::string& body, const Vec3& translation, doub
     "plasticity": {"yield": 0.02, "creep_per_s": 10, "max": 0.5},
     "clay_kernel": {"form": "off"}},
   "tool": {"shape": {"kind": "sphere", "radius_m": 0.008, "subdivisions": 2}, "mode": "push"},
-  "contact": {"vertex_face_stiffness_N_per_m": 50, "edge_edge_stiffness_N_per_m": 50},
+  "contact": {"law": "pairs", "vertex_face_stiffness_N_per_m": 50, "edge_edge_stiffness_N_per_m": 50},
   "dynamics": {"rayleigh_stiffness_s": 0.001, "solver": {"tolerance": 1e-6}},
   "haptics": {"physics_period_ticks": 10, "frame_period_ticks": 100},
   "trace": {"file": ")" +

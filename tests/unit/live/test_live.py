@@ -43,7 +43,7 @@ def make_scene(haptics):
         "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3,
                      "clay_kernel": {"k1_per_m": 2, "k2_per_m": 60, "radius_m": 0.03}},
         "tool": {"shape": {"kind": "sphere", "radius_m": 0.006, "subdivisions": 2}, "mode": "push"},
-        "contact": {"vertex_face_stiffness_N_per_m": 400, "edge_edge_stiffness_N_per_m": 400},
+        "contact": {"law": "pairs", "vertex_face_stiffness_N_per_m": 400, "edge_edge_stiffness_N_per_m": 400},
         "haptics": {"physics_period_ticks": 2, "water_period_ticks": 10, "frame_period_ticks": 50, **haptics},
         "trace": {"file": "press.csv"},
     }

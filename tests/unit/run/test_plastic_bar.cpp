@@ -34,7 +34,7 @@ class PulledBox : public testing::Test {
         "clay_kernel": {"form": "off"}, "plasticity": {)" +
            plasticity + R"(}},
       "tool": {"shape": {"kind": "sphere", "radius_m": 0.006, "subdivisions": 1}, "mode": "push"},
-      "contact": {"vertex_face_stiffness_N_per_m": 1, "edge_edge_stiffness_N_per_m": 1},
+      "contact": {"law": "pairs", "vertex_face_stiffness_N_per_m": 1, "edge_edge_stiffness_N_per_m": 1},
       "dynamics": {"model": "linear", "rayleigh_stiffness_s": 0.005, "solver": {"kind": "cholesky"}},
       "haptics": {"physics_period_ticks": )" +
            std::to_string(period_ticks) + R"(, "frame_period_ticks": 100},

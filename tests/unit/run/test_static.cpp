@@ -161,13 +161,12 @@ TEST_F(StaticMode, ShowGivesTheSceneBackWithoutToolAndTrace) {
   EXPECT_EQ(scenario::print_resolved(run::load(options)), shown);
 }
 
-TEST_F(StaticMode, MotionStillNeedsContactAndTrace) {
+TEST_F(StaticMode, MotionStillNeedsATraceAndPairsTheirStiffness) {
   std::string moving = make_box(kFloor, kLift);
   moving.replace(moving.find("static"), 6, "dynamic");
-  expect_refused(moving, {"/contact/vertex_face_stiffness_N_per_m", "is missing"});
-  moving.insert(moving.rfind('}'),
-                R"(, "contact": {"vertex_face_stiffness_N_per_m": 1, "edge_edge_stiffness_N_per_m": 1})");
   expect_refused(moving, {"/trace/file", "is missing"});
+  moving.insert(moving.rfind('}'), R"(, "contact": {"law": "pairs"})");
+  expect_refused(moving, {"/contact/vertex_face_stiffness_N_per_m", "is missing"});
 }
 
 }  // namespace

@@ -52,6 +52,25 @@ TEST_F(ScenarioFile, PortableOneIsTheSameWhereverTheFolderLies) {
   EXPECT_EQ(print_portable(load_scenario(moved, {})), print_portable(load()));
 }
 
+/// The scene gives pairs their law and stiffness.
+TEST_F(ScenarioFile, PressureIsTheLawUnlessAnotherIsNamed) {
+  EXPECT_EQ(load().params.contact.law, contact::ContactLaw::pairs);
+  std::string text = test::make_ball_scenario("press.csv");
+  const std::string named = R"("law": "pairs", )";
+  text.erase(text.find(named), named.size());
+  file = folder.write("unnamed.json", text);
+  EXPECT_EQ(load().params.contact.law, contact::ContactLaw::pressure);
+  EXPECT_EQ(count_warnings({}, "/contact/vertex_face_stiffness_N_per_m: is of the pairs' law"), 1);
+  EXPECT_EQ(count_warnings({"/contact/law=pressure"}, "is of the pairs' law"), 0);
+  EXPECT_EQ(load({"/preset=paper", kPaper[1]}).params.contact.law, contact::ContactLaw::pairs);
+  const std::string stiffness = R"("vertex_face_stiffness_N_per_m": 400, "edge_edge_stiffness_N_per_m": 400)";
+  text.erase(text.find(stiffness), stiffness.size());
+  file = folder.write("plain.json", text);
+  EXPECT_EQ(load().params.contact.law, contact::ContactLaw::pressure);
+  EXPECT_EQ(count_warnings({}, "pairs"), 0);
+  expect_refused("/contact/law=pairs", {"/contact/vertex_face_stiffness_N_per_m", "is missing"});
+}
+
 TEST_F(ScenarioFile, LocalExtentIsRefusedWhereAStepNeedsTheWholeBody) {
   const std::string local = "/dynamics/extent=local";
   EXPECT_EQ(load({local}).params.extent, sim::Extent::local);

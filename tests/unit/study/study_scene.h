@@ -70,7 +70,7 @@ class Study : public testing::Test {
       "material": {"youngs_modulus_Pa": 2e4, "poissons_ratio": 0.3, "plasticity": {"enabled": false},
                    "clay_kernel": {"form": "off"}},
       "tool": {"shape": {"kind": "sphere", "radius_m": 0.006, "subdivisions": 2}, "mode": "push"},
-      "contact": {"vertex_face_stiffness_N_per_m": 20, "edge_edge_stiffness_N_per_m": 20},
+      "contact": {"law": "pairs", "vertex_face_stiffness_N_per_m": 20, "edge_edge_stiffness_N_per_m": 20},
       "dynamics": {"rayleigh_stiffness_s": 0.002},
       "haptics": {"frame_period_ticks": 50}, "trace": {"file": "press.csv"}})");
   }
