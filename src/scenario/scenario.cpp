@@ -100,11 +100,12 @@ std::optional<contact::RoundTool> find_round_tool(const ToolSpec& t) {
   return std::nullopt;
 }
 
-/// A scenario that was written for the pairs' law, which once was the only one.
-void note_pair_stiffness(Scenario& s, const Json& document) {
+/// A scenario that was written when the pairs' law was the only one: what it gives for that does not count.
+void leave_out_pairs(Scenario& s, const Json& document) {
   const Json contact = document.value("contact", Json::object());
-  if (!contact.is_object() || contact.contains("law")) return;
-  for (const char* key : {"vertex_face_stiffness_N_per_m", "edge_edge_stiffness_N_per_m"})
+  if (contact.contains("law")) return;
+  s.params.contact.damping = 0.0;
+  for (const char* key : {"vertex_face_stiffness_N_per_m", "edge_edge_stiffness_N_per_m", "damping_s_per_m"})
     if (contact.contains(key)) {
       s.warnings.push_back(s.file + ": /contact/" + key +
                            ": is of the pairs' law; the pressure law acts, whose stiffness follows from the "
@@ -349,10 +350,10 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
   }
   Scenario s;
   s.file = file;
-  note_pair_stiffness(s, document);
   choose_body(s, document);
   choose_mode(s, document);
   read_parameters(make_parameter_table(s, file), document, file, "");
+  leave_out_pairs(s, document);
   check_combinations(s);
   return s;
 }

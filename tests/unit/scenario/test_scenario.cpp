@@ -62,6 +62,7 @@ TEST_F(ScenarioFile, PressureIsTheLawUnlessAnotherIsNamed) {
   EXPECT_EQ(load().params.contact.law, contact::ContactLaw::pressure);
   EXPECT_EQ(count_warnings({}, "/contact/vertex_face_stiffness_N_per_m: is of the pairs' law"), 1);
   EXPECT_EQ(count_warnings({"/contact/law=pressure"}, "is of the pairs' law"), 0);
+  EXPECT_EQ(load({"/contact/damping_s_per_m=0.5"}).params.contact.damping, 0.0);
   EXPECT_EQ(load({"/preset=paper", kPaper[1]}).params.contact.law, contact::ContactLaw::pairs);
   const std::string stiffness = R"("vertex_face_stiffness_N_per_m": 400, "edge_edge_stiffness_N_per_m": 400)";
   text.erase(text.find(stiffness), stiffness.size());
