@@ -31,6 +31,7 @@ ProfileDistance find_from_cone(const RoundTool& tool, const Vec2& normal, const 
 }
 
 ProfileDistance find_from_capsule(const RoundTool& tool, const Vec2& p) {
+  if (p.x() == 0.0 && p.y() >= 0.0 && p.y() <= tool.length) return {-tool.tip_radius, Vec2(1.0, 0.0)};
   return find_from_ball(p - Vec2(0.0, std::clamp(p.y(), 0.0, tool.length)), tool.tip_radius);
 }
 
