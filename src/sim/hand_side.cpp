@@ -185,6 +185,7 @@ void HandSide::commit() {
   m_committed = m_state;
   m_touched.commit();
   m_detector.commit();
+  if (m_pressure) m_pressure->commit();
   m_grip.commit();
   if (m_friction) m_friction->commit();
   m_collector.commit();
@@ -200,7 +201,7 @@ void HandSide::roll_back(ContactLoad* load) {
   m_state = m_committed;
   m_touched.roll_back(is_compliant ? &m_body.state().solid.x : nullptr);
   m_detector.roll_back();
-  if (m_pressure) m_pressure->forget();
+  if (m_pressure) m_pressure->roll_back();
   m_grip.roll_back();
   if (m_friction) m_friction->roll_back();
   m_collector.roll_back();

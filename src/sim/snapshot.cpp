@@ -123,6 +123,7 @@ void HandSide::serialize_contacts(Archive& archive) {
   m_compliance.serialize(archive, m_surface);
   if (m_pressure) {
     archive.number("contact/yielding", m_state.yielding);
+    m_pressure->serialize(archive);
     m_grip.serialize(archive);
     if (m_friction) m_friction->serialize(archive);
   }
