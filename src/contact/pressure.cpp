@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -12,8 +11,8 @@
 namespace argil::contact {
 namespace {
 
-constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-constexpr int kMostLevels = 10;  // of splitting a triangle in four
+constexpr int kMostLevels = 10;        // of splitting a triangle in four
+constexpr double kLeastRadius = 0.25;  // of that of the covered area
 
 Vec3 centre_of(const std::array<Vec3, 3>& piece) {
   return (piece[0] + piece[1] + piece[2]) / 3.0;
@@ -27,6 +26,7 @@ PressureContact::PressureContact(const Triangles& surface, int num_vertices, Too
       m_tool(std::move(tool)),
       m_stiffness(std::move(stiffness)),
       m_is_solved_for(is_solved_for),
+      m_passages(m_tool.inner_balls().size(), surface.cols()),
       m_corner_of_vertex(static_cast<std::size_t>(num_vertices), -1) {
   ARGIL_ASSERT(m_stiffness.per_area.size() == surface.cols(), m_stiffness.per_area.size());
   m_places.reserve(kMostPlaces);
@@ -46,29 +46,16 @@ void PressureContact::exchange(std::span<StiffnessOfTriangle> list) {
   }
 }
 
-/// Places of the tool along its way, in pieces that are no longer than it is thick: their ends, or for a body
-/// that keeps its shape, where nothing hangs on the end, their middles.
-void PressureContact::place_tool(const Pose& pose_t0, const Pose& pose_t1) {
-  const Vec3 path = pose_t1.position - pose_t0.position;
-  const double angle = pose_t0.orientation.angularDistance(pose_t1.orientation);
-  m_way = path.norm() + angle * m_tool.reach();
-  const double wanted = std::ceil(m_way / m_tool.thickness());
-  const int pieces = static_cast<int>(std::min(wanted, static_cast<double>(kMostPlaces - 1)));
-  const double first = m_yielding == Yielding::yes ? 0.0 : 0.5;
-  m_places.clear();
-  for (int i = 0; i < pieces; ++i) {
-    const double t = (first + i) / pieces;
-    const Quat orientation = pose_t0.orientation.slerp(t, pose_t1.orientation);
-    m_places.push_back({pose_t0.position + t * path, orientation.conjugate().toRotationMatrix()});
-  }
-  if (m_yielding == Yielding::yes || pieces == 0)
-    m_places.push_back({pose_t1.position, pose_t1.orientation.conjugate().toRotationMatrix()});
-}
-
 /// Of the body, what the ball around the tool comes near.
 void PressureContact::find_faces(const Points& x) {
   mesh::Box box;
-  for (const Place& place : m_places) box.include(place.position + place.turn.transpose() * m_tool.centre());
+  for (const Place& place : m_places) {
+    const Vec3 centre = place.position + place.turn.transpose() * m_tool.centre();
+    box.include(centre);
+    if (!m_passage) continue;
+    box.include(centre - m_passage->length * m_passage->inward);
+    box.include(centre + m_passage->retreat * m_passage->inward);
+  }
   m_candidates.clear();
   m_tree->find_overlaps(box.grown(m_tool.radius()), x, x, m_candidates);
   std::sort(m_candidates.begin(), m_candidates.end());
@@ -83,28 +70,12 @@ void PressureContact::find_faces(const Points& x) {
     face.area = 0.5 * normal.norm();
     if (!(face.area > 0.0)) continue;
     face.normal = normal / (2.0 * face.area);
+    if (m_passage && facing_share(m_passage->inward, face.normal) == 0.0) continue;
     const double longest = std::sqrt(std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()}));
     face.size = std::max(0.5 * longest, std::sqrt(4.0 / std::numbers::sqrt3 * face.area));
     face.whole = measure_cover(face, kWhole, 0);
     if (face.whole.area > 0.0 || face.whole.may_touch) m_faces.push_back(face);
   }
-}
-
-ToolDistance PressureContact::find_distance(const Vec3& p, const Place& place) {
-  if (m_tool.is_ball()) return m_tool.find_from_ball(p - place.position);
-  ToolDistance found = m_tool.find_distance(place.turn * (p - place.position), m_guess);
-  found.outward = place.turn.transpose() * found.outward;
-  return found;
-}
-
-/// Of a point from the tool along its way; anything beyond `reach` where it is farther.
-ToolDistance PressureContact::find_least_distance(const Vec3& p, double reach) {
-  ToolDistance least = find_distance(p, m_places.back());
-  if (least.distance - m_way >= reach) return least;
-  for (std::size_t i = 0; i + 1 < m_places.size(); ++i)
-    if (const ToolDistance found = find_distance(p, m_places[i]); found.distance < least.distance)
-      least = found;
-  return least;
 }
 
 PressureContact::Cover& PressureContact::Cover::operator+=(const Cover& other) {
@@ -124,7 +95,7 @@ PressureContact::Cover PressureContact::measure_cover(const Face& face, const Pi
     x[k] = face.at(piece[k]);
     reach = std::max(reach, (x[k] - centre).norm());
   }
-  const ToolDistance found = find_least_distance(centre, reach);
+  const LeastDistance found = find_least_distance(centre, reach);
   if (found.distance >= reach) return {};
   const bool is_inside = found.distance <= -reach;
   if (level > 0 && !is_inside) {
@@ -132,12 +103,25 @@ PressureContact::Cover PressureContact::measure_cover(const Face& face, const Pi
     for (const Piece& part : quarter(piece)) sum += measure_cover(face, part, level - 1);
     return sum;
   }
-  const double share = is_inside ? 1.0
-                                 : compute_negative_share({find_least_distance(x[0], kAnywhere).distance,
-                                                           find_least_distance(x[1], kAnywhere).distance,
-                                                           find_least_distance(x[2], kAnywhere).distance});
+  LeastDistance deepest = found;
+  Vec3 at = centre;
+  double share = 1.0;
+  if (!is_inside) {
+    std::array<double, 3> distance;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const LeastDistance corner = find_least_distance(x[k], kAnywhere);
+      distance[k] = corner.distance;
+      if (!(corner.distance < deepest.distance) || found.distance < 0.0) continue;
+      deepest = corner;
+      at = x[k];
+    }
+    share = compute_negative_share(distance);
+  }
   const double area = share * 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
-  return {area, area * facing_share(found.outward, face.normal), share == 0.0};
+  double facing = facing_share(found.outward, face.normal);
+  if (m_yielding == Yielding::no && !m_passage && facing < 1.0 && deepest.distance < 0.0)
+    facing = std::max(facing, find_held_facing(at, face.normal, *deepest.place));
+  return {area, area * facing, share == 0.0};
 }
 
 /// Radius of a disc as large as the patch, 0 where nothing is touched [m]. Triangles are split until a piece
@@ -152,74 +136,12 @@ double PressureContact::find_patch_radius() {
       patch += measure_cover(face, std::max(0, static_cast<int>(levels)));
     }
     if (patch.facing_area == 0.0 && !patch.may_touch) return 0.0;
-    const double radius = std::sqrt(patch.facing_area / std::numbers::pi);
+    // As large as this part of all that is covered, however little of it faces the tool.
+    const double least = kLeastRadius * std::sqrt(patch.area / std::numbers::pi);
+    const double radius = std::max(least, std::sqrt(patch.facing_area / std::numbers::pi));
     if (spacing <= radius) return radius;
   }
   return 2.0 * spacing;  // smaller than can be told: as small as a piece
-}
-
-/// How far a point inside the tool is from its surface along a direction [m]: by Newton's method, in steps
-/// that are four times the distance at most.
-double PressureContact::find_way_out(const Vec3& p, const Vec3& direction, const Place& place) {
-  constexpr int kMostSteps = 20;
-  constexpr double kLeastSlope = 0.25;
-  double way = 0.0;
-  for (int step = 0; step < kMostSteps; ++step) {
-    const ToolDistance found = find_distance(p + way * direction, place);
-    if (step > 0 && std::abs(found.distance) < 1e-7 * m_tool.radius()) break;
-    way -= found.distance / std::max(kLeastSlope, found.outward.dot(direction));
-  }
-  return way;
-}
-
-/// Mean over the way of the depth below the tool's surface, which is linear between its places.
-PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
-  PointDepth point;
-  ToolDistance before = find_distance(p, m_places.front());
-  point.begin = point.end = -before.distance;
-  if (m_places.size() == 1)
-    return {std::max(0.0, point.end), point.end, point.end, point.end > 0.0 ? 1.0 : 0.0, before.outward};
-  point.outward = std::max(0.0, point.end) * before.outward;
-  const double pieces = static_cast<double>(m_places.size() - 1);
-  for (std::size_t i = 1; i < m_places.size(); ++i) {
-    const ToolDistance found = find_distance(p, m_places[i]);
-    point.end = -found.distance;
-    const double high = -std::min(before.distance, found.distance);
-    const double low = -std::max(before.distance, found.distance);
-    const double share = low >= 0.0 ? 1.0 : high > 0.0 ? high / (high - low) : 0.0;
-    point.share += share / pieces;
-    point.mean += 0.5 * share * (high + std::max(0.0, low)) / pieces;
-    point.outward += std::max(0.0, point.end) * found.outward;
-    before = found;
-  }
-  if (m_is_solved_for && point.begin > 0.0 && point.end <= 0.0) {
-    point.mean = 0.5 * (point.begin + point.end);
-    point.share = 1.0;
-  }
-  const double length = point.outward.norm();
-  point.outward = length > 0.0 ? Vec3(point.outward / length) : before.outward;
-  return point;
-}
-
-/// The same straight into a body that keeps its shape, so that ∫ depth dA is the volume that the two share.
-PressureContact::PointDepth PressureContact::find_held_depth(const Vec3& p, const Vec3& normal) {
-  PointDepth point;
-  const double places = static_cast<double>(m_places.size());
-  for (const Place& place : m_places) {
-    const ToolDistance found = find_distance(p, place);
-    if (!(found.distance < 0.0)) continue;
-    point.mean += facing_share(found.outward, normal) * find_way_out(p, -normal, place) / places;
-  }
-  point.end = point.mean;
-  point.outward = -normal;
-  return point;
-}
-
-/// 1 for a surface that faces the way out of the tool, 0 for one that looks along it; in between by degrees
-/// near the right angle.
-double PressureContact::facing_share(const Vec3& outward, const Vec3& normal) {
-  constexpr double kFull = 0.25;  // cosine beyond which all of it counts
-  return std::clamp(-outward.dot(normal) / kFull, 0.0, 1.0);
 }
 
 void PressureContact::add_contact(const std::array<int, 3>& vertex, const Vec3& weight,
@@ -279,7 +201,8 @@ PressureContact::Cover PressureContact::press_pieces(const Face& face, const Pie
     const Eigen::Vector3i v = m_surface.col(face.number);
     add_contact({v(0), v(1), v(2)}, centre, depth, area, area * stiffness_of(face), x, out);
   }
-  return m_needs_cover ? measure_cover(face, piece, 0) : Cover{};
+  // Where κ hangs on the patch's area, once finer than the pressure.
+  return m_needs_cover ? measure_cover(face, piece, yields ? 0 : 1) : Cover{};
 }
 
 /// With pieces of about the size `spacing`: between two numbers of halvings, a mean of both. Where the body
@@ -353,11 +276,23 @@ void PressureContact::advance(const Points& x_before, const Points& x, std::opti
 
 void PressureContact::find_contacts(const Points& x, const Pose& pose_t0, const Pose& pose_t1,
                                     Yielding yielding, Contacts& contacts) {
+  if (!m_tree) prepare(x);
+  m_passage = m_passages.find(m_tool.inner_balls(), pose_t0, pose_t1, {x, m_surface, *m_tree});
+  press(x, pose_t0, pose_t1, yielding, contacts);
+}
+
+void PressureContact::find_unpressed(const Points& x, const Pose& pose, Contacts& contacts) {
+  if (!m_tree) prepare(x);
+  m_passage.reset();
+  press(x, pose, pose, Yielding::no, contacts);
+}
+
+void PressureContact::press(const Points& x, const Pose& pose_t0, const Pose& pose_t1, Yielding yielding,
+                            Contacts& contacts) {
   contacts.clear();
   m_yielding = yielding;
   m_needs_cover = yielding == Yielding::no || contacts.with_touched;
   place_tool(pose_t0, pose_t1);
-  if (!m_tree) prepare(x);
   find_faces(x);
   if (m_faces.empty()) return;
   // Of clay that yields, the force is the clay's, and the points only share it out; where it keeps its shape

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "contact/bounding_tree.h"
 #include "contact/contact.h"
+#include "contact/passage.h"
 #include "contact/tool_solid.h"
 
 namespace argil::contact {
@@ -35,7 +37,8 @@ enum class Yielding {
 ///
 /// Each triangle is split until its pieces are small against the patch; the number of pieces changes by
 /// degrees, so that the force has no jump. Triangles that are small themselves press with their corners.
-/// Only what faces the tool counts: the far side of a thin part does not.
+/// Only what faces the tool counts: the far side of a thin part does not. Where the tool's middle passes the
+/// surface, what counts is the side that it comes from, until it is out again.
 class PressureContact {
  public:
   /// `surface`: 3×m triangles of body vertex numbers, outward. `is_solved_for`: an implicit step finds how
@@ -52,6 +55,13 @@ class PressureContact {
   /// The next call may start anywhere.
   void forget() { m_tree.reset(); }
 
+  void commit() { m_passages.commit(); }
+  void roll_back() {
+    m_passages.roll_back();
+    forget();
+  }
+  void serialize(Archive& archive) { m_passages.serialize(archive); }
+
   /// The body's vertices have gone from x_before to x (3×n) [m], none by more than `motion` along any axis;
   /// without it that is found by looking at all of them. Successive calls must join.
   void advance(const Points& x_before, const Points& x, std::optional<double> motion);
@@ -61,15 +71,23 @@ class PressureContact {
   /// longer than the tool is thick.
   void find_contacts(const Points& x, const Pose& pose_t0, const Pose& pose_t1, Yielding yielding,
                      Contacts& contacts);
+  /// As if the body kept its shape, of a tool that stands at `pose`; not a part of its way.
+  void find_unpressed(const Points& x, const Pose& pose, Contacts& contacts);
 
  private:
   static constexpr int kMostPlaces = 17;  // on the tool's way
-  using Piece = std::array<Vec3, 3>;      // barycentric corners of a piece of a triangle
+  static constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  using Piece = std::array<Vec3, 3>;  // barycentric corners of a piece of a triangle
   inline static const Piece kWhole = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
 
   struct Place {  // of the tool
     Vec3 position;
     Mat3 turn;  ///< from world to tool
+  };
+  /// Where a point is from the tool along its way.
+  struct LeastDistance : ToolDistance {
+    const Place* place = nullptr;  ///< where it is nearest
+    double along = 0.0;            ///< of a passage: how far ahead of the point that is [m]
   };
   /// How deep a point of the body is below the tool's surface.
   struct PointDepth {
@@ -103,6 +121,8 @@ class PressureContact {
     Vec3 at(const Vec3& weight) const { return weight(0) * x[0] + weight(1) * x[1] + weight(2) * x[2]; }
   };
 
+  void press(const Points& x, const Pose& pose_t0, const Pose& pose_t1, Yielding yielding,
+             Contacts& contacts);
   void place_tool(const Pose& pose_t0, const Pose& pose_t1);
   void find_faces(const Points& x);
   double find_patch_radius();
@@ -110,11 +130,16 @@ class PressureContact {
   Cover measure_cover(const Face& face, int level) {
     return level == 0 ? face.whole : measure_cover(face, kWhole, level);
   }
-  ToolDistance find_distance(const Vec3& p, const Place& place);
-  ToolDistance find_least_distance(const Vec3& p, double reach);
+  ToolDistance find_distance(const Vec3& p, const Place& place, double far = kAnywhere);
+  LeastDistance find_least_distance(const Vec3& p, double reach);
+  const Place* find_near_place(const Vec3& p) const;
+  int count_steps(double nearer) const;
+  LeastDistance find_passage_distance(const Vec3& p, double reach);
   double find_way_out(const Vec3& p, const Vec3& direction, const Place& place);
   PointDepth find_depth(const Vec3& p);
   PointDepth find_held_depth(const Vec3& p, const Vec3& normal);
+  PointDepth find_passage_depth(const Vec3& p);
+  double find_held_facing(const Vec3& p, const Vec3& normal, const Place& place);
   void press_face(Face& face, double spacing, Contacts& out);
   void press_corners(const Face& face, double share);
   Cover press_pieces(const Face& face, const Piece& piece, int level, double share, Contacts& out);
@@ -131,9 +156,13 @@ class PressureContact {
   SurfaceStiffness m_stiffness;
   bool m_is_solved_for;
   std::optional<BoundingTree> m_tree;
+  Passage m_passages;
   // Of the present call.
-  std::vector<Place> m_places;  // along the tool's way, the end last
-  double m_way = 0.0;           // no point of the tool moves farther [m]
+  std::vector<Place> m_places;                 // along the tool's way, the end last
+  double m_way = 0.0;                          // no point of the tool moves farther [m]
+  std::optional<Passage::Interval> m_passage;  // then m_places is one place
+  Vec3 m_step = Vec3::Zero();                  // of the tool's origin [m]
+  Mat3 m_turn = Mat3::Identity();              // from the tool's end back to its start
   Yielding m_yielding = Yielding::yes;
   bool m_needs_cover = false;
   std::vector<int> m_candidates;

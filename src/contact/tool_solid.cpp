@@ -31,6 +31,7 @@ ProfileDistance find_from_cone(const RoundTool& tool, const Vec2& normal, const 
 }
 
 ProfileDistance find_from_capsule(const RoundTool& tool, const Vec2& p) {
+  if (p.x() == 0.0 && p.y() >= 0.0 && p.y() <= tool.length) return {-tool.tip_radius, Vec2(1.0, 0.0)};
   return find_from_ball(p - Vec2(0.0, std::clamp(p.y(), 0.0, tool.length)), tool.tip_radius);
 }
 
@@ -62,6 +63,7 @@ struct ToolSolid::Mesh {
   Points vertices;
   SurfaceFeatures features;
   BoundingTree tree;
+  mesh::Box box;
 };
 
 ToolSolid::ToolSolid(const RoundTool& shape) : m_round(shape), m_thickness(shape.tip_radius) {
@@ -71,21 +73,75 @@ ToolSolid::ToolSolid(const RoundTool& shape) : m_round(shape), m_thickness(shape
   const double half = 0.5 * (shape.length + end_reach + shape.tip_radius);
   m_radius = shape.is_flat ? std::hypot(half, shape.end_radius) : half;
   if (shape.is_flat) m_cone_normal = find_cone_normal(shape);
+  list_balls_on_axis();
 }
 
 ToolSolid::ToolSolid(const mesh::TriangleMesh& surface)
     : m_mesh(std::make_unique<Mesh>(Mesh{surface.vertices,
                                          SurfaceFeatures(surface.triangles, surface.num_vertices()),
-                                         BoundingTree(surface.vertices, surface.triangles)})) {
+                                         BoundingTree(surface.vertices, surface.triangles),
+                                         {}})) {
   const Vec3 low = surface.vertices.rowwise().minCoeff();
   const Vec3 high = surface.vertices.rowwise().maxCoeff();
   m_centre = 0.5 * (low + high);
   m_radius = (surface.vertices.colwise() - m_centre).colwise().norm().maxCoeff() * (1.0 + 1e-9);
   m_thickness = 0.5 * (high - low).minCoeff();
+  m_mesh->box = {low, high};
+  list_balls_in_mesh();
+}
+
+void ToolSolid::add_ball(const Vec3& centre) {
+  int face = 0;
+  const double radius = -find_distance(centre, face).distance;
+  const auto holds = [&](const InnerBall& ball) { return (centre - ball.centre).norm() < 0.5 * ball.radius; };
+  if (radius > 0.0 && std::none_of(m_inner_balls.begin(), m_inner_balls.end(), holds))
+    m_inner_balls.push_back({centre, radius});
+}
+
+/// From the tip on, no farther apart than they are large.
+void ToolSolid::list_balls_on_axis() {
+  constexpr int kMost = 32;
+  const double least_step = m_round->length / kMost;
+  for (double z = 0.0; z <= m_round->length;) {
+    add_ball({0.0, 0.0, z});
+    z += std::max({least_step, m_inner_balls.back().radius, m_round->tip_radius});
+  }
+}
+
+/// Halfway through the solid from some of its corners, along the normal.
+void ToolSolid::list_balls_in_mesh() {
+  constexpr Eigen::Index kMost = 32;
+  const Points& x = m_mesh->vertices;
+  Points normal = Points::Zero(3, x.cols());
+  const Triangles& triangles = m_mesh->features.triangles;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const Vec3 a = x.col(triangles(0, t));
+    const Vec3 area = (x.col(triangles(1, t)) - a).cross(x.col(triangles(2, t)) - a);
+    for (const int v : triangles.col(t)) normal.col(v) += area;
+  }
+  add_ball(m_centre);
+  const Eigen::Index stride = std::max<Eigen::Index>(1, x.cols() / kMost);
+  for (Eigen::Index v = 0; v < x.cols(); v += stride) {
+    const Vec3 inward = -normal.col(v).normalized();
+    const double step = 0.02 * m_thickness;
+    double depth = 0.0;
+    int face = 0;
+    for (double next = step; next < 2.0 * m_radius; next += step) {
+      const double inside = -find_distance(x.col(v) + next * inward, face).distance;
+      if (!(inside > 0.0)) break;
+      depth = next;
+      next += std::max(0.0, inside - step);
+    }
+    add_ball(x.col(v) + 0.5 * depth * inward);
+  }
 }
 
 ToolSolid::~ToolSolid() = default;
 ToolSolid::ToolSolid(ToolSolid&&) noexcept = default;
+
+double ToolSolid::find_least_distance(const Vec3& p) const {
+  return m_mesh ? m_mesh->box.distance(p) : (p - m_centre).norm() - m_radius;
+}
 
 ToolDistance ToolSolid::find_distance(const Vec3& p, int& face) {
   if (is_ball()) return find_from_ball(p);

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "base/types.h"
 #include "mesh/tet_mesh.h"
@@ -24,6 +25,12 @@ struct ToolDistance {
   Vec3 outward = Vec3::Zero();  ///< its gradient, unit: the way out of the tool
 };
 
+/// A ball inside a tool, in the tool frame.
+struct InnerBall {
+  Vec3 centre = Vec3::Zero();
+  double radius = 0.0;  ///< [m] > 0: its distance from the tool's surface
+};
+
 /// Signed distance from a closed tool, in the tool frame. It changes by no more than the point moves.
 class ToolSolid {
  public:
@@ -37,6 +44,9 @@ class ToolSolid {
   /// Of a point in the tool frame. `face`: a guess for the nearest face of a mesh, kept up to date.
   ToolDistance find_distance(const Vec3& p, int& face);
 
+  /// A distance that is found sooner and is never the larger one.
+  double find_least_distance(const Vec3& p) const;
+
   /// The same looks from everywhere; then the frame does not matter.
   bool is_ball() const { return m_round && m_round->length == 0.0; }
   ToolDistance find_from_ball(const Vec3& p) const {
@@ -49,9 +59,15 @@ class ToolSolid {
   double reach() const { return m_centre.norm() + m_radius; }  ///< from the origin, at most [m]
   /// Radius of a ball that the tool is not thinner than, as a rule [m].
   double thickness() const { return m_thickness; }
+  /// A few balls along its middle; a sphere's is itself.
+  const std::vector<InnerBall>& inner_balls() const { return m_inner_balls; }
 
  private:
   struct Mesh;
+
+  void list_balls_on_axis();
+  void list_balls_in_mesh();
+  void add_ball(const Vec3& centre);
 
   std::optional<RoundTool> m_round;
   Eigen::Vector2d m_cone_normal = Eigen::Vector2d::UnitX();  // stylus: away from the axis, along it
@@ -59,6 +75,7 @@ class ToolSolid {
   Vec3 m_centre = Vec3::Zero();
   double m_radius = 0.0;
   double m_thickness = 0.0;
+  std::vector<InnerBall> m_inner_balls;
 };
 
 }  // namespace argil::contact

@@ -206,6 +206,7 @@ void HandSide::commit() {
   m_touched.commit();
   m_detector.commit();
   m_stiffness_before.clear();
+  if (m_pressure) m_pressure->commit();
   m_grip.commit();
   if (m_friction) m_friction->commit();
   if (m_between) m_between->commit();
@@ -224,7 +225,7 @@ void HandSide::roll_back(ContactLoad* load) {
   m_detector.roll_back();
   if (m_pressure) {
     m_pressure->exchange(m_stiffness_before);
-    m_pressure->forget();
+    m_pressure->roll_back();
   }
   m_stiffness_before.clear();
   m_grip.roll_back();

@@ -50,7 +50,7 @@ void HandSide::feel_between_steps() {
   if (keeps_shape()) return m_between->feel(Vec3::Zero());
   meet_surface();
   const auto find_unpressed = [this](const contact::Pose& tool) {
-    m_pressure->find_contacts(m_touched.x_t1(), tool, tool, contact::Yielding::no, m_unpressed);
+    m_pressure->find_unpressed(m_touched.x_t1(), tool, m_unpressed);
   };
   if (m_between->wants_stiffness()) {
     find_unpressed(m_between->tool());

@@ -125,6 +125,7 @@ void HandSide::serialize_contacts(Archive& archive) {
     archive.number("contact/yielding", m_state.yielding);
     archive.array("contact/stiffness_per_area", m_pressure->stiffness().per_area);
     archive.array("contact/modulus", m_pressure->stiffness().modulus);
+    m_pressure->serialize(archive);
     m_grip.serialize(archive);
     if (m_friction) m_friction->serialize(archive);
     if (m_between) m_between->serialize(archive);

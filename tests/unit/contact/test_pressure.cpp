@@ -11,31 +11,19 @@
 #include <numeric>
 #include <random>
 
-#include "unit/contact/scenes.h"
 #include "contact/tool_shape.h"
+#include "unit/contact/pressure_scenes.h"
 
 namespace argil::contact {
 namespace {
 
+using test::kBall;
+using test::kModulus;
+using test::kRadius;
+using test::kStiffness;
+using test::make_contact;
 using test::make_flat_slab;
-
-constexpr double kRadius = 0.008;
-constexpr RoundTool kBall{kRadius, 0.0, kRadius, false};
-constexpr double kModulus = 1e5;    // E* [Pa]
-constexpr double kStiffness = 1e8;  // κ [Pa/m]
-
-SurfaceStiffness make_stiffness(Eigen::Index triangles) {
-  return {Field::Constant(triangles, kStiffness), Field::Constant(triangles, kModulus)};
-}
-
-/// What a tool that stands at `pose` finds.
-Contacts press(const mesh::TriangleMesh& body, ToolSolid tool, const Pose& pose, Yielding yielding) {
-  PressureContact pressure(body.triangles, body.num_vertices(), std::move(tool),
-                           make_stiffness(body.triangles.cols()));
-  Contacts contacts;
-  pressure.find_contacts(body.vertices, pose, pose, yielding, contacts);
-  return contacts;
-}
+using test::press;
 
 Contacts press(const mesh::TriangleMesh& body, const Vec3& position, Yielding yielding) {
   return press(body, ToolSolid(kBall), Pose{position}, yielding);
@@ -217,8 +205,7 @@ TEST(Pressure, HasNoJumpAsTheToolGoesDown) {
   for (const Yielding yielding : {Yielding::yes, Yielding::no})
     for (const int n : {4, 20, 60}) {
       const mesh::TriangleMesh plane = make_flat_slab(n);
-      PressureContact pressure(plane.triangles, plane.num_vertices(), ToolSolid(kBall),
-                               make_stiffness(plane.triangles.cols()));
+      PressureContact pressure = make_contact(plane, ToolSolid(kBall));
       Contacts contacts;
       std::vector<double> forces;
       for (int i = 0; i <= 750; ++i) {
@@ -235,8 +222,7 @@ TEST(Pressure, HasNoJumpAsTheToolGoesDown) {
 
 TEST(Pressure, MeetsWhatATickPassesThrough) {
   const mesh::TriangleMesh plate = make_flat_slab(20, 0.1, 0.001);
-  PressureContact pressure(plate.triangles, plate.num_vertices(), ToolSolid(kBall),
-                           make_stiffness(plate.triangles.cols()));
+  PressureContact pressure = make_contact(plate, ToolSolid(kBall));
   Contacts contacts;
   pressure.find_contacts(plate.vertices, Pose{{0.001, 0.002, 0.05}}, Pose{{0.001, 0.002, -0.05}},
                          Yielding::yes, contacts);
@@ -246,8 +232,7 @@ TEST(Pressure, MeetsWhatATickPassesThrough) {
 
 TEST(Pressure, IsAMeanOverTheWay) {
   const mesh::TriangleMesh plane = make_flat_slab(40);
-  PressureContact pressure(plane.triangles, plane.num_vertices(), ToolSolid(kBall),
-                           make_stiffness(plane.triangles.cols()));
+  PressureContact pressure = make_contact(plane, ToolSolid(kBall));
   Contacts contacts;
   const Vec3 high(0.001, 0.002, kRadius - 0.001);
   const Vec3 low(0.001, 0.002, kRadius - 0.002);

@@ -265,5 +265,21 @@ TEST(ToolSolid, AMeshHasTheDistanceOfAllItsTriangles) {
   EXPECT_GT(num_inside, 500);
 }
 
+/// Where many places are equally near, any of them is a way out.
+TEST(ToolSolid, OnItsAxisAndRimTheWayOutLeadsOut) {
+  for (const RoundTool& shape : {kBall, kCapsule, kStylus}) {
+    ToolSolid tool(shape);
+    std::vector<Vec3> places;
+    for (int i = 0; i <= 10; ++i) places.emplace_back(0.0, 0.0, 0.1 * i * shape.length);
+    if (shape.is_flat) places.emplace_back(shape.end_radius, 0.0, shape.length);
+    for (const Vec3& p : places) {
+      int face = 0;
+      const ToolDistance found = tool.find_distance(p, face);
+      EXPECT_NEAR(distance(tool, p - (found.distance - 1e-4) * found.outward), 1e-4, 1e-12)
+          << shape.length << " " << p.transpose();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace argil::contact

@@ -1,0 +1,84 @@
+// Pressure of tools with sharp edges, of tools deeper than their tip, and of tools that pass through a plate
+// in one interval. Expected: Sneddon; a force that grows with the depth and opposes the motion.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "base/rng.h"
+#include "contact/pressure.h"
+#include "contact/tool_shape.h"
+#include "unit/contact/pressure_scenes.h"
+
+namespace argil::contact {
+namespace {
+
+using test::find_spread;
+using test::kBall;
+using test::kModulus;
+using test::kRadius;
+using test::kTip;
+using test::make_flat_slab;
+using test::make_turned;
+using test::Misses;
+using test::press;
+using test::shoot;
+
+/// F = 2 E* a d.
+TEST(HeldPressure, IsSneddonUnderAFlatPunch) {
+  constexpr double kPunch = 0.006;
+  const mesh::TriangleMesh punch = make_turned({{kPunch, 0.0}, {kPunch, 0.02}}, 96);
+  require_closed_surface(punch, "punch");
+  for (const double depth : {0.0002, 0.0005, 0.001}) {
+    const Contacts found =
+        press(make_flat_slab(40), ToolSolid(punch), Pose{{0.0011, 0.0023, -depth}}, Yielding::no);
+    EXPECT_NEAR(found.force_on_tool.z() / (2.0 * kModulus * kPunch * depth), 1.0, 0.1) << depth;
+  }
+}
+
+/// Faces of 10 mm, each split in four up to four times.
+TEST(HeldPressure, IsTheSameWhenFacesAreSplit) {
+  for (const double depth : {0.0005, 0.001, 0.002}) {
+    std::vector<double> forces;
+    for (const int n : {10, 20, 40, 80, 160})
+      forces.push_back(
+          press(make_flat_slab(n), ToolSolid(kBall), Pose{{0.0011, 0.0023, kRadius - depth}}, Yielding::no)
+              .force_on_tool.z());
+    EXPECT_LT(find_spread(forces), 0.01) << depth;
+  }
+}
+
+/// A wet tool that is pushed on is never felt less: a ball to nearly its radius, a stylus beyond that of its
+/// tip.
+TEST(HeldPressure, GrowsWithTheDepth) {
+  for (const auto& [tool, last_step] : {std::pair{kTip, 75}, std::pair{kBall, 47}}) {
+    const mesh::TriangleMesh plane = make_flat_slab(20);
+    double last = 0.0, most_lost = 0.0;
+    for (int i = 1; i <= last_step; ++i) {
+      const double depth = 0.02 * i * tool.tip_radius;
+      const double force =
+          press(plane, ToolSolid(tool), Pose{{0.0033, 0.0027, tool.tip_radius - depth}}, Yielding::no)
+              .force_on_tool.z();
+      most_lost = std::max(most_lost, (last - force) / force);
+      last = std::max(last, force);
+    }
+    EXPECT_LT(most_lost, 0.01) << tool.tip_radius;
+  }
+}
+
+/// Intervals of 14 ms at 5 m/s, and a small tool at 1 ms.
+TEST(Pressure, TurnsBackWhatPassesInOneInterval) {
+  const RoundTool small{0.001, 0.0, 0.001, false};
+  for (const auto& [tool, way] : {std::pair{small, 0.005}, std::pair{small, 0.07}, std::pair{kTip, 0.07},
+                                  std::pair{kBall, 0.02}, std::pair{kBall, 0.07}}) {
+    const Misses misses = shoot(tool, 0.001, way, 10);
+    EXPECT_EQ(misses.missed, 0) << tool.tip_radius << " " << tool.length << " " << way;
+    EXPECT_EQ(misses.drawn, 0) << tool.tip_radius << " " << tool.length << " " << way;
+  }
+}
+
+}  // namespace
+}  // namespace argil::contact
