@@ -155,6 +155,17 @@ Penalty compute_edge_edge_depth(const PairPath& path) {
   return penalty;
 }
 
+/// Eq. 8. Edges that are inside at t₁ alone but begin on the same side came in sideways, unless their lines
+/// crossed beyond an end and they then met: the depth counts from there.
+Penalty compute_edge_pair_penalty(const EdgePair& pair, const PairPath& path, bool starts_inside,
+                                  double orientation) {
+  if (starts_inside && !pair.inside_t0) {
+    const Penalty entered = compute_edge_edge_penalty(path, false, 0.0);
+    if (entered.inside_at_end) return entered;
+  }
+  return compute_edge_edge_penalty(path, starts_inside, orientation);
+}
+
 /// The contact of a vertex with a face, seen from the body.
 Contact make_vertex_contact(const VertexFaceMotion& m, int v, int face, const Penalty& penalty, double k) {
   // On the face's body the force is the integral; where the vertex is the body's, its negative.
@@ -317,7 +328,7 @@ void ContactDetector::Impl::press_edges(const Motion& m, Contacts& out) {
     const bool is_discrete = params.penalty == PenaltyKind::discrete;
     if (is_discrete && !pair.inside_t1) continue;
     const Penalty penalty = is_discrete ? compute_edge_edge_depth(path)
-                                        : compute_edge_edge_penalty(path, starts_inside, orientation);
+                                        : compute_edge_pair_penalty(pair, path, starts_inside, orientation);
     // Inside by its lines at the end but not within the edges: slid off, and a neighbour has it.
     if (penalty.num_intervals == 0 || (penalty.inside_at_end && !pair.inside_t1)) continue;
     if (orientation == 0.0) {

@@ -171,6 +171,42 @@ TEST(Slide, OverFacetsTheForceIsContinuousWhenBlended) {
   EXPECT_GT(measure_largest_change(nearest, 1e-5), 0.5 * measure_largest_change(nearest, 1e-4));
 }
 
+TEST(Press, EdgesThatPassedEachOtherBeyondAnEndPressFromWhereTheyMeet) {
+  // The body's upper edge goes in the plane x = 2 − 2t from (y, z) = (−½ − t, A − 3t/2) to (1, t), A = 3/16,
+  // and the tool's lower edge rests along x from −1 to 1. At y = 0 the former is (t − ¼)(t − ¾)/(3/2 + t)
+  // high: it passes the tool beyond its end, and comes up into it at t = ¾. Both ends stay outside.
+  const auto tetrahedron = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    mesh::TriangleMesh mesh;
+    mesh.vertices.resize(3, 4);
+    mesh.vertices << a, b, c, d;
+    const bool is_right_handed = (b - a).cross(c - a).dot(d - a) > 0.0;
+    mesh.triangles.resize(3, 4);
+    mesh.triangles << 0, 0, 0, 1, 2, 1, 3, 2, 1, 3, 2, 3;
+    if (!is_right_handed) mesh.triangles.row(1).swap(mesh.triangles.row(2));
+    return mesh;
+  };
+  const mesh::TriangleMesh tool = tetrahedron(Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -3, 2), Vec3(0, 0.3, 2));
+  const auto body_at = [&](double t) {
+    const double x = 2.0 - 2.0 * t;
+    return tetrahedron(Vec3(x, -0.5 - t, 0.1875 - 1.5 * t), Vec3(x, 1, t), Vec3(x - 0.3, 0, -2),
+                       Vec3(x + 0.3, 0, -2));
+  };
+  ContactDetector detector(body_at(0.0).triangles, 4, tool, {kK, kK});
+  Contacts contacts;
+  detector.find_contacts(body_at(0.0).vertices, body_at(1.0).vertices, {}, {}, contacts);
+  // Depth along the common normal (0, A − 5t/2, 3/2 + t) of both edges, out of the body.
+  Vec3 sum = Vec3::Zero();
+  constexpr int kPieces = 1000;
+  for (int i = 0; i < kPieces; ++i) {
+    const double t = 0.75 + 0.25 * (i + 0.5) / kPieces;
+    const Vec3 n(0.0, 0.1875 - 2.5 * t, 1.5 + t);
+    sum += 0.25 / kPieces * (t - 0.25) * (t - 0.75) / n.squaredNorm() * n;
+  }
+  ASSERT_EQ(contacts.contacts.size(), 1U);
+  // Midpoints: the square of a piece over 24, times the second derivative, which is near 1.
+  EXPECT_NEAR((contacts.force_on_tool - kK * sum).norm(), 0.0, 1e-7 * kK * sum.norm());
+}
+
 TEST(Discrete, CountsTheDepthAtTheEndOfTheTickAndMissesWhatWentThrough) {
   // One tool vertex over a flat face, by hand: from 1 mm above to 1 mm below, a quarter mm mean depth, 1 mm
   // at the end; at rest both count 1 mm.
