@@ -131,11 +131,19 @@ std::optional<Vec3> find_blended_direction(const VertexFaceMotion& m, const Vec3
   return direction / std::max(1.0, direction.norm());
 }
 
-/// Depth of a vertex behind the face nearest to it at the end of the interval, as if it had it throughout.
+/// Does the nearest place lie on an edge or a corner? Then several faces have it, and none of them is
+/// distinguished.
+bool is_shared(const SurfacePoint& place) {
+  return (place.weight.array() == 0.0).any();
+}
+
+/// Depth of a vertex behind the place nearest to it at the end of the interval, as if it had it throughout:
+/// along the face's normal, or, where faces meet, along the way to that place.
 Penalty compute_vertex_face_depth(const VertexFaceMotion& m, const Vec3& p, const SurfacePoint& nearest) {
   Penalty penalty;
   const Vec3 n = compute_face_normal(m.faces, nearest.face).normalized();
-  penalty.integral = std::min(0.0, compute_height(m.faces, nearest.face, p)) * n;
+  penalty.integral = is_shared(nearest) ? Vec3(p - nearest.point)
+                                        : Vec3(std::min(0.0, compute_height(m.faces, nearest.face, p)) * n);
   penalty.weights = {1.0, nearest.weight(0), nearest.weight(1), nearest.weight(2)};
   penalty.duration = 1.0;
   return penalty;
@@ -264,6 +272,7 @@ void ContactDetector::Impl::resolve(VertexTask& task, Worker& worker) const {
     penalty = compute_vertex_face_depth(m, p, nearest);
   }
   double end_depth = inside ? std::max(0.0, -compute_height(m.faces, face, p)) : 0.0;
+  if (is_discrete && inside && is_shared(nearest)) end_depth = penalty.integral.norm();
   if (inside && !is_discrete)
     if (const auto direction = find_blended_direction(m, p, walked, params.face_blend, worker.near)) {
       penalty.integral = penalty.integral.norm() * *direction;
