@@ -12,7 +12,7 @@ inline constexpr double kFarthestPlace = 1e3;
 
 /// Is it no farther away than that? No place that is not finite is.
 inline bool is_within_reach(const Vec3& place) {
-  return place.stableNorm() <= kFarthestPlace;
+  return place.allFinite() && place.stableNorm() <= kFarthestPlace;
 }
 
 /// How a trace file is read when its header does not say.
