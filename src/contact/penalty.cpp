@@ -116,49 +116,104 @@ bool crosses_within(PairKind kind, const std::array<Vec3, 4>& p) {
   return s.minCoeff() >= -kInsideMargin && s.maxCoeff() <= 1.0 + kInsideMargin;
 }
 
-/// Intervals and weights, without the integral: the walk along t. `c` is the coplanarity with the sign that
-/// makes outside positive.
+/// Are the edges parallel, and apart? The coplanarity then vanishes with their common normal, and nothing
+/// meets.
+bool are_parallel_and_apart(const std::array<Vec3, 4>& p) {
+  const Vec3 a = p[1] - p[0];
+  const Vec3 b = p[3] - p[2];
+  const Vec3 w = p[2] - p[0];
+  const double aa = a.squaredNorm();
+  const double bb = b.squaredNorm();
+  const double ab = a.dot(b);
+  if (aa * bb - ab * ab > kParallel * aa * bb) return false;
+  const double begin = w.dot(a);  // of b along a, where a goes from 0 to aa
+  const double end = begin + ab;
+  const double margin = kInsideMargin * aa;
+  if (std::max(begin, end) < -margin || std::min(begin, end) > aa + margin) return true;
+  const double distance = (w - (begin / aa) * a).norm();
+  return distance > kInsideMargin * std::sqrt(std::max(aa, bb));
+}
+
+/// Which way the edges face each other before the first crossing: so that the start lies inside or outside.
+double find_orientation(const PairPath& path, const Cubic& c, bool inside_at_start) {
+  const double before = std::abs(c[0]) > coplanarity_error_bound(path) ? c[0] : -evaluate(c, 1e-3);
+  return (before > 0.0) == inside_at_start ? -1.0 : 1.0;
+}
+
+/// What happens to a pair along t: intervals and weights, without the integral.
+class IntervalWalk {
+ public:
+  /// `changes_sides`: edges whose lines cross beyond an end have passed each other without meeting, so that
+  /// the way back may be an entry.
+  IntervalWalk(PairKind kind, const PairPath& path, double orientation, bool changes_sides)
+      : m_kind(kind), m_path(path), m_changes_sides(changes_sides), m_orientation(orientation) {
+    m_penalty.orientation = orientation;
+  }
+  void open(double t) {
+    if (m_penalty.num_intervals == 0) m_penalty.weights = compute_weights(m_kind, interpolate(m_path, t));
+    m_penalty.intervals[static_cast<std::size_t>(m_penalty.num_intervals++)] = {t, 1.0};
+    m_penalty.inside_at_end = true;
+    m_penalty.orientation = m_orientation;
+  }
+  /// The coplanarity changes its sign at t. False where the two signs change their meaning there.
+  bool cross(double t, bool inwards) {
+    const std::array<Vec3, 4> p = interpolate(m_path, t);
+    if (m_kind == PairKind::edge_edge && are_parallel_and_apart(p)) {
+      m_orientation = -m_orientation;
+      m_penalty.orientation = -m_penalty.orientation;
+      return false;
+    }
+    if (m_penalty.inside_at_end && !inwards) close(t);
+    if (m_penalty.inside_at_end || !inwards || m_penalty.num_intervals == 2) return true;
+    if (crosses_within(m_kind, p))
+      open(t);
+    else if (m_changes_sides)
+      m_orientation = -m_orientation;
+    return m_penalty.inside_at_end || !m_changes_sides;
+  }
+  const Penalty& penalty() const { return m_penalty; }
+
+ private:
+  void close(double t) {
+    m_penalty.intervals[static_cast<std::size_t>(m_penalty.num_intervals - 1)].end = t;
+    m_penalty.inside_at_end = false;
+  }
+  PairKind m_kind;
+  const PairPath& m_path;
+  bool m_changes_sides;
+  double m_orientation;
+  Penalty m_penalty;
+};
+
+/// `c` is the coplanarity with the sign that makes outside positive; of edges where `orientation` is 0, that
+/// sign is found.
 Penalty find_intervals(PairKind kind, const PairPath& path, Cubic c, bool inside_at_start,
                        double orientation) {
   // A start that touches within rounding counts as outside, so that a motion inwards from there is an entry
   // at t = 0.
   const double touching = coplanarity_error_bound(path);
-  const bool find_orientation = kind == PairKind::edge_edge && orientation == 0.0;
-  if (find_orientation) {
-    const double before = std::abs(c[0]) > touching ? c[0] : -evaluate(c, 1e-3);
-    orientation = (before > 0.0) == inside_at_start ? -1.0 : 1.0;
-  }
+  const bool is_free = kind == PairKind::edge_edge && orientation == 0.0;
+  if (is_free) orientation = find_orientation(path, c, inside_at_start);
   for (double& coefficient : c) coefficient *= orientation;
 
-  Penalty penalty;
-  penalty.orientation = orientation;
-  const auto open = [&](double t) {
-    if (penalty.num_intervals == 0) penalty.weights = compute_weights(kind, interpolate(path, t));
-    penalty.intervals[static_cast<std::size_t>(penalty.num_intervals++)] = {t, 1.0};
-    penalty.inside_at_end = true;
-  };
-  const auto close = [&](double t) {
-    penalty.intervals[static_cast<std::size_t>(penalty.num_intervals - 1)].end = t;
-    penalty.inside_at_end = false;
-  };
-  const auto crosses_at = [&](double t) { return crosses_within(kind, interpolate(path, t)); };
-
-  if (inside_at_start) open(0.0);
+  IntervalWalk walk(kind, path, orientation, is_free);
+  if (inside_at_start) walk.open(0.0);
   const Roots pieces = find_monotone_pieces(c);
+  double side = 1.0;  // of c: outside is where side · c > 0
   double previous = inside_at_start ? -1.0 : (std::abs(c[0]) <= touching ? 1.0 : c[0]);
   for (int k = 1; k < pieces.count; ++k) {
     const double begin = pieces.t[static_cast<std::size_t>(k) - 1];
     const double end = pieces.t[static_cast<std::size_t>(k)];
-    const double next = evaluate(c, end);
+    const double next = side * evaluate(c, end);
     if ((previous < 0.0) == (next < 0.0)) continue;
     // Where rounding or touching decided the sign of the start, the crossing is the start itself.
-    const double start_value = evaluate(c, begin);
+    const double start_value = side * evaluate(c, begin);
     const double root = (start_value < 0.0) == (next < 0.0) ? begin : bisect(c, begin, end);
-    if (next < 0.0 && !penalty.inside_at_end && penalty.num_intervals < 2 && crosses_at(root)) open(root);
-    if (next >= 0.0 && penalty.inside_at_end) close(root);
-    previous = next;
+    const bool keeps_sides = walk.cross(root, next < 0.0);
+    previous = keeps_sides ? next : -next;
+    if (!keeps_sides) side = -side;
   }
-  return penalty;
+  return walk.penalty();
 }
 
 void integrate_intervals(PairKind kind, const PairPath& path, double until, Penalty& penalty) {

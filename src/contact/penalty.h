@@ -33,7 +33,9 @@ bool enters_face(const PairPath& path);
 
 /// Eq. 8: p on edge a, q on edge b, n the edges' common unit normal, turned so that nᵀ(p−q) > 0 before the
 /// entry. `orientation` (±1) is used when inside_at_start; 0 finds it so that the start lies inside. On b's
-/// body the force is `integral`. Opens where both edges' parameters lie in [0, 1].
+/// body the force is `integral`. Opens where both edges' parameters lie in [0, 1]; where only their lines
+/// cross, the edges pass each other, and with an orientation of 0 the next crossing may open. Edges that
+/// become parallel without meeting cross nothing.
 Penalty compute_edge_edge_penalty(const PairPath& path, bool inside_at_start, double orientation);
 
 /// Barycentric margin within which a crossing counts as inside a feature.

@@ -131,11 +131,19 @@ std::optional<Vec3> find_blended_direction(const VertexFaceMotion& m, const Vec3
   return direction / std::max(1.0, direction.norm());
 }
 
-/// Depth of a vertex behind the face nearest to it at the end of the interval, as if it had it throughout.
+/// Does the nearest place lie on an edge or a corner? Then several faces have it, and none of them is
+/// distinguished.
+bool is_shared(const SurfacePoint& place) {
+  return (place.weight.array() == 0.0).any();
+}
+
+/// Depth of a vertex behind the place nearest to it at the end of the interval, as if it had it throughout:
+/// along the face's normal, or, where faces meet, along the way to that place.
 Penalty compute_vertex_face_depth(const VertexFaceMotion& m, const Vec3& p, const SurfacePoint& nearest) {
   Penalty penalty;
   const Vec3 n = compute_face_normal(m.faces, nearest.face).normalized();
-  penalty.integral = std::min(0.0, compute_height(m.faces, nearest.face, p)) * n;
+  penalty.integral = is_shared(nearest) ? Vec3(p - nearest.point)
+                                        : Vec3(std::min(0.0, compute_height(m.faces, nearest.face, p)) * n);
   penalty.weights = {1.0, nearest.weight(0), nearest.weight(1), nearest.weight(2)};
   penalty.duration = 1.0;
   return penalty;
@@ -153,6 +161,17 @@ Penalty compute_edge_edge_depth(const PairPath& path) {
   penalty.num_intervals = 1;
   penalty.inside_at_end = true;
   return penalty;
+}
+
+/// Eq. 8. Edges that are inside at t₁ alone but begin on the same side came in sideways, unless their lines
+/// crossed beyond an end and they then met: the depth counts from there.
+Penalty compute_edge_pair_penalty(const EdgePair& pair, const PairPath& path, bool starts_inside,
+                                  double orientation) {
+  if (starts_inside && !pair.inside_t0) {
+    const Penalty entered = compute_edge_edge_penalty(path, false, 0.0);
+    if (entered.inside_at_end) return entered;
+  }
+  return compute_edge_edge_penalty(path, starts_inside, orientation);
 }
 
 /// The contact of a vertex with a face, seen from the body.
@@ -253,6 +272,7 @@ void ContactDetector::Impl::resolve(VertexTask& task, Worker& worker) const {
     penalty = compute_vertex_face_depth(m, p, nearest);
   }
   double end_depth = inside ? std::max(0.0, -compute_height(m.faces, face, p)) : 0.0;
+  if (is_discrete && inside && is_shared(nearest)) end_depth = penalty.integral.norm();
   if (inside && !is_discrete)
     if (const auto direction = find_blended_direction(m, p, walked, params.face_blend, worker.near)) {
       penalty.integral = penalty.integral.norm() * *direction;
@@ -317,7 +337,7 @@ void ContactDetector::Impl::press_edges(const Motion& m, Contacts& out) {
     const bool is_discrete = params.penalty == PenaltyKind::discrete;
     if (is_discrete && !pair.inside_t1) continue;
     const Penalty penalty = is_discrete ? compute_edge_edge_depth(path)
-                                        : compute_edge_edge_penalty(path, starts_inside, orientation);
+                                        : compute_edge_pair_penalty(pair, path, starts_inside, orientation);
     // Inside by its lines at the end but not within the edges: slid off, and a neighbour has it.
     if (penalty.num_intervals == 0 || (penalty.inside_at_end && !pair.inside_t1)) continue;
     if (orientation == 0.0) {

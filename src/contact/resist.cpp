@@ -43,8 +43,16 @@ void ContactDetector::Impl::resist(const PairMotion& m, Vec3& stretch, Contact& 
 void ContactDetector::Impl::resist_vertex(const VertexFaceMotion& m, int v, const PairPath& path,
                                           const Penalty& penalty, bool was_inside, bool inside,
                                           Contact& c) const {
-  const auto depth = [](const std::array<Vec3, 4>& p) {
-    return std::max(0.0, -(p[2] - p[1]).cross(p[3] - p[1]).normalized().dot(p[0] - p[1]));
+  // Of a discrete depth behind an edge or a corner, where faces meet, none of them is distinguished.
+  const bool is_behind_edge = params.penalty == PenaltyKind::discrete && inside &&
+                              std::count(penalty.weights.begin() + 1, penalty.weights.end(), 0.0) > 0;
+  const Vec3 inward = penalty.integral.normalized();
+  const auto depth = [&](const std::array<Vec3, 4>& p) {
+    if (!is_behind_edge)
+      return std::max(0.0, -(p[2] - p[1]).cross(p[3] - p[1]).normalized().dot(p[0] - p[1]));
+    Vec3 way = p[0];
+    for (std::size_t i = 1; i < 4; ++i) way -= penalty.weights[i] * p[i];
+    return std::max(0.0, inward.dot(way));
   };
   PairMotion pair;
   pair.stiffness = params.vertex_face_stiffness;

@@ -181,6 +181,10 @@ bool AttachedDevice::deliver(const Vec3& position, const Quat& orientation, unsi
   Arrival arrival;
   arrival.sample = {position, make_unit(orientation), m_mode.update(buttons)};
   move_to_world(m_options.device_to_world, arrival.sample);
+  if (!is_within_reach(arrival.sample.position)) {
+    count_refused();
+    return false;
+  }
   arrival.number = ++m_samples;
   arrival.time = monotonic_now();
   m_last_time = arrival.time;

@@ -59,7 +59,7 @@ class AttachedDevice : public HapticDevice {
   double period() const { return m_options.period; }
   void set_info(const DeviceInfo& info);
   /// A sample in the device's axes [m]; counted as refused when it is not finite, further than kReach from
-  /// the origin or its quaternion is none. False then.
+  /// the origin, takes the hand beyond kFarthestPlace in the world, or its quaternion is none. False then.
   bool deliver(const Vec3& position, const Quat& orientation, unsigned buttons);
   void count_refused() { ++m_refused; }
   void count_repeated() { ++m_repeated; }

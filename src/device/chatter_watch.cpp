@@ -41,7 +41,8 @@ Vec3 ChatterWatch::Section::pass(const Vec3& in) {
 
 bool ChatterWatch::trembles(const Power& stretch) const {
   const double touch = kTouchShare * kTouchShare * m_hardest;
-  return stretch.above > m_limit * m_limit * stretch.all && stretch.all > touch;
+  const double felt = kLeastFelt * kLeastFelt * m_stretch_ticks;
+  return stretch.above > felt && stretch.above > m_limit * m_limit * stretch.all && stretch.all > touch;
 }
 
 void ChatterWatch::add(const Vec3& force) {

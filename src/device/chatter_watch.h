@@ -10,12 +10,17 @@ namespace argil::device {
 /// Sees the force at the hand tremble: what no hand moves by itself, held for so long that no poke does it.
 ///
 /// The force goes through a high-pass filter [Butterworth1930, fourth order, bilinear] at 50 Hz. A stretch of
-/// 0.06 s trembles when the rms of what is left is more than `limit` of the rms of the force in it, and not
-/// small beside the hardest touch so far; the hand chatters when five stretches in a row do.
+/// 0.06 s trembles when the rms of what is left is more than kLeastFelt and more than `limit` of the rms of
+/// the force in it, which is not small beside the hardest touch so far; the hand chatters when five stretches
+/// in a row do.
 class ChatterWatch {
  public:
   static constexpr double kFrequency = 50.0;  ///< [Hz]
   static constexpr double kHeld = 0.3;        ///< [s]
+  /// Least rms above kFrequency [N] that counts: about the faintest sine that a hand feels, which is some
+  /// millinewton. Of the order of the displacement that a hand with a stylus detects (tenths of a µm at
+  /// 250 Hz, some µm at 50 Hz) times its impedance at that frequency [Israr2006].
+  static constexpr double kLeastFelt = 2e-3;
 
   /// `limit`: share of the rms, in (0, 1]; 1 sees nothing, nor does a `period` [s] of 10 ms or more, which
   /// has no such frequencies.

@@ -52,30 +52,26 @@ OutputGate::OutputGate(const DeviceLimits& limits, double period_s) : m_limits(l
 }
 
 GatedForce OutputGate::apply(const Vec3& force, const Vec3& torque, HandFeed feed) {
-  if (feed == HandFeed::none) return {Vec3::Zero(), Vec3::Zero(), kGateNoSample};
   GatedForce out{force, torque, kGateNone};
-  limit(out);
-  scale_by_ramp(out);
-  scale_by_watchdog(feed, out);
-  ++m_count;
+  if (feed == HandFeed::none) {
+    out = {Vec3::Zero(), Vec3::Zero(), kGateNoSample};
+  } else {
+    limit_norms(out);
+    scale_by_ramp(out);
+    scale_by_watchdog(feed, out);
+    ++m_count;
+  }
+  limit_rate(out);
   return out;
 }
 
-/// Finite, within the norm limits, and no further from the last force than the slew limit allows.
-void OutputGate::limit(GatedForce& out) {
+/// Finite and within the norm limits.
+void OutputGate::limit_norms(GatedForce& out) const {
   // Both calls must run, hence | and not ||, here and below.
   if (zero_unless_finite(out.force) | zero_unless_finite(out.torque)) out.events |= kGateNotFinite;
 
   const bool torque_clamped = m_limits.max_torque > 0.0 && clamp_norm(m_limits.max_torque, out.torque);
   if (clamp_norm(m_limits.max_force, out.force) | torque_clamped) out.events |= kGateClamped;
-
-  Vec3 change = out.force - m_last_force;
-  if (clamp_norm(m_limits.max_force_rate * m_period, change)) {
-    out.force = m_last_force + change;
-    out.events |= kGateSlew;
-  }
-  clamp_norm(m_limits.max_force, out.force);  // the sum above may round past the limit by an ulp
-  m_last_force = out.force;
 }
 
 void OutputGate::scale_by_ramp(GatedForce& out) const {
@@ -91,6 +87,18 @@ void OutputGate::scale_by_watchdog(HandFeed feed, GatedForce& out) {
   if (m_withdrawn == 0) return;
   scale(static_cast<double>(m_release_periods - m_withdrawn) / static_cast<double>(m_release_periods),
         kGateWatchdog, out);
+}
+
+/// No further from the last force than the slew limit allows. Acts last: a ramp that ends, or a hand that is
+/// let go, would add its own rate.
+void OutputGate::limit_rate(GatedForce& out) {
+  Vec3 change = out.force - m_last_force;
+  if (clamp_norm(m_limits.max_force_rate * m_period, change)) {
+    out.force = m_last_force + change;
+    out.events |= kGateSlew;
+  }
+  clamp_norm(m_limits.max_force, out.force);  // the sum above may round past the limit by an ulp
+  m_last_force = out.force;
 }
 
 void OutputGate::restore(Tick count, const Vec3& last_force, Tick withdrawn) {

@@ -8,7 +8,8 @@ namespace argil::device {
 struct WatchdogLimits {
   double max_sample_age = 0.02;   ///< of the device's last valid sample [s]
   double max_physics_age = 0.25;  ///< of the surface that the force was found with [s]
-  double release_s = 0.05;        ///< in which the force falls to zero, and comes back [s]; 0: at once
+  double release_s = 0.05;        ///< in which the force falls to zero, and comes back, where the slew limit
+                                  ///< allows it [s]; 0: at once
 };
 
 /// What the device may be asked to render.
@@ -48,27 +49,28 @@ struct GatedForce {
   std::uint8_t events = kGateNone;
 };
 
-/// Last station before the hand: not-finite to zero, norm clamp, slew limit, start-up ramp, watchdog, in that
+/// Last station before the hand: not-finite to zero, norm clamp, start-up ramp, watchdog, slew limit, in that
 /// order. The simulation's own force is not changed by it; both are recorded. Whatever comes in, what goes
 /// out is finite, no longer than max_force, and no further from the force before (zero at first) than
-/// max_force_rate · period, and max_force · period / ramp_s or / release_s more while a ramp acts. Torque has
-/// no slew limit. Limits: max_force, max_force_rate > 0, the others ≥ 0, period > 0.
+/// max_force_rate · period, within rounding. Torque has no slew limit. Limits: max_force, max_force_rate > 0,
+/// the others ≥ 0, period > 0.
 class OutputGate {
  public:
   OutputGate(const DeviceLimits& limits, double period_s);
   GatedForce apply(const Vec3& force, const Vec3& torque, HandFeed feed = HandFeed::fresh);
 
-  /// All that a snapshot needs to go on to the same bits: periods since the start, the last force before the
-  /// ramps, and how many periods the watchdog is on its way to zero.
+  /// All that a snapshot needs to go on to the same bits: periods since the start, the last force that
+  /// went out, and how many periods the watchdog is on its way to zero.
   Tick count() const { return m_count; }
   const Vec3& last_force() const { return m_last_force; }
   Tick withdrawn() const { return m_withdrawn; }
   void restore(Tick count, const Vec3& last_force, Tick withdrawn);
 
  private:
-  void limit(GatedForce& out);
+  void limit_norms(GatedForce& out) const;
   void scale_by_ramp(GatedForce& out) const;
   void scale_by_watchdog(HandFeed feed, GatedForce& out);
+  void limit_rate(GatedForce& out);
   DeviceLimits m_limits;
   double m_period;
   Tick m_release_periods;  ///< until the watchdog is at zero, ≥ 1

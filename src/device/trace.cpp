@@ -127,11 +127,11 @@ Trace read_trace(const std::string& file, const TraceOptions& options) {
     if (!raw.orientation.empty()) sample.orientation = checked_orientation(file, raw, i);
     sample.mode = raw.mode.empty() ? options.default_mode : raw.mode[i];
     move_to_world(raw.device_to_world, sample);
-    if (const double distance = sample.position.stableNorm(); !(distance <= kFarthestPlace))
-      throw InputError(
-          file, place(raw, i),
-          "place " + print(distance) + " m from the origin, more than " + print(kFarthestPlace) + " m",
-          "correct the unit of length");
+    if (!is_within_reach(sample.position))
+      throw InputError(file, place(raw, i),
+                       "place " + print(sample.position.stableNorm()) + " m from the origin, more than " +
+                           print(kFarthestPlace) + " m",
+                       "correct the unit of length");
     move_to_world(options.device_to_world, sample);
     trace.samples.push_back(sample);
   }

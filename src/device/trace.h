@@ -7,8 +7,13 @@
 
 namespace argil::device {
 
-/// No place of a trace may be farther from the origin [m]: no device reaches as far.
+/// No place of a motion may be farther from the origin [m]: no device reaches as far.
 inline constexpr double kFarthestPlace = 1e3;
+
+/// Is it no farther away than that? No place that is not finite is.
+inline bool is_within_reach(const Vec3& place) {
+  return place.allFinite() && place.stableNorm() <= kFarthestPlace;
+}
 
 /// How a trace file is read when its header does not say.
 struct TraceOptions {

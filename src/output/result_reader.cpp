@@ -1,8 +1,10 @@
 #include "output/result_reader.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "base/error.h"
+#include "device/trace.h"
 #include "output/schema.h"
 
 namespace argil::output {
@@ -270,6 +272,21 @@ std::optional<Snapshot> ResultReader::find_checkpoint() const {
   return state;
 }
 
+namespace {
+
+/// `row`: of /haptic; none: where the session began.
+void check_place(const std::string& file, std::optional<std::size_t> row, const Vec3& place) {
+  if (device::is_within_reach(place)) return;
+  std::ostringstream problem;
+  problem << "place " << place.stableNorm() << " m from the origin, more than " << device::kFarthestPlace
+          << " m";
+  throw InputError(file,
+                   row ? "/haptic/tool_position, row " + std::to_string(*row) : "/session/start_position",
+                   problem.str(), "no session was recorded so: the file was changed, restore it");
+}
+
+}  // namespace
+
 std::optional<Session> ResultReader::find_session() const {
   if (!m_root.has(schema::kSession)) return std::nullopt;
   const Group group = m_root.open_group(schema::kSession);
@@ -283,8 +300,11 @@ std::optional<Session> ResultReader::find_session() const {
   session.head.start.position = Eigen::Map<const Vec3>(position.row(0));
   session.head.start.orientation = Quat(Eigen::Map<const Vec4>(orientation.row(0)));  // x, y, z, w
   session.head.start.mode = static_cast<device::ToolMode>(mode(0));
-  for (const sim::HapticRecord& record : read_haptic())
+  check_place(file(), std::nullopt, session.head.start.position);
+  for (const sim::HapticRecord& record : read_haptic()) {
+    check_place(file(), session.samples.size(), record.tool_position);
     session.samples.push_back({record.tool_position, record.tool_orientation, record.mode});
+  }
   const std::size_t rows = session.samples.size();
   const ColumnReader<std::int64_t> sample(group, "sample", rows, 1);
   const ColumnReader<std::int64_t> seen_step(group, "seen_step", rows, 1);

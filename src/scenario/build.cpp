@@ -230,9 +230,9 @@ void check_grip(const Scenario& s, const device::Trace& trace) {
 void check_trace(const Scenario& s, const device::Trace& trace) {
   check_grip(s, trace);
   for (const device::DeviceSample& sample : trace.samples)
-    if (const double distance = sample.position.stableNorm(); !(distance <= device::kFarthestPlace)) {
+    if (!device::is_within_reach(sample.position)) {
       std::ostringstream problem;
-      problem << "takes the motion to " << distance << " m from the origin, more than "
+      problem << "takes the motion to " << sample.position.stableNorm() << " m from the origin, more than "
               << device::kFarthestPlace << " m";
       throw InputError(s.file, "/trace/device_to_world", problem.str(), "correct scale and translation_m");
     }

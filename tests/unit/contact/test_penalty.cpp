@@ -158,5 +158,63 @@ TEST(EdgeEdgePenalty, TurningEdgesAgreeWithAnIndependentQuadrature) {
   EXPECT_NEAR((p.integral - integrate_slowly(n, pq, begin, 1.0)).norm(), 0.0, 1e-12);
 }
 
+/// Edge b along x from −1 to 1 at rest. Edge a in the plane x = 2 − 2t from (y, z) = (−½ − t, A − 3t/2) to
+/// (1, t), A = 3/16: its line passes z = (t − ¼)(t − ¾)/(y₁ − y₀) at y = 0. At t = ¼ it crosses the line of b
+/// beyond b's end, at t = ¾ it crosses b itself, the other way.
+PairPath passing_and_then_crossing(double sign) {
+  PairPath path = still({Vec3(2, -0.5, sign * 0.1875), Vec3(2, 1, 0), Vec3(-1, 0, 0), Vec3(1, 0, 0)});
+  path.t1[0] = Vec3(0, -1.5, sign * -1.3125);
+  path.t1[1] = Vec3(0, 1, sign * 1.0);
+  return path;
+}
+
+TEST(EdgeEdgePenalty, EdgesThatPassedEachOtherBeyondAnEndMeetOnTheWayBack) {
+  for (const double sign : {1.0, -1.0}) {
+    const PairPath path = passing_and_then_crossing(sign);
+    const Penalty p = compute_edge_edge_penalty(path, false, 0.0);
+    ASSERT_EQ(p.num_intervals, 1);
+    EXPECT_NEAR(p.intervals[0].begin, 0.75, kRound);
+    EXPECT_EQ(p.intervals[0].end, 1.0);
+    EXPECT_TRUE(p.inside_at_end);
+    EXPECT_NEAR(p.weights[1], 1.25 / 2.25, kRound);  // y = 0 of −1.25 … 1
+    EXPECT_NEAR(p.weights[3], 0.75, kRound);         // x = ½ of −1 … 1
+    const auto n = [&](double t) -> Vec3 { return Vec3(0, -sign * (2.5 * t - 0.1875), 1.5 + t); };
+    const auto pq = [&](double t) -> Vec3 { return Vec3(0, -0.5 - t, sign * (0.1875 - 1.5 * t)); };
+    const Vec3 slow = integrate_slowly(n, pq, 0.75, 1.0);
+    EXPECT_NEAR((p.integral - slow).norm(), 0.0, 1e-12);
+    EXPECT_GT(sign * p.integral.z(), 0.004);  // a's line is above b, where it was before it passed the end
+    // n is turned so that nᵀ(p−q) > 0 before the entry: here where a lies below.
+    EXPECT_LT(p.orientation * sign * (path.t1[1] - path.t1[0]).cross(path.t1[3] - path.t1[2]).z(), 0.0);
+  }
+}
+
+TEST(EdgeEdgePenalty, EdgesThatAreParallelForAMomentMeetNothing) {
+  // a turns about z over b, 0.3 apart throughout; at ½, and at the start, it is parallel to b.
+  for (const double from : {-1.0, 0.0}) {
+    PairPath path = still({Vec3(-1, -from, 0.3), Vec3(1, from, 0.3), Vec3(-1, 0, 0), Vec3(1, 0, 0)});
+    path.t1[0].y() = -1.0;
+    path.t1[1].y() = 1.0;
+    for (const double sign : {1.0, -1.0}) {
+      for (auto* ends : {&path.t0, &path.t1}) (*ends)[0].z() = (*ends)[1].z() = sign * 0.3;
+      const Penalty p = compute_edge_edge_penalty(path, false, 0.0);
+      EXPECT_EQ(p.num_intervals, 0) << from;
+      EXPECT_EQ(p.integral, Vec3::Zero()) << from;
+    }
+  }
+}
+
+TEST(EdgeEdgePenalty, EdgesThatAreParallelForAMomentStayInside) {
+  // a turns likewise while it goes down, z = ¼ − t: inside from ¼, parallel at ½. ∫ (¼ − t) dt = −(¾)²/2.
+  PairPath path = still({Vec3(-1, -1, 0.25), Vec3(1, 1, 0.25), Vec3(-1, 0, 0), Vec3(1, 0, 0)});
+  path.t1[0] = Vec3(-1, 1, -0.75);
+  path.t1[1] = Vec3(1, -1, -0.75);
+  const Penalty p = compute_edge_edge_penalty(path, false, 0.0);
+  ASSERT_EQ(p.num_intervals, 1);
+  EXPECT_NEAR(p.intervals[0].begin, 0.25, kRound);
+  EXPECT_EQ(p.intervals[0].end, 1.0);
+  EXPECT_NEAR((p.integral - Vec3(0, 0, -0.28125)).norm(), 0.0, kRound);
+  EXPECT_GT(p.orientation * (path.t1[1] - path.t1[0]).cross(path.t1[3] - path.t1[2]).z(), 0.0);
+}
+
 }  // namespace
 }  // namespace argil::contact

@@ -171,14 +171,64 @@ TEST(Slide, OverFacetsTheForceIsContinuousWhenBlended) {
   EXPECT_GT(measure_largest_change(nearest, 1e-5), 0.5 * measure_largest_change(nearest, 1e-4));
 }
 
-TEST(Discrete, CountsTheDepthAtTheEndOfTheTickAndMissesWhatWentThrough) {
-  // One tool vertex over a flat face, by hand: from 1 mm above to 1 mm below, a quarter mm mean depth, 1 mm
-  // at the end; at rest both count 1 mm.
-  mesh::TriangleMesh spike;  // one vertex down
+TEST(Press, EdgesThatPassedEachOtherBeyondAnEndPressFromWhereTheyMeet) {
+  // The body's upper edge goes in the plane x = 2 − 2t from (y, z) = (−½ − t, A − 3t/2) to (1, t), A = 3/16,
+  // and the tool's lower edge rests along x from −1 to 1. At y = 0 the former is (t − ¼)(t − ¾)/(3/2 + t)
+  // high: it passes the tool beyond its end, and comes up into it at t = ¾. Both ends stay outside.
+  const auto tetrahedron = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    mesh::TriangleMesh mesh;
+    mesh.vertices.resize(3, 4);
+    mesh.vertices << a, b, c, d;
+    const bool is_right_handed = (b - a).cross(c - a).dot(d - a) > 0.0;
+    mesh.triangles.resize(3, 4);
+    mesh.triangles << 0, 0, 0, 1, 2, 1, 3, 2, 1, 3, 2, 3;
+    if (!is_right_handed) mesh.triangles.row(1).swap(mesh.triangles.row(2));
+    return mesh;
+  };
+  const mesh::TriangleMesh tool = tetrahedron(Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -3, 2), Vec3(0, 0.3, 2));
+  const auto body_at = [&](double t) {
+    const double x = 2.0 - 2.0 * t;
+    return tetrahedron(Vec3(x, -0.5 - t, 0.1875 - 1.5 * t), Vec3(x, 1, t), Vec3(x - 0.3, 0, -2),
+                       Vec3(x + 0.3, 0, -2));
+  };
+  ContactDetector detector(body_at(0.0).triangles, 4, tool, {kK, kK});
+  Contacts contacts;
+  detector.find_contacts(body_at(0.0).vertices, body_at(1.0).vertices, {}, {}, contacts);
+  // Depth along the common normal (0, A − 5t/2, 3/2 + t) of both edges, out of the body.
+  Vec3 sum = Vec3::Zero();
+  constexpr int kPieces = 1000;
+  for (int i = 0; i < kPieces; ++i) {
+    const double t = 0.75 + 0.25 * (i + 0.5) / kPieces;
+    const Vec3 n(0.0, 0.1875 - 2.5 * t, 1.5 + t);
+    sum += 0.25 / kPieces * (t - 0.25) * (t - 0.75) / n.squaredNorm() * n;
+  }
+  ASSERT_EQ(contacts.contacts.size(), 1U);
+  // Midpoints: the square of a piece over 24, times the second derivative, which is near 1.
+  EXPECT_NEAR((contacts.force_on_tool - kK * sum).norm(), 0.0, 1e-7 * kK * sum.norm());
+}
+
+/// One vertex down, at the hand's point.
+mesh::TriangleMesh make_spike() {
+  mesh::TriangleMesh spike;
   spike.vertices.resize(3, 4);
   spike.vertices << 0, 0.004, -0.002, -0.002, 0, 0, 0.0035, -0.0035, 0, 0.02, 0.02, 0.02;
   spike.triangles.resize(3, 4);
   spike.triangles << 0, 0, 0, 1, 2, 3, 1, 2, 1, 2, 3, 3;
+  return spike;
+}
+
+/// The same surface, its vertices and triangles counted from the other end.
+mesh::TriangleMesh renumber(const mesh::TriangleMesh& mesh) {
+  mesh::TriangleMesh other;
+  other.vertices = mesh.vertices.rowwise().reverse();
+  other.triangles = (mesh.num_vertices() - 1) - mesh.triangles.rowwise().reverse().array();
+  return other;
+}
+
+TEST(Discrete, CountsTheDepthAtTheEndOfTheTickAndMissesWhatWentThrough) {
+  // One tool vertex over a flat face, by hand: from 1 mm above to 1 mm below, a quarter mm mean depth, 1 mm
+  // at the end; at rest both count 1 mm.
+  const mesh::TriangleMesh spike = make_spike();
   for (const bool is_discrete : {false, true}) {
     ContactParams params{kK, kK};
     params.penalty = is_discrete ? PenaltyKind::discrete : PenaltyKind::continuous;
@@ -193,6 +243,62 @@ TEST(Discrete, CountsTheDepthAtTheEndOfTheTickAndMissesWhatWentThrough) {
     scene.move(Vec3(0.011, 0.007, -0.2));
     EXPECT_EQ(scene.force().norm() > 0.1, !is_discrete);
   }
+}
+
+TEST(Discrete, AboveAGrooveOrAPitTheForceIsTheDistanceAndPrefersNoFace) {
+  // The place nearest to a point below the bottom is the bottom itself: the force is k times the distance,
+  // straight up, however the faces that meet there are numbered and split.
+  ContactParams params{kK, 0.0};
+  params.penalty = PenaltyKind::discrete;
+  const auto groove = [](double x, double) { return 0.5 * std::abs(x); };
+  const auto pit = [](double x, double y) { return 0.5 * std::abs(x) + 0.3 * std::abs(y); };
+  for (const bool is_pit : {false, true}) {
+    const mesh::TriangleMesh body = is_pit ? make_slab(4, 0.04, 0.02, pit) : make_slab(4, 0.04, 0.02, groove);
+    const Vec3 bottom(0.0, is_pit ? 0.0 : 0.0037, 0.0);
+    for (const mesh::TriangleMesh& numbered : {body, renumber(body)}) {
+      Scene scene(numbered, make_spike(), bottom + Vec3(0, 0, 0.001));
+      scene.detector = ContactDetector(numbered.triangles, numbered.num_vertices(), make_spike(), params);
+      scene.move(bottom - Vec3(0, 0, 0.001));
+      int num_of_tip = 0;
+      for (const Contact& c : scene.contacts.contacts) {
+        if (c.vertex[1] < 0) continue;  // the pit's own vertex, in the tool
+        EXPECT_NEAR((c.force - Vec3(0, 0, -kK * 1e-3)).norm(), 0.0, 1e-15) << is_pit;
+        EXPECT_NEAR(c.end_force, kK * 1e-3, 1e-15);
+        ++num_of_tip;
+      }
+      EXPECT_EQ(num_of_tip, 1) << is_pit;
+    }
+  }
+}
+
+TEST(Discrete, TheForceIsTheSameHoweverTheBodyIsNumbered) {
+  // Over hills and hollows, where a vertex often lies below the edge of two faces.
+  const auto waves = [](double x, double y) { return 0.004 * std::sin(180.0 * x) * std::cos(150.0 * y); };
+  const mesh::TriangleMesh body = make_slab(20, 0.1, 0.02, waves);
+  ContactParams params{kK, 0.0};
+  params.penalty = PenaltyKind::discrete;
+  params.damping = 0.5;
+  params.friction = 0.3;
+  const mesh::TriangleMesh tool = make_sphere_tool(kR, 2);
+  const Vec3 start(-0.02, 0.0017, 0.02);
+  Scene here(body, tool, start);
+  Scene there(renumber(body), tool, start);
+  for (Scene* scene : {&here, &there})
+    scene->detector = ContactDetector(scene->body.triangles, scene->body.num_vertices(), tool, params);
+  double largest = 0.0;
+  for (int i = 0; i <= 300; ++i) {
+    const Vec3 place(-0.02 + 1.3e-4 * i, 0.0017 + 2e-5 * i, std::max(kR - 1e-4, 0.02 - 1e-3 * i));
+    for (Scene* scene : {&here, &there}) {
+      scene->detector.find_contacts(scene->body.vertices, scene->body.vertices, scene->pose, Pose{place},
+                                    scene->contacts, {}, 1e-3);
+      scene->pose.position = place;
+    }
+    const Vec3 difference =
+        here.force() + here.contacts.resistance_on_tool - there.force() - there.contacts.resistance_on_tool;
+    largest = std::max(largest, here.force().norm());
+    EXPECT_NEAR(difference.norm(), 0.0, 1e-12 * kK) << i;
+  }
+  EXPECT_GT(largest, 0.5);
 }
 
 }  // namespace

@@ -86,6 +86,23 @@ TEST(ChatterWatch, DoesNotCountWhatIsSmallBesideTheTouchBefore) {
   EXPECT_TRUE(find_chatter(after_a_press(0.4), 3.0));
 }
 
+TEST(ChatterWatch, DoesNotCountWhatNoHandFeels) {
+  // The floor is an rms of 2 mN above 50 Hz: a sine of 2.83 mN, whatever its share of the force. Far above
+  // 50 Hz the filter lets all of it through.
+  const auto alone = [](double newton, double frequency) {
+    return [=](double t) { return newton * std::sin(2.0 * std::numbers::pi * frequency * t); };
+  };
+  constexpr double kLeastAmplitude = 2e-3 * std::numbers::sqrt2;
+  EXPECT_FALSE(find_chatter(alone(1e-9, 200.0), 3.0));
+  EXPECT_FALSE(find_chatter(alone(0.98 * kLeastAmplitude, 250.0), 3.0));
+  EXPECT_TRUE(find_chatter(alone(1.02 * kLeastAmplitude, 250.0), 3.0));
+  // A share of 0.3 and more of a force of a few millinewton.
+  const Force tiny = [](double t) { return 2e-3 + 1e-3 * std::sin(2.0 * std::numbers::pi * 100.0 * t); };
+  EXPECT_FALSE(find_chatter(tiny, 3.0));
+  const Force a_thousandfold = [&](double t) { return 1000.0 * tiny(t); };
+  EXPECT_TRUE(find_chatter(a_thousandfold, 3.0));
+}
+
 TEST(ChatterWatch, SeesNothingWhereItIsOffOrHasNoSuchFrequencies) {
   EXPECT_FALSE(find_chatter(tremble(2.0, 200.0), 3.0, 1.0));
   ChatterWatch slow(kLimit, 0.01);

@@ -67,6 +67,18 @@ TEST(Plugin, IsStaleWhileItTalksNonsense) {
   EXPECT_GT(device->counts().refused, 0);
 }
 
+TEST(Plugin, IsNeverReadyWhileItsSamplesAreBeyondAKilometre) {
+  // It rests 0.037 m from its origin: 37 km away at this scale.
+  DeviceOptions options;
+  options.device_to_world.scale = 1e6;
+  const auto device = make_device(kPlugin, options);
+  device->start();
+  EXPECT_TRUE(
+      tick_until(*device, Vec3::Zero(), [&](const DevicePoll&) { return device->counts().refused > 10; }));
+  EXPECT_EQ(device->poll().state, DeviceState::connecting);
+  EXPECT_EQ(device->poll().number, 0);
+}
+
 TEST(Plugin, RefusesFilesThatAreNone) {
   const test::TempFolder folder;
   const std::string text = folder.write("text.so", "no library");

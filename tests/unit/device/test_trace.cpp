@@ -127,6 +127,9 @@ TEST(ReadTraceCsv, RefusesAPlaceBeyondAKilometreByItsLine) {
     expect_refused("t,x,y,z\n0,0,0,0\n1,0," + far + ",0\n", "line 3", "m from the origin, more than 1000 m");
   expect_refused("# argil-trace: 1\n# units: mm\nt,x,y,z\n0,0,0,0\n1,0,2000000,0\n", "line 5",
                  "place 2000 m from the origin");
+  // Infinite in the world, and no number once it is turned.
+  expect_refused("# argil-trace: 1\n# device_to_world_scale: 1e308\nt,x,y,z\n0,0,0,0\n1,0,20,0\n", "line 5",
+                 "m from the origin");
 }
 
 TEST(ReadTraceCsv, RefusesBadNumbersByLineAndColumn) {

@@ -67,6 +67,35 @@ TEST(ResultReader, GivesBackEveryHapticRecordToTheBit) {
   }
 }
 
+TEST(ResultReader, RefusesASessionThatWentBeyondAKilometre) {
+  const TempFolder folder;
+  const auto write = [&](double start, double third) {
+    ResultFile file(folder / "r.h5", test::make_header());
+    SessionHead head;
+    head.start.position = Vec3(start, 0.0, 0.0);
+    file.begin_session(head, false);
+    for (Tick tick = 0; tick < 4; ++tick) {
+      sim::HapticRecord record = test::make_haptic(tick);
+      if (tick == 2) record.tool_position = Vec3(0.0, third, 0.0);
+      file.append(SessionTick{});
+      file.append(record);
+    }
+    file.finish(std::nullopt);
+  };
+  write(-1000.0, 1000.0);
+  const auto session = ResultReader(folder / "r.h5").find_session();
+  ASSERT_TRUE(session);
+  EXPECT_EQ(session->samples[2].position.y(), 1000.0);
+  for (const double far : {1000.1, -1e155, std::nan("")}) {
+    write(0.0, far);
+    ARGIL_EXPECT_THROW_WITH(ResultReader(folder / "r.h5").find_session(), InputError,
+                            "/haptic/tool_position, row 2");
+    write(far, 0.0);
+    ARGIL_EXPECT_THROW_WITH(ResultReader(folder / "r.h5").find_session(), InputError,
+                            "/session/start_position");
+  }
+}
+
 TEST(ResultReader, GivesBackEveryPhysicsRecord) {
   const TempFolder folder;
   test::write_run(folder / "r.h5", 600);
