@@ -122,6 +122,9 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const mesh::Box& 
   sort_entries(body_vertices.entries);
   std::sort(edge_pairs.begin(), edge_pairs.end(),
             [](const EdgePair& a, const EdgePair& b) { return a.key() < b.key(); });
+  edge_pairs.erase(std::unique(edge_pairs.begin(), edge_pairs.end(),
+                               [](const EdgePair& a, const EdgePair& b) { return a.key() == b.key(); }),
+                   edge_pairs.end());
 }
 
 /// A body's face with its vertices and edges against those of the tool's faces near it.
@@ -183,8 +186,9 @@ void ContactDetector::Impl::test_vertices(int body_face, const Motion& motion, W
   }
 }
 
-/// The edges that a body's face owns. One that stays farther from the tool's centre than `reach`, or is
-/// concave throughout, can bear no force.
+/// The edges of a body's face with those of the tool's faces near it. A pair that is already inside may have
+/// only some of its faces near each other, so it is found by any of them. One that stays farther from the
+/// tool's centre than `reach`, or is concave throughout, can bear no force.
 void ContactDetector::Impl::test_edges(int body_face, double reach, const Motion& motion, Worker& worker) {
   const SurfaceAt body_t0{body, motion.body_t0, motion.body_t0},
       body_t1{body, motion.body_t1, motion.body_t1};
@@ -193,11 +197,14 @@ void ContactDetector::Impl::test_edges(int body_face, double reach, const Motion
   std::vector<int>& tool_features = worker.tool_features;
   tool_features.clear();
   for (const int face : worker.tool_candidates)
-    for (const int edge : tool.triangle_edges.col(face))
-      if (tool.edge_owner[static_cast<std::size_t>(edge)] == face) tool_features.push_back(edge);
+    for (const int edge : tool.triangle_edges.col(face)) {
+      const int owner = tool.edge_owner[static_cast<std::size_t>(edge)];
+      if (owner == face || std::find(worker.tool_candidates.begin(), worker.tool_candidates.end(), owner) ==
+                               worker.tool_candidates.end())
+        tool_features.push_back(edge);
+    }
   FourPairs pairs;
   for (const int body_edge : body.triangle_edges.col(body_face)) {
-    if (body.edge_owner[static_cast<std::size_t>(body_edge)] != body_face) continue;
     if (is_concave(body_t0, body_edge) && is_concave(body_t1, body_edge)) continue;
     const EdgePath b(motion.body_t0, motion.body_t1, body.edges.col(body_edge));
     if (b.swept().squared_distance(centre_t0) > reach * reach) continue;
