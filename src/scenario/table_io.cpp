@@ -138,6 +138,12 @@ void require_below(Json& schema, const std::string& pointer) {
   if (end != std::string::npos) require_below(schema["properties"][key], pointer.substr(end));
 }
 
+std::string describe_default(const Parameter& row) {
+  if (!row.required) return "`" + row.write().dump() + "`";
+  if (row.applies && !row.applies()) return "required where it counts";
+  return is_of_motion(row.pointer) ? "required unless static" : "required";
+}
+
 }  // namespace
 
 std::string to_string(const Range& range, bool is_whole) {
@@ -170,12 +176,16 @@ std::string print_schema() {
   Scenario defaults;
   std::vector<Parameter> rows = make_parameter_table(defaults, "scenario.json");
   Json of_motion = Json::object();
+  Json of_pairs = Json::object();  // of the contact's law that is not the default
   for (Parameter& row : rows) {
     if (!row.required || !is_of_motion(row.pointer)) continue;
     row.required = false;
     row.write = nullptr;  // still no default
-    require_below(of_motion, row.pointer);
+    require_below(row.applies && !row.applies() ? of_pairs : of_motion, row.pointer);
   }
+  of_motion["properties"]["contact"] = {
+      {"if", {{"required", {"law"}}, {"properties", {{"law", {{"const", "pairs"}}}}}}},
+      {"then", of_pairs["properties"]["contact"]}};
   Json schema = make_schema(rows);
   schema["if"] = {
       {"required", {"dynamics"}},
@@ -202,9 +212,7 @@ std::string print_reference() {
       if (row.type == ValueType::number || row.type == ValueType::integer)
         allowed = to_string(row.range, row.type == ValueType::integer);
       page << "| `" << prefix << row.pointer << "` | " << row.unit << " | " << allowed << " | "
-           << (row.required ? (is_of_motion(row.pointer) ? "required unless static" : "required")
-                            : "`" + row.write().dump() + "`")
-           << " | " << row.doc << " |\n";
+           << describe_default(row) << " | " << row.doc << " |\n";
       if (row.item) self(row.item(), prefix + row.pointer + "/N", self);
     }
   };

@@ -72,9 +72,13 @@ class Schema(unittest.TestCase):
             self.assertTrue(any(word in error for error in errors), f"{pointer}: {errors}")
 
     def test_demands_what_a_run_needs(self):
-        for key in ("about", "material", "contact", "trace", "body"):
+        for key in ("about", "material", "trace", "body"):
             without = {name: value for name, value in self.scenario.items() if name != key}
             self.assertFalse(self.validator.is_valid(without), key)
+        stiffness = {"vertex_face_stiffness_N_per_m": 1, "edge_edge_stiffness_N_per_m": 1}
+        for contact, is_valid in [({}, True), ({"law": "pressure"}, True), ({"law": "pairs"}, False),
+                                  ({"law": "pairs", **stiffness}, True)]:
+            self.assertEqual(self.validator.is_valid({**self.scenario, "contact": contact}), is_valid, contact)
         static = {name: value for name, value in self.scenario.items() if name not in ("contact", "trace", "tool")}
         static["dynamics"] = {"mode": "static"}
         self.assertTrue(self.validator.is_valid(static))
