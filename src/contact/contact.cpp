@@ -37,6 +37,7 @@ double find_inner_radius(const SurfaceAt& convex, const Vec3& centre) {
 
 void Contacts::clear() {
   contacts.clear();
+  near.clear();
   touched_triangle.clear();
   touched_area.clear();
   sum_reactions(Vec3::Zero());

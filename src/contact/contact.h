@@ -47,6 +47,9 @@ struct Contact {
 /// What one detection over [t₀, t₁] found, in an order that depends on the meshes alone.
 struct Contacts {
   std::vector<Contact> contacts;
+  /// Of a pressure that a step solves for: points near the tool that press where the body comes to it, with
+  /// `force` + `stiffness` · way. `force` is along −`normal` and acts on nothing.
+  std::vector<Contact> near;
   bool with_touched = true;                ///< asked by the caller: also find the touched area (costs time)
   std::vector<int> touched_triangle;       ///< body triangles with an inside point, increasing
   std::vector<double> touched_area;        ///< [m²] part of each that lies inside the tool

@@ -73,7 +73,7 @@ void PressureContact::find_faces(const Points& x) {
     if (m_passage && facing_share(m_passage->inward, face.normal) == 0.0) continue;
     const double longest = std::sqrt(std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()}));
     face.size = std::max(0.5 * longest, std::sqrt(4.0 / std::numbers::sqrt3 * face.area));
-    face.whole = measure_cover(face, kWhole, 0);
+    face.whole = measure_cover(face, kWhole, 0, find_sag(face));
     if (face.whole.area > 0.0 || face.whole.may_touch) m_faces.push_back(face);
   }
 }
@@ -85,9 +85,20 @@ PressureContact::Cover& PressureContact::Cover::operator+=(const Cover& other) {
   return *this;
 }
 
+/// How far the corners of a face may lie outside the tool that count as covered [m]: a half more than those
+/// of a regular triangle whose middle touches a ball like the tool. So the area that is covered is the same
+/// whether the corners or points between them hold the face up, and steps do not change it back and forth.
+double PressureContact::find_sag(const Face& face) const {
+  if (m_yielding == Yielding::no || m_passage) return 0.0;
+  const double side = face.size;
+  return std::min(0.25 * side * side / m_tool.radius(), 0.15 * side);
+}
+
 /// Of a piece of a triangle, the distance taken as linear on its pieces of `level`. As the distance changes
 /// by no more than the point moves, a piece whose centre is farther than its corners is wholly on one side.
-PressureContact::Cover PressureContact::measure_cover(const Face& face, const Piece& piece, int level) {
+/// `grown`: of a tool that is so much larger [m].
+PressureContact::Cover PressureContact::measure_cover(const Face& face, const Piece& piece, int level,
+                                                      double grown) {
   const Vec3 centre = face.at(centre_of(piece));
   std::array<Vec3, 3> x;
   double reach = 0.0;
@@ -95,7 +106,8 @@ PressureContact::Cover PressureContact::measure_cover(const Face& face, const Pi
     x[k] = face.at(piece[k]);
     reach = std::max(reach, (x[k] - centre).norm());
   }
-  const LeastDistance found = find_least_distance(centre, reach);
+  LeastDistance found = find_least_distance(centre, reach + grown);
+  found.distance -= grown;
   if (found.distance >= reach) return {};
   const bool is_inside = found.distance <= -reach;
   if (level > 0 && !is_inside) {
@@ -109,7 +121,8 @@ PressureContact::Cover PressureContact::measure_cover(const Face& face, const Pi
   if (!is_inside) {
     std::array<double, 3> distance;
     for (std::size_t k = 0; k < 3; ++k) {
-      const LeastDistance corner = find_least_distance(x[k], kAnywhere);
+      LeastDistance corner = find_least_distance(x[k], kAnywhere);
+      corner.distance -= grown;
       distance[k] = corner.distance;
       if (!(corner.distance < deepest.distance) || found.distance < 0.0) continue;
       deepest = corner;
@@ -147,7 +160,8 @@ double PressureContact::find_patch_radius() {
 void PressureContact::add_contact(const std::array<int, 3>& vertex, const Vec3& weight,
                                   const PointDepth& depth, double area, double stiffness, const Vec3& point,
                                   Contacts& out) const {
-  if (!((depth.mean > 0.0 || depth.begin > 0.0) && stiffness > 0.0)) return;
+  const bool touches = depth.mean > 0.0 || depth.begin > 0.0;
+  if (!(stiffness > 0.0) || (!touches && !finds_near())) return;
   Contact c;
   c.vertex = vertex;
   c.weight = {weight(0), weight(1), weight(2)};
@@ -161,7 +175,13 @@ void PressureContact::add_contact(const std::array<int, 3>& vertex, const Vec3& 
   c.begin_force = stiffness * std::max(0.0, depth.begin);
   c.area = area;
   c.point = point;
-  out.contacts.push_back(c);
+  if (touches) {
+    out.contacts.push_back(c);
+  } else {
+    c.force = stiffness * depth.end * depth.outward;
+    c.stiffness = stiffness;
+    out.near.push_back(c);
+  }
 }
 
 void PressureContact::press_corners(const Face& face, double share) {
@@ -194,7 +214,7 @@ PressureContact::Cover PressureContact::press_pieces(const Face& face, const Pie
   }
   const bool yields = m_yielding == Yielding::yes;
   const PointDepth depth = yields ? find_depth(x) : find_held_depth(x, face.normal);
-  if (depth.mean > 0.0 || depth.begin > 0.0) {
+  if (depth.mean > 0.0 || depth.begin > 0.0 || finds_near()) {
     const Vec3 a = face.at(piece[1]) - face.at(piece[0]);
     const Vec3 b = face.at(piece[2]) - face.at(piece[0]);
     const double area = share * 0.5 * a.cross(b).norm() * facing_share(depth.outward, face.normal);

@@ -126,7 +126,8 @@ class PressureContact {
   void place_tool(const Pose& pose_t0, const Pose& pose_t1);
   void find_faces(const Points& x);
   double find_patch_radius();
-  Cover measure_cover(const Face& face, const Piece& piece, int level);
+  double find_sag(const Face& face) const;
+  Cover measure_cover(const Face& face, const Piece& piece, int level, double grown = 0.0);
   Cover measure_cover(const Face& face, int level) {
     return level == 0 ? face.whole : measure_cover(face, kWhole, level);
   }
@@ -147,6 +148,7 @@ class PressureContact {
                    double stiffness, const Vec3& point, Contacts& out) const;
   void press_all_corners(const Points& x, Contacts& out);
   double stiffness_of(const Face& face) const;
+  bool finds_near() const { return m_is_solved_for && m_yielding == Yielding::yes && !m_passage; }
   double find_held_stiffness() const;
   void hold_shape(Contacts& out) const;
   static double facing_share(const Vec3& outward, const Vec3& normal);

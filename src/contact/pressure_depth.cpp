@@ -165,7 +165,7 @@ PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
   const double far = m_places.size() > 1 ? m_way / pieces : 0.0;
   ToolDistance before = find_distance(p, m_places.front(), far);
   point.begin = point.end = -before.distance;
-  if (m_places.size() == 1)
+  if (m_places.size() == 1 && (point.end > 0.0 || !finds_near()))
     return {std::max(0.0, point.end), point.end, point.end, point.end > 0.0 ? 1.0 : 0.0, before.outward};
   point.outward = std::max(0.0, point.end) * before.outward;
   const std::size_t last = m_places.size() - 1;
@@ -188,7 +188,15 @@ PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
     point.share = 1.0;
   }
   const double length = point.outward.norm();
-  point.outward = length > 0.0 ? Vec3(point.outward / length) : before.outward;
+  if (length > 0.0) {
+    point.outward /= length;
+  } else if (finds_near()) {
+    const ToolDistance end = find_distance(p, m_places.back());
+    point.end = -end.distance;
+    point.outward = end.outward;
+  } else {
+    point.outward = before.outward;
+  }
   return point;
 }
 

@@ -34,7 +34,8 @@ void SurfaceFriction::take_over(const Points& x_t0, const Points& x_t1, const Co
   for (std::size_t i = 0; i < m_state.vertex.size(); ++i)
     m_place[static_cast<std::size_t>(m_state.vertex[i])] = static_cast<int>(i);
   std::vector<int>& vertices = m_next.vertex;
-  for (const Contact& c : contacts.contacts) each_vertex(c, [&](int v, double) { vertices.push_back(v); });
+  for (const std::vector<Contact>* list : {&contacts.contacts, &contacts.near})
+    for (const Contact& c : *list) each_vertex(c, [&](int v, double) { vertices.push_back(v); });
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   for (const int v : vertices) {
@@ -58,24 +59,23 @@ Vec3 SurfaceFriction::find_stretch(const Contact& contact) const {
   return along_surface(stretch, contact.normal);
 }
 
-/// What a vertex's points carried at the end of the last interval: no more than Coulomb's law allows.
+/// Where all of a vertex's points have slid, its stretch is that at which the last of them does: those that
+/// are pressed less are limited by the step. A mean would let the hardest pressed ones stick while the tool
+/// slides.
 void SurfaceFriction::limit_stretch(const Contacts& contacts) {
   m_limits.assign(m_state.vertex.size(), {});
-  for (const Contact& c : contacts.contacts) {
-    const double carried = c.spring * find_stretch(c).norm();
+  for (const Contact& c : contacts.contacts)
     each_vertex(c, [&](int v, double weight) {
+      if (!(weight > 0.0)) return;
       Limit& limit = m_limits[static_cast<std::size_t>(m_place[static_cast<std::size_t>(v)])];
-      limit.pressing += weight * c.begin_force;
-      limit.carried += weight * carried;
+      limit.stretch = std::max(limit.stretch, m_friction * c.begin_force / c.spring);
       limit.normal += weight * c.spring * c.normal;
     });
-  }
   for (std::size_t i = 0; i < m_limits.size(); ++i) {
-    Limit& limit = m_limits[i];
+    const Limit& limit = m_limits[i];
     Vec3& stretch = m_state.stretch[i];
     if (!limit.normal.isZero(0.0)) stretch = along_surface(stretch, limit.normal.normalized());
-    const double most = m_friction * limit.pressing;
-    if (limit.carried > most) stretch *= most / limit.carried;
+    if (const double length = stretch.norm(); length > limit.stretch) stretch *= limit.stretch / length;
   }
 }
 
@@ -88,10 +88,11 @@ void SurfaceFriction::stretch(const Points& x_t0, const Points& x_t1, const Pose
     const Vec3 x = x_t1.col(m_state.vertex[i]);
     m_state.stretch[i] += pose_t1.position + turn * (x - pose_t0.position) - x;
   }
-  for (Contact& c : contacts.contacts) {
-    c.friction = m_friction;
-    c.resistance = c.stiffness * find_stretch(c);
-  }
+  for (std::vector<Contact>* list : {&contacts.contacts, &contacts.near})
+    for (Contact& c : *list) {
+      c.friction = m_friction;
+      c.resistance = c.stiffness * find_stretch(c);
+    }
   contacts.sum_reactions(pose_t1.position);
   for (const int v : m_state.vertex) m_place[static_cast<std::size_t>(v)] = -1;
 }

@@ -31,9 +31,8 @@ class SurfaceFriction {
     std::vector<Vec3> stretch;  // of their springs [m]
   };
   struct Limit {
-    double pressing = 0.0;       // Σ of the points' normal forces at the start [N], by weight
-    double carried = 0.0;        // Σ of what their springs carry [N], likewise
-    Vec3 normal = Vec3::Zero();  // their direction
+    double stretch = 0.0;        // at which the spring of the hardest pressed of its points slides [m]
+    Vec3 normal = Vec3::Zero();  // of its points, by weight and spring
   };
 
   void take_over(const Points& x_t0, const Points& x_t1, const Contacts& contacts);

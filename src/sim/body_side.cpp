@@ -72,7 +72,7 @@ void BodySide::begin_step(const ContactLoad& load, StepResult& result) {
   result.stiffness.clear();
   result.friction.setZero();
   for (const solid::PointStiffness& entry : load.stiffness)
-    if (entry.friction > 0.0) result.friction -= entry.force;
+    if (entry.friction > 0.0 && !entry.is_near) result.friction -= entry.force;
 }
 
 void BodySide::commit() {

@@ -114,15 +114,25 @@ int LoadCollector::add_stiffness(const contact::Contact& c, const Vec3& force, b
   return group;
 }
 
-void LoadCollector::add_friction(const contact::Contact& c, std::size_t first) {
+void LoadCollector::add_pressure(const contact::Contact& c, bool is_near, const Points& x) {
+  const std::size_t first = m_load.stiffness.size();
+  add_stiffness_along(c, c.normal, m_share * c.stiffness, 0.0, x);
   const std::size_t end = m_load.stiffness.size();
+  const auto part = [&](std::size_t i) { return m_share * (end - first == 1 ? 1.0 : c.weight[i - first]); };
   for (std::size_t i = first; i < end; ++i) {
+    solid::PointStiffness& entry = m_load.stiffness[i];
+    entry.force = part(i) * c.force;
+    entry.group = static_cast<int>(i);
+    entry.counts = entry.is_alone = true;
+    entry.is_near = is_near;
+  }
+  for (std::size_t i = first; c.friction > 0.0 && i < end; ++i) {
     solid::PointStiffness entry = m_load.stiffness[i];
-    const double part = end - first == 1 ? 1.0 : c.weight[i - first];
-    entry.counts = false;
+    entry.counts = entry.is_alone = false;
+    entry.group = -1;
     entry.friction = c.friction;
     entry.partner = static_cast<int>(i);
-    entry.force = m_share * part * c.resistance;
+    entry.force = part(i) * c.resistance;
     m_load.stiffness.push_back(entry);
     m_load.levers.push_back({m_load.levers[i].point, 0.0});
   }
@@ -131,8 +141,9 @@ void LoadCollector::add_friction(const contact::Contact& c, std::size_t first) {
 void LoadCollector::serialize(Archive& archive) {
   m_load.serialize(archive);
   if (m_params.contact.law != contact::ContactLaw::pressure) return;
-  archive.records("load/friction", m_load.stiffness,
-                  [](solid::PointStiffness& s, auto field) { field(s.friction), field(s.partner); });
+  archive.records("load/pressure", m_load.stiffness, [](solid::PointStiffness& s, auto field) {
+    field(s.is_alone), field(s.is_near), field(s.friction), field(s.partner);
+  });
 }
 
 void LoadCollector::add_bond(const contact::Contact& bond, const Points& x) {

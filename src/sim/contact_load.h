@@ -85,9 +85,9 @@ class LoadCollector {
   /// How a contact's force changes as the body moves on. `force`: on the body, by its share of the step; `x`:
   /// the touched surface's vertices [m]. Returns the group of contacts with which it is let go; −1: none.
   int add_stiffness(const contact::Contact& contact, const Vec3& force, bool pushes, const Points& x);
-  /// The friction of the contact whose entries of stiffness begin at `first`: solved for with the step.
-  void add_friction(const contact::Contact& contact, std::size_t first);
-  std::size_t num_entries() const { return m_load.stiffness.size(); }
+  /// The same of a pressure, each of whose entries falls to zero by itself, and of its friction, which is
+  /// solved for with the step. `is_near`: it does not press yet.
+  void add_pressure(const contact::Contact& contact, bool is_near, const Points& x);
   /// How a bond's force changes as the body moves on: alike in all directions, whether it pushes or draws.
   void add_bond(const contact::Contact& bond, const Points& x);
   /// A force on the body that no contact of the present has: for a whole step.

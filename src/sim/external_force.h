@@ -22,6 +22,10 @@ class ExternalForce {
   void set_contacts(const ContactLoad& load, const ContactSurface& surface) {
     m_contacts.clear();
     for (const SurfaceForce& force : load.forces) surface.add_force(force, m_contacts);
+    for (const solid::PointStiffness& entry : load.stiffness)  // a step may make these press, too
+      if (entry.is_near)
+        m_contacts.nodes.insert(m_contacts.nodes.end(), entry.vertex.begin(),
+                                entry.vertex.begin() + static_cast<std::ptrdiff_t>(entry.count()));
     m_contacts.list();
     if (load.scale == 1.0) return;
     for (const int n : m_contacts.nodes) m_contacts.at.col(n) *= load.scale;

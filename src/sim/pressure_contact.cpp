@@ -89,10 +89,9 @@ void HandSide::gather_pressure() {
       m_collector.add_bond(c, m_touched.x_t0());
       continue;
     }
-    const std::size_t first = m_collector.num_entries();
-    m_collector.add_stiffness(c, m_collector.share() * c.force, true, m_touched.x_t0());
-    if (c.friction > 0.0) m_collector.add_friction(c, first);
+    m_collector.add_pressure(c, false, m_touched.x_t0());
   }
+  for (const contact::Contact& c : m_contacts.near) m_collector.add_pressure(c, true, m_touched.x_t0());
 }
 
 }  // namespace argil::sim

@@ -24,6 +24,7 @@ Body::Body(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vecto
   scratch.product.setZero(3, num_nodes);
   scratch.left.resize(3, model.num_free());
   scratch.correction.resize(3, model.num_free());
+  contacts.search.delta.resize(3, model.num_free());
   if (may_lag_further(*this)) make_room_for_lag(*this);
   history.solver = linear::make_solver(
       params.iteration == Iteration::newton ? make_exact(params.solver) : params.solver, threads);

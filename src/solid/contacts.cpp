@@ -4,74 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "solid/body.h"
+#include "solid/contact_search.h"
 
 namespace argil::solid {
-
-namespace {
-
-constexpr int kRoundsWithReturn = 4;   // in which contacts that were let go may come back
-constexpr int kRoundsOfFriction = 30;  // in which the limits of friction may follow what presses
-constexpr double kConeTolerance = 1e-3;
-
-bool has_friction(std::span<const PointStiffness> contacts) {
-  return std::any_of(contacts.begin(), contacts.end(),
-                     [](const PointStiffness& c) { return c.friction > 0.0; });
-}
-
-/// What of the friction at `contact` a slip carries that a spring would carry with the force `trial`.
-Sliding make_sliding(const PointStiffness& contact, const Vec3& trial, double limit,
-                     const Vec3& displacement) {
-  const double length = trial.norm();
-  const Vec3 along = trial / length;
-  Sliding sliding{true, limit * along, contact.normal.cross(along), limit / length * contact.stiffness};
-  sliding.force += sliding.stiffness * sliding.across.dot(displacement) * sliding.across;
-  return sliding;
-}
-
-/// Sticks or slides every contact with friction anew. False where all carried what they may, but for the
-/// tolerance: then they stay as the step was solved with them.
-bool update_sliding(const StepContacts& contacts, const Points& x, ContactActivity& activity) {
-  double error = 0.0;
-  double sum = 0.0;
-  activity.next.resize(activity.sliding.size());
-  for (std::size_t i = 0; i < contacts.list.size(); ++i) {
-    const PointStiffness& c = contacts.list[i];
-    if (!(c.friction > 0.0) || !activity.is_acting(c.group)) continue;
-    const PointStiffness& partner = contacts.list[static_cast<std::size_t>(c.partner)];
-    const Vec3 u = contacts.displacement(i, x);
-    const double limit = c.friction * std::max(0.0, c.normal.dot(partner.force - partner.stiffness * u));
-    const Vec3 trial = c.force - c.stiffness * (u - c.normal.dot(u) * c.normal);
-    const Vec3 carried = c.force - contacts.compute_fall(i, x, activity);
-    Sliding& sliding = activity.next[i];
-    sliding = trial.norm() > limit ? make_sliding(c, trial, limit, u) : Sliding{};
-    const Vec3 right = sliding.is_sliding ? Vec3(limit / trial.norm() * trial) : trial;
-    error += (right - carried).norm();
-    sum += limit;
-  }
-  if (error <= kConeTolerance * sum) return false;
-  std::swap(activity.sliding, activity.next);
-  return true;
-}
-
-}  // namespace
 
 void ContactActivity::start(std::span<const PointStiffness> contacts) {
   acts.assign(contacts.size(), 1);
   num_updates = 0;
-  sliding.clear();
-  if (!has_friction(contacts)) return;
-  sliding.resize(contacts.size());
-}
-
-Mat3 StepContacts::stiffness(std::size_t i, const ContactActivity& activity) const {
-  const PointStiffness& c = list[i];
-  if (!(c.friction > 0.0)) return c.stiffness * c.normal * c.normal.transpose();
-  const Sliding& sliding = activity.sliding[i];
-  if (sliding.is_sliding) return sliding.stiffness * sliding.across * sliding.across.transpose();
-  return c.stiffness * (Mat3::Identity() - c.normal * c.normal.transpose());
+  search.num_rounds = 0;
+  are_alone = std::all_of(contacts.begin(), contacts.end(),
+                          [](const PointStiffness& c) { return c.group < 0 || c.is_alone; });
+  friction.clear();
+  if (are_alone) start_alone(contacts, *this);
 }
 
 Vec3 StepContacts::displacement(std::size_t i, const Points& x) const {
@@ -82,8 +28,16 @@ Vec3 StepContacts::displacement(std::size_t i, const Points& x) const {
   return mean;
 }
 
+Vec3 StepContacts::compute_trial(std::size_t i, const Points& x) const {
+  const PointStiffness& c = list[i];
+  const Vec3 u = displacement(i, x);
+  if (c.friction > 0.0) return c.force - c.stiffness * (u - c.normal.dot(u) * c.normal);
+  return c.normal.dot(c.force - c.stiffness * u) * c.normal;
+}
+
 bool update_active_contacts(const StepContacts& contacts, const Points& x, ContactActivity& activity) {
-  const bool may_return = ++activity.num_updates <= kRoundsWithReturn;
+  constexpr int kUpdatesWithReturn = 4;
+  const bool may_return = ++activity.num_updates <= kUpdatesWithReturn;
   activity.force.assign(contacts.list.size(), 0.0);
   for (std::size_t i = 0; i < contacts.list.size(); ++i) {
     const PointStiffness& c = contacts.list[i];
@@ -99,31 +53,39 @@ bool update_active_contacts(const StepContacts& contacts, const Points& x, Conta
     has_changed = has_changed || acts != acted;
     activity.acts[i] = acts ? 1 : 0;
   }
-  if (activity.sliding.empty() || activity.num_updates > kRoundsOfFriction) return has_changed;
-  return update_sliding(contacts, x, activity) || has_changed;
+  return has_changed;
+}
+
+Mat3 StepContacts::stiffness(std::size_t i, const ContactActivity& activity) const {
+  const PointStiffness& c = list[i];
+  if (!(c.friction > 0.0)) return c.stiffness * c.normal * c.normal.transpose();
+  const Friction& friction = activity.friction[i];
+  if (friction.is_sliding) return friction.stiffness * friction.across * friction.across.transpose();
+  return c.stiffness * (Mat3::Identity() - c.normal * c.normal.transpose());
 }
 
 Vec3 StepContacts::compute_fall(std::size_t i, const Points& x, const ContactActivity& activity) const {
   const PointStiffness& c = list[i];
-  if (!activity.is_acting(c.group)) return c.force;
+  const Vec3 not_given = c.is_near ? c.force : Vec3::Zero();
+  if (!activity.is_acting(c.group)) return c.force - not_given;
   if (c.friction > 0.0) {
     const Vec3 fall = stiffness(i, activity) * displacement(i, x);
-    const Sliding& sliding = activity.sliding[i];
-    return sliding.is_sliding ? Vec3(c.force - sliding.force + fall) : fall;
+    const Friction& friction = activity.friction[i];
+    return (friction.is_sliding ? Vec3(c.force - friction.force + fall) : fall) - not_given;
   }
-  return c.stiffness * c.normal.dot(displacement(i, x)) * c.normal;
+  return c.stiffness * c.normal.dot(displacement(i, x)) * c.normal - not_given;
 }
 
 double StepContacts::compute_potential(std::size_t i, const Points& x,
                                        const ContactActivity& activity) const {
+  const PointStiffness& c = list[i];
   const Vec3 u = displacement(i, x);
-  if (!activity.is_acting(list[i].group)) return list[i].force.dot(u);
-  if (list[i].friction > 0.0) {
-    const double spring = 0.5 * u.dot(stiffness(i, activity) * u);
-    const Sliding& sliding = activity.sliding[i];
-    return sliding.is_sliding ? spring + (list[i].force - sliding.force).dot(u) : spring;
+  if (activity.are_alone && (c.is_alone || c.friction > 0.0)) {
+    const double given = c.is_near ? 0.0 : c.force.dot(u);
+    return compute_potential_alone(c, compute_trial(i, x), activity, i) + given;
   }
-  return 0.5 * list[i].stiffness * std::pow(list[i].normal.dot(u), 2);
+  if (!activity.is_acting(c.group)) return c.force.dot(u);
+  return 0.5 * c.stiffness * std::pow(c.normal.dot(u), 2);
 }
 
 void add_contact_product(const StepContacts& contacts, const ContactActivity& activity, const Points& u,

@@ -9,24 +9,35 @@ namespace argil::solid {
 
 struct Body;
 
-/// A contact that slides: its force is `force` − c e e·(x − x₀), where e lies across its way. It turns with
-/// the motion, so that it is softer across the way the faster it slides.
-struct Sliding {
+/// Friction at a point: a spring that carries no more than `limit`. Where it slides, its force is `force` −
+/// c e e·(x − x₀), where e lies across its way: it turns with the motion, so that it is softer across the way
+/// the faster it slides.
+struct Friction {
+  double limit = 0.0;  ///< [N]
   bool is_sliding = false;
   Vec3 force = Vec3::Zero();   ///< [N]
   Vec3 across = Vec3::Zero();  ///< e, unit
   double stiffness = 0.0;      ///< c [N/m]
 };
 
-/// Which contacts act in the present step. Lists: at the number of each group's first entry.
-struct ContactActivity {
-  std::vector<char> acts;
-  std::vector<double> force;     ///< Σ n·f − k n·(x − x₀) [N]
-  std::vector<Sliding> sliding;  ///< of contacts with friction; empty where there are none
-  std::vector<Sliding> next;     ///< working array
-  int num_updates = 0;           ///< of the step
+/// Where the search for the contacts that act stands, within a step.
+struct ContactSearch {
+  Points delta;             ///< δ there, a column a row [m/s]
+  std::vector<Vec3> trial;  ///< of each contact there: what it would exert without a limit [N]
+  int num_rounds = 0;       ///< since it began
+};
 
-  /// Of a step with these contacts, all of which act and none slides.
+/// Which contacts act in the present step, and how.
+struct ContactActivity {
+  std::vector<char> acts;          ///< at the number of each group's first entry
+  std::vector<double> force;       ///< likewise: Σ n·f − k n·(x − x₀) [N]
+  std::vector<Friction> friction;  ///< of each contact; empty where none has any
+  std::vector<Vec3> trial;         ///< of each contact at the last solution, where they are alone
+  int num_updates = 0;             ///< of the step
+  bool are_alone = false;          ///< all groups are of one entry
+  ContactSearch search;            ///< then, after some updates
+
+  /// Of a step with these contacts. All act but those that are near.
   void start(std::span<const PointStiffness> contacts);
   bool is_acting(int group) const { return group < 0 || acts[static_cast<std::size_t>(group)] != 0; }
 };
@@ -38,6 +49,8 @@ struct StepContacts {
 
   /// Mean displacement since then of the nodes that contact i presses [m].
   Vec3 displacement(std::size_t i, const Points& x) const;
+  /// What contact i would exert at x if it could draw, and its friction had no limit [N].
+  Vec3 compute_trial(std::size_t i, const Points& x) const;
   /// How much less than f contact i exerts at x [N].
   Vec3 compute_fall(std::size_t i, const Points& x, const ContactActivity& activity) const;
   /// How the force of contact i falls with the displacement of its point [N/m], symmetric.
@@ -46,10 +59,8 @@ struct StepContacts {
   double compute_potential(std::size_t i, const Points& x, const ContactActivity& activity) const;
 };
 
-/// Lets go what would draw at x and takes back what would press again: Newton's method on the potential
-/// ½ Σ max(0, n·f − k n·(x − x₀))²/k, which is convex. After some rounds contacts are only let go, so that
-/// this ends. Contacts with friction stick or slide by what their partners press with, until all together
-/// they carry what Coulomb's law says to a thousandth. False when all is as it was.
+/// Lets go what would draw at x and takes back what would press again. After some updates contacts are only
+/// let go, so that this ends. False when all is as it was.
 bool update_active_contacts(const StepContacts& contacts, const Points& x, ContactActivity& activity);
 
 /// force += scale · Σ k n n·u of the contacts that act.

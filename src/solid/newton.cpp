@@ -1,6 +1,7 @@
 #include "solid/newton.h"
 
 #include "solid/body.h"
+#include "solid/contact_search.h"
 #include "solid/matrix.h"
 #include "solid/product.h"
 #include "solid/solve.h"
@@ -25,14 +26,15 @@ linear::SolveReport solve_system(Body& body, const Part& part, const StepLoads& 
 
 bool assemble_newton(Body& body, const Part& part, const StepLoads& loads) {
   NewtonMeasures& newton = body.newton;
+  if (body.contacts.are_alone && body.has_implicit_contact())
+    choose_alone(body.step_contacts(loads.contacts), body.trial.x, body.contacts);
   assemble_residual(body, part, loads);
   // At least one solve where something acts: what it does may be small beside the rounding of stiffer parts.
   const bool may_end = newton.iterations > 0 || !newton.is_driven;
   if (may_end && compute_excess(body) <= body.model.params.newton_tolerance * newton.residual_scale) {
-    const bool has_changed =
-        body.has_implicit_contact() &&
-        update_active_contacts(body.step_contacts(loads.contacts), body.trial.x, body.contacts);
-    if (!has_changed) return true;
+    const StepContacts contacts = body.step_contacts(loads.contacts);
+    const auto update = body.contacts.are_alone ? update_friction : update_active_contacts;
+    if (!body.has_implicit_contact() || !update(contacts, body.trial.x, body.contacts)) return true;
     newton.iterations = 1;  // of the next round; not the step's first
     assemble_residual(body, part, loads);
   }

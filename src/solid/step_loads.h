@@ -13,6 +13,7 @@ namespace argil::solid {
 
 /// Stiffness that a penalty contact adds between its nodes: k·wᵢwⱼ n⊗n. Entries of one group press on
 /// the body with Σ n·f − k n·(x' − x) of those that count, or are let go all together where that would draw.
+/// One that is alone is all of its group: its force is max(0, n·f − k n·(x' − x)), whatever came before.
 struct PointStiffness {
   /// −1 beyond the last; all of one tet.
   std::array<int, 10> vertex = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
@@ -22,9 +23,11 @@ struct PointStiffness {
   Vec3 force = Vec3::Zero();  ///< f [N]: how much of the loads is this contact's at x
   int group = -1;             ///< number of the group's first entry; −1: acts whatever its force
   bool counts = false;        ///< it is along this normal that its group must not draw
+  bool is_alone = false;
+  bool is_near = false;  ///< n·f ≤ 0: it presses only where the body comes to it; f is no part of the loads
   /// > 0: this is the friction of the contact `partner`, with Coulomb's coefficient μ: a spring of
   /// `stiffness` in all directions across that one's normal, whose `force` without the body's motion is f; it
-  /// carries no more than μ times what its partner presses with.
+  /// carries no more than μ times what its partner presses with, which is alone. It has no group.
   double friction = 0.0;
   int partner = -1;
   std::size_t count() const {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "solid/committed.h"
+#include "solid/contact_search.h"
 #include "solid/frame_lag.h"
 #include "solid/matrix.h"
 #include "solid/move.h"
@@ -88,15 +89,11 @@ StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loa
   ++body.history.counters.newton_iterations;
   const linear::SolveReport report = OneStep(body, region, loads, is_first).solve();
   if (!report.converged) return describe_failure(report, body.model.params.solver.tolerance, tick);
-  const auto are_contacts_settled = [&] {
-    return !body.has_implicit_contact() ||
-           !update_active_contacts(body.step_contacts(loads.contacts), body.trial.x, body.contacts);
-  };
   set_iterate(body, region.part(), 1.0);
-  solved = are_contacts_settled();
+  solved = settle_contacts(body, region.part(), loads.contacts);
   if (solved && loads.slack > 0.0 && correct_solution(body, region.part(), loads)) {
     set_iterate(body, region.part(), 1.0);
-    solved = are_contacts_settled();
+    solved = settle_contacts(body, region.part(), loads.contacts);
   }
   if (!solved) set_iterate(body, region.part(), 0.0);  // the same step anew
   return StepStatus::ok();

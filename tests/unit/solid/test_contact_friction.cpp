@@ -16,9 +16,11 @@ void add_pressed_point(std::vector<PointStiffness>& contacts, int node, const Ve
                        const Vec3& pressing, double friction, const Vec3& trial) {
   PointStiffness press{{node, -1, -1}, {1.0, 0.0, 0.0}, normal, stiffness, pressing};
   press.group = static_cast<int>(contacts.size());
-  press.counts = true;
+  press.counts = press.is_alone = true;
   PointStiffness rub = press;
+  rub.is_alone = false;
   rub.partner = press.group;
+  rub.group = -1;
   rub.friction = friction;
   rub.force = trial;
   rub.counts = false;

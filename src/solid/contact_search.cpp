@@ -1,0 +1,252 @@
+// Which contacts that are alone act in a step, and which of them slide.
+
+#include "solid/contact_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solid/body.h"
+#include "solid/product.h"
+
+namespace argil::solid {
+namespace {
+
+constexpr int kRoundsWithoutSearch = 4;
+constexpr int kMostRounds = 80;  // of a search; then contacts are only let go
+constexpr double kConeTolerance = 1e-3;
+
+/// Of what a contact would exert without a limit, what it does.
+Vec3 limit_force(const PointStiffness& contact, double friction_limit, const Vec3& trial) {
+  if (!(contact.friction > 0.0)) return contact.normal.dot(trial) > 0.0 ? trial : Vec3::Zero();
+  const double length = trial.norm();
+  return length > friction_limit ? Vec3(friction_limit / length * trial) : trial;
+}
+
+/// Limit of the friction of contact i where the contacts would exert these forces [N].
+double find_limit(std::span<const PointStiffness> list, std::size_t i, const std::vector<Vec3>& trial) {
+  const auto partner = static_cast<std::size_t>(list[i].partner);
+  return list[i].friction * std::max(0.0, list[i].normal.dot(trial[partner]));
+}
+
+/// As it acts from where it would carry `trial`.
+Friction make_friction(const PointStiffness& contact, double limit, const Vec3& trial) {
+  Friction friction;
+  friction.limit = limit;
+  const double length = trial.norm();
+  friction.is_sliding = length > limit || limit == 0.0;
+  if (!friction.is_sliding || length == 0.0) return friction;
+  const Vec3 along = trial / length;
+  friction.across = contact.normal.cross(along);
+  friction.stiffness = limit / length * contact.stiffness;
+  const double way = friction.across.dot(contact.force - trial) / contact.stiffness;
+  friction.force = limit * along + friction.stiffness * way * friction.across;
+  return friction;
+}
+
+/// What contact i exerts by the linear laws that a step was solved with, where it would exert `trial` without
+/// limit.
+Vec3 find_solved_force(const PointStiffness& contact, const ContactActivity& activity, std::size_t i,
+                       const Vec3& trial) {
+  if (!(contact.friction > 0.0)) return activity.acts[i] != 0 ? trial : Vec3::Zero();
+  const Friction& friction = activity.friction[i];
+  if (!friction.is_sliding) return trial;
+  const double way = friction.across.dot(contact.force - trial) / contact.stiffness;
+  return friction.force - friction.stiffness * way * friction.across;
+}
+
+double limit_of(const ContactActivity& activity, std::size_t i) {
+  return activity.friction.empty() ? 0.0 : activity.friction[i].limit;
+}
+
+void choose(std::span<const PointStiffness> list, const std::vector<Vec3>& trial, ContactActivity& activity) {
+  for (std::size_t i = 0; i < list.size(); ++i)
+    if (list[i].friction > 0.0)
+      activity.friction[i] = make_friction(list[i], activity.friction[i].limit, trial[i]);
+    else if (list[i].is_alone)
+      activity.acts[i] = list[i].normal.dot(trial[i]) > 0.0 ? 1 : 0;
+}
+
+void find_trials(const StepContacts& contacts, const Points& x, std::vector<Vec3>& trial) {
+  trial.resize(contacts.list.size());
+  for (std::size_t i = 0; i < trial.size(); ++i) trial[i] = contacts.compute_trial(i, x);
+}
+
+/// How far forces are from what they should be, and how large they are [N].
+struct Misfit {
+  double pressing = 0.0;
+  double pressing_sum = 0.0;
+  double friction = 0.0;
+  double friction_sum = 0.0;
+};
+
+/// Of what the step was solved with at its solution. `with_new_limits`: friction's are those of what presses
+/// there.
+Misfit find_misfit(std::span<const PointStiffness> list, const ContactActivity& activity,
+                   bool with_new_limits) {
+  Misfit misfit;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const bool is_friction = list[i].friction > 0.0;
+    if (!is_friction && !list[i].is_alone) continue;
+    const Vec3& trial = activity.trial[i];
+    const double limit =
+        is_friction && with_new_limits ? find_limit(list, i, activity.trial) : limit_of(activity, i);
+    const Vec3 right = limit_force(list[i], limit, trial);
+    (is_friction ? misfit.friction : misfit.pressing) +=
+        (right - find_solved_force(list[i], activity, i, trial)).norm();
+    (is_friction ? misfit.friction_sum : misfit.pressing_sum) += is_friction ? limit : right.norm();
+  }
+  return misfit;
+}
+
+/// Limits go to those of what presses at the solution, so much of the way.
+void move_limits(std::span<const PointStiffness> list, double share, ContactActivity& activity) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!(list[i].friction > 0.0)) continue;
+    double& limit = activity.friction[i].limit;
+    limit += share * (find_limit(list, i, activity.trial) - limit);
+  }
+}
+
+void stand_at_solution(const Body& body, ContactActivity& activity) {
+  activity.search.delta = body.system.delta;
+  activity.search.trial = activity.trial;
+}
+
+/// Part of the way from where the search stands to the solution at which the potential is least. Where all
+/// acts as at the start its slope is −c (1 − t) along δ.
+double find_least(std::span<const PointStiffness> list, const ContactActivity& activity, double c) {
+  const std::vector<Vec3>& start = activity.search.trial;
+  const std::vector<Vec3>& end = activity.trial;
+  const auto find_slope = [&](double t) {
+    double slope = -c * (1.0 - t);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (!list[i].is_alone && !(list[i].friction > 0.0)) continue;
+      const Vec3 change = end[i] - start[i];
+      const Vec3 trial = start[i] + t * change;
+      const Vec3 more =
+          limit_force(list[i], limit_of(activity, i), trial) - find_solved_force(list[i], activity, i, trial);
+      slope += more.dot(change) / list[i].stiffness;
+    }
+    return slope;
+  };
+  constexpr double kFarthest = 16.0;
+  constexpr int kHalvings = 50;
+  double low = 0.0;
+  double high = 1.0;
+  while (find_slope(high) < 0.0 && high < kFarthest) high *= 2.0;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double t = 0.5 * (low + high);
+    (find_slope(t) < 0.0 ? low : high) = t;
+  }
+  return 0.5 * (low + high);
+}
+
+void go_to_least(Body& body, const Part& part, std::span<const PointStiffness> list) {
+  ContactActivity& activity = body.contacts;
+  Points& way = body.scratch.left;
+  Points& delta = activity.search.delta;
+  part.near_rows.each(body.model.num_free(), [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+    const auto n = last - first;
+    way.middleCols(first, n) = body.system.delta.middleCols(first, n) - delta.middleCols(first, n);
+  });
+  const double c = Product(body, part, list).multiply(way, body.scratch.correction);
+  const double t = find_least(list, activity, c);
+  part.near_rows.each(body.model.num_free(), [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+    delta.middleCols(first, last - first) += t * way.middleCols(first, last - first);
+  });
+  for (std::size_t i = 0; i < list.size(); ++i)
+    activity.search.trial[i] += t * (activity.trial[i] - activity.search.trial[i]);
+}
+
+/// Whether what would draw has been let go.
+bool let_go(std::span<const PointStiffness> list, ContactActivity& activity) {
+  bool has_changed = false;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!list[i].is_alone || activity.acts[i] == 0 || list[i].normal.dot(activity.trial[i]) >= 0.0) continue;
+    activity.acts[i] = 0;
+    has_changed = true;
+  }
+  return has_changed;
+}
+
+}  // namespace
+
+void start_alone(std::span<const PointStiffness> contacts, ContactActivity& activity) {
+  std::vector<Vec3>& trial = activity.trial;
+  trial.resize(contacts.size());
+  bool has_friction = false;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    trial[i] = contacts[i].force;
+    has_friction = has_friction || contacts[i].friction > 0.0;
+    if (contacts[i].is_near) activity.acts[i] = 0;
+  }
+  if (!has_friction) return;
+  activity.friction.resize(contacts.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    if (contacts[i].friction > 0.0)
+      activity.friction[i] = make_friction(contacts[i], find_limit(contacts, i, trial), trial[i]);
+}
+
+void choose_alone(const StepContacts& contacts, const Points& x, ContactActivity& activity) {
+  find_trials(contacts, x, activity.trial);
+  choose(contacts.list, activity.trial, activity);
+}
+
+bool update_friction(const StepContacts& contacts, const Points& x, ContactActivity& activity) {
+  constexpr int kMostUpdates = 30;  // of a step
+  if (activity.friction.empty() || activity.num_updates++ >= kMostUpdates) return false;
+  find_trials(contacts, x, activity.trial);
+  const Misfit misfit = find_misfit(contacts.list, activity, true);
+  if (misfit.friction <= kConeTolerance * misfit.friction_sum) return false;
+  move_limits(contacts.list, 1.0, activity);
+  choose(contacts.list, activity.trial, activity);
+  return true;
+}
+
+double compute_potential_alone(const PointStiffness& contact, const Vec3& trial,
+                               const ContactActivity& activity, std::size_t i) {
+  if (!(contact.friction > 0.0))
+    return 0.5 * std::pow(std::max(0.0, contact.normal.dot(trial)), 2) / contact.stiffness;
+  const double limit = limit_of(activity, i);
+  const double length = trial.norm();
+  return (length > limit ? limit * (length - 0.5 * limit) : 0.5 * length * length) / contact.stiffness;
+}
+
+bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffness> list) {
+  if (!body.has_implicit_contact()) return true;
+  const StepContacts contacts = body.step_contacts(list);
+  ContactActivity& activity = body.contacts;
+  if (!activity.are_alone) return !update_active_contacts(contacts, body.trial.x, activity);
+  find_trials(contacts, body.trial.x, activity.trial);
+  if (activity.num_updates < kRoundsWithoutSearch) {
+    ++activity.num_updates;
+    const Misfit misfit = find_misfit(list, activity, true);
+    if (misfit.pressing == 0.0 && misfit.friction <= kConeTolerance * misfit.friction_sum) return true;
+    move_limits(list, 1.0, activity);
+    if (activity.num_updates == kRoundsWithoutSearch) stand_at_solution(body, activity);
+    choose(list, activity.trial, activity);
+    return false;
+  }
+  if (activity.search.num_rounds++ == kMostRounds) {
+    --activity.search.num_rounds;
+    return !let_go(list, activity);
+  }
+  constexpr double kRounding = 1e-9;
+  constexpr double kFrictionTolerance = 0.1 * kConeTolerance;
+  const Misfit misfit = find_misfit(list, activity, false);
+  if (misfit.pressing <= kRounding * misfit.pressing_sum &&
+      misfit.friction <= kFrictionTolerance * misfit.friction_sum) {
+    const Misfit of_cone = find_misfit(list, activity, true);
+    if (of_cone.friction <= kConeTolerance * of_cone.friction_sum) return true;
+    ++activity.num_updates;
+    constexpr int kUpdatesInFull = 12;
+    move_limits(list, activity.num_updates < kUpdatesInFull ? 1.0 : 0.5, activity);
+    stand_at_solution(body, activity);
+  } else {
+    go_to_least(body, part, list);
+  }
+  choose(list, activity.search.trial, activity);
+  return false;
+}
+
+}  // namespace argil::solid

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+
+#include "solid/part.h"
+#include "solid/step_loads.h"
+
+namespace argil::solid {
+
+struct Body;
+struct ContactActivity;
+struct StepContacts;
+
+/// Of a step whose contacts are alone: those that press act, with friction within the limit of what they
+/// press with at the start.
+void start_alone(std::span<const PointStiffness> contacts, ContactActivity& activity);
+
+/// Contacts that are alone act as they would at x, with friction within the limits that it has.
+void choose_alone(const StepContacts& contacts, const Points& x, ContactActivity& activity);
+
+/// Its limits become those of what presses at x. False where all friction carries what they say to a
+/// thousandth: then it stays as it is.
+bool update_friction(const StepContacts& contacts, const Points& x, ContactActivity& activity);
+
+/// Of contact i, which is alone and would exert `trial` [N] without a limit [J].
+double compute_potential_alone(const PointStiffness& contact, const Vec3& trial,
+                               const ContactActivity& activity, std::size_t i);
+
+/// After a solve of a step with one linearisation: true where its contacts act as they do at its end, else it
+/// is to be solved again with others.
+///
+/// The forces of contacts that are alone, with friction of given limits, are the slope of a convex potential:
+/// ½ Σ max(0, n·f − k n·(x − x₀))²/k, and Huber's for friction [Huber1964]. Newton's method on it is to solve
+/// again with what acts at the last solution. After some rounds the way to each solution is searched for the
+/// least potential, so that no set comes back and the search ends. Then the limits follow what presses, until
+/// friction carries what Coulomb's law says to a thousandth. Of other contacts see update_active_contacts().
+bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffness> list);
+
+}  // namespace argil::solid

@@ -1,0 +1,105 @@
+// Contacts that are alone press or do not as the conditions of complementarity say, however stiff and many
+// they are.
+#include <algorithm>
+#include <vector>
+
+#include "support/solid_scene.h"
+
+namespace argil::solid {
+namespace {
+
+using test::Scene;
+
+constexpr double kStep = 1e-3;
+constexpr double kCell = 2e-3;
+constexpr int kCells = 6;
+
+Scene make_block(Iteration iteration) {
+  SolidParams params;
+  params.iteration = iteration;
+  params.solver.kind = linear::SolverKind::cholesky;
+  params.rayleigh_stiffness = 2e-3;
+  const mesh::TetMesh mesh =
+      test::make_block(kCells, kCells, 2, Vec3(kCells * kCell, kCells * kCell, 2 * kCell));
+  std::vector<int> floor;
+  for (int n = 0; n < mesh.vertices.cols(); ++n)
+    if (mesh.vertices(2, n) < 1e-9) floor.push_back(n);
+  return {mesh, {test::hold_nodes(floor)}, params, 3e4, 0.3};
+}
+
+/// Points of a rough plane on all faces of the top, up to `depth` inside it or as far outside.
+std::vector<PointStiffness> make_contacts(Scene& scene, Rng& rng, double stiffness, double depth) {
+  constexpr int kPointsOfFace = 6;
+  std::vector<PointStiffness> list;
+  const Triangles faces = mesh::make_topology(scene.mesh).boundary;
+  for (Eigen::Index f = 0; f < faces.cols(); ++f)
+    for (int p = 0; p < kPointsOfFace; ++p) {
+      PointStiffness c;
+      bool is_top = true;
+      Vec3 weight(rng.uniform(0.0, 1.0), rng.uniform(0.0, 1.0), rng.uniform(0.0, 1.0));
+      weight /= weight.sum();
+      for (std::size_t k = 0; k < 3; ++k) {
+        c.vertex[k] = faces(static_cast<Eigen::Index>(k), f);
+        c.weight[k] = weight(static_cast<Eigen::Index>(k));
+        is_top = is_top && scene.rest()(2, c.vertex[k]) > 2 * kCell - 1e-9;
+      }
+      if (!is_top) continue;
+      c.normal = Vec3(rng.uniform(-0.4, 0.4), rng.uniform(-0.4, 0.4), -1.0).normalized();
+      c.stiffness = stiffness * rng.uniform(0.2, 5.0);
+      c.force = c.stiffness * depth * rng.uniform(-0.2, 1.0) * c.normal;
+      c.is_near = c.force.dot(c.normal) < 0.0;
+      c.group = static_cast<int>(list.size());
+      c.counts = c.is_alone = true;
+      list.push_back(c);
+    }
+  return list;
+}
+
+class EveryIteration : public testing::TestWithParam<Iteration> {};
+
+/// Each point presses with max(0, f − k n·u), and nothing else acts on the body.
+TEST_P(EveryIteration, PressesWhereItIsPressedOn) {
+  int num_searched = 0;
+  int num_come = 0;
+  int num_gone = 0;
+  for (const double stiffness : {1.0, 1e2, 1e4, 1e6}) {
+    Rng rng(7);
+    for (int round = 0; round < 6; ++round) {
+      Scene scene = make_block(GetParam());
+      const std::vector<PointStiffness> list = make_contacts(scene, rng, stiffness, 5e-5);
+      for (int n = 0; n < scene.num_nodes(); ++n) scene.load.col(n) = Vec3(0, 0, rng.uniform(0.0, 0.05));
+      const Points others = scene.load;
+      for (const PointStiffness& c : list)
+        if (!c.is_near) spread(c, c.force, scene.load);
+      Points force = scene.load;
+      Points wanted = others;
+      const Points before = scene.state.x;
+      ASSERT_TRUE(scene.step(kStep, list).is_ok()) << stiffness << ' ' << round;
+      num_searched += scene.solid.contacts.search.num_rounds > 0 ? 1 : 0;
+      double sum = 0.0;
+      for (const PointStiffness& c : list) {
+        Vec3 u = Vec3::Zero();
+        for (std::size_t k = 0; k < 3; ++k)
+          u += c.weight[k] * (scene.state.x.col(c.vertex[k]) - before.col(c.vertex[k]));
+        const double trial = c.normal.dot(c.force - c.stiffness * u);
+        spread(c, std::max(0.0, trial) * c.normal, wanted);
+        sum += std::max(0.0, trial);
+        num_come += c.is_near && trial > 0.0 ? 1 : 0;
+        num_gone += !c.is_near && trial < 0.0 ? 1 : 0;
+      }
+      apply_contact_stiffness(scene.solid, list, force);
+      EXPECT_LT((force - wanted).norm(), 1e-6 * sum) << stiffness << ' ' << round;
+    }
+  }
+  EXPECT_GT(num_come, 20);
+  EXPECT_GT(num_gone, 20);
+  if (GetParam() == Iteration::one) {
+    EXPECT_GT(num_searched, 3);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Iterations, EveryIteration, testing::Values(Iteration::one, Iteration::newton),
+                         [](const auto& param) { return param.param == Iteration::one ? "one" : "newton"; });
+
+}  // namespace
+}  // namespace argil::solid
