@@ -84,6 +84,7 @@ ContactDetector::Impl::Impl(const Triangles& surface, int num_body_vertices,
   if (tool_is_convex) tool_inner_radius = find_inner_radius(at_rest, tool_centre);
   body_candidates.reserve(static_cast<std::size_t>(surface.cols()));
   areas.reserve(body_candidates.capacity());
+  near_faces.resize(body_candidates.capacity());
   tasks.reserve(kRoom);
   for (std::vector<int>* list :
        {&committed.tool_vertex, &committed.body_face, &committed.body_vertex, &committed.tool_face})
@@ -99,6 +100,8 @@ void ContactDetector::Impl::make_workers(const Points& x) {
     worker.tool_tree.fit_all(tool_t0);
     worker.tool_candidates.reserve(static_cast<std::size_t>(tool.triangles.cols()));
     worker.tool_features.reserve(static_cast<std::size_t>(tool.edges.cols()));
+    worker.has_edge.resize(static_cast<std::size_t>(tool.edges.cols()));
+    worker.near_faces.reserve(kRoom * kRoom);
     worker.candidates.reserve(kRoom);
     worker.near.reserve(kRoom);
     worker.tool_entries.reserve(kRoom);

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "base/change_marks.h"
 #include "base/parallel.h"
 #include "contact/bounding_tree.h"
 #include "contact/contact.h"
@@ -84,11 +86,24 @@ struct Worker {
   // Working arrays; they grow to what a scene needs and stay so.
   std::vector<int> tool_candidates = {};  // faces of the tool near one of the body
   std::vector<int> tool_features = {};    // vertices or edges of these
+  ChangeMarks has_edge = {};              // edges of the tool among them
+  std::vector<int> near_faces = {};       // tool_candidates of its faces of the body, one after another
   std::vector<int> candidates = {};       // faces that may be near a vertex
   std::vector<NearFace> near = {};        // faces near a vertex, by number
   std::vector<Entry> tool_entries = {}, body_entries = {};
   std::vector<EdgePair> edge_pairs = {};
   std::vector<Vec3> polygon = {}, clip_work = {};
+};
+
+/// Faces of the tool near a face of the body: a part of a worker's list.
+struct ToolFaces {
+  const Worker* worker = nullptr;  ///< none: there are none
+  std::size_t begin = 0;
+  std::size_t count = 0;
+
+  std::span<const int> list() const {
+    return worker ? std::span(worker->near_faces).subspan(begin, count) : std::span<const int>();
+  }
 };
 
 /// One side of eq. 7 over an interval: whose vertices, whose faces.
@@ -146,6 +161,7 @@ struct ContactDetector::Impl {
 
   // Working arrays; they grow to what a scene needs and stay so.
   std::vector<int> body_candidates;
+  std::vector<ToolFaces> near_faces;  // of each face of the body
   std::vector<VertexTask> tasks;
   std::vector<EdgePair> edge_pairs;                         // of the present interval, by key
   std::vector<EdgeSpring> edge_springs, edge_springs_next;  // by key
@@ -185,6 +201,7 @@ struct ContactDetector::Impl {
   void find_entries(const Motion& motion, const mesh::Box& tool_bounds);
   void test_face(int body_face, double reach, const Motion& motion, Worker& worker);
   void test_vertices(int body_face, const Motion& motion, Worker& worker);
+  void collect_tool_edges(std::array<int, 2> body_faces, Worker& worker) const;
   void test_edges(int body_face, double reach, const Motion& motion, Worker& worker);
 
   // press.cpp

@@ -57,7 +57,11 @@ bool is_crossed(const std::array<Vec3, 2>& tool_at, const std::array<Vec3, 2>& b
   return is_in_normal_cone(body, body_edge, n) && is_in_normal_cone(tool, tool_edge, -n);
 }
 
-/// Of `items`, test(item) for those that look(four) does not rule out: bit i of what it returns stands for
+bool is_set(unsigned bits, std::size_t i) {
+  return (bits >> i & 1U) != 0;
+}
+
+/// Of `items`, test(item, i) for those that look(four) does not rule out: bit i of what it returns stands for
 /// item i of the four, of which the last fills what is left over.
 template <class Look, class Test>
 void each_four(const std::vector<int>& items, Look look, Test test) {
@@ -68,7 +72,7 @@ void each_four(const std::vector<int>& items, Look look, Test test) {
       four[lane] = items[begin + std::min(lane, count - 1)];
     const unsigned stays = look(four);
     for (std::size_t lane = 0; lane < count; ++lane)
-      if ((stays >> lane & 1U) != 0) test(four[lane]);
+      if (is_set(stays, lane)) test(four[lane], lane);
   }
 }
 
@@ -100,6 +104,7 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const mesh::Box& 
   tool_vertices.entries.clear();
   body_vertices.entries.clear();
   edge_pairs.clear();
+  for (const int face : body_candidates) near_faces[static_cast<std::size_t>(face)] = {};
   body_candidates.clear();
   const double separation = params.minimum_separation;
   workers.front().body_tree.find_overlaps(tool_bounds.grown(separation), motion.body_t0, motion.body_t1,
@@ -110,9 +115,12 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const mesh::Box& 
     worker.tool_entries.clear();
     worker.body_entries.clear();
     worker.edge_pairs.clear();
+    worker.near_faces.clear();
   }
   each_item(body_candidates.size(),
             [&](Worker& worker, std::size_t i) { test_face(body_candidates[i], reach, motion, worker); });
+  each_item(body_candidates.size(),
+            [&](Worker& worker, std::size_t i) { test_edges(body_candidates[i], reach, motion, worker); });
   for (const Worker& worker : workers) {
     append(tool_vertices.entries, worker.tool_entries);
     append(body_vertices.entries, worker.body_entries);
@@ -127,7 +135,7 @@ void ContactDetector::Impl::find_entries(const Motion& motion, const mesh::Box& 
                    edge_pairs.end());
 }
 
-/// A body's face with its vertices and edges against those of the tool's faces near it.
+/// A body's face with its vertices against those of the tool's faces near it, which are kept for its edges.
 void ContactDetector::Impl::test_face(int body_face, double reach, const Motion& motion, Worker& worker) {
   mesh::Box swept;
   for (int k = 0; k < 3; ++k) {
@@ -140,7 +148,10 @@ void ContactDetector::Impl::test_face(int body_face, double reach, const Motion&
                                  worker.tool_candidates);
   if (worker.tool_candidates.empty()) return;
   test_vertices(body_face, motion, worker);
-  test_edges(body_face, reach, motion, worker);
+  near_faces[static_cast<std::size_t>(body_face)] = {&worker, worker.near_faces.size(),
+                                                     worker.tool_candidates.size()};
+  worker.near_faces.insert(worker.near_faces.end(), worker.tool_candidates.begin(),
+                           worker.tool_candidates.end());
 }
 
 /// Each vertex is tested with one of its faces, and none that is inside.
@@ -170,7 +181,7 @@ void ContactDetector::Impl::test_vertices(int body_face, const Motion& motion, W
         set_points(pairs, 0, motion.tool_t0, motion.tool_t1, vertices);
         return find_coplanar(PairKind::vertex_face, pairs, params.minimum_separation);
       },
-      [&](int v) { test(tool_vertex_motion(motion), v, body_face, worker.tool_entries); });
+      [&](int v, std::size_t) { test(tool_vertex_motion(motion), v, body_face, worker.tool_entries); });
 
   for (const int w : body.triangles.col(body_face)) {
     if (!is_tested(body.vertex_owner, body_vertices, w, body_face)) continue;
@@ -182,51 +193,67 @@ void ContactDetector::Impl::test_vertices(int body_face, const Motion& motion, W
             set_points(pairs, k + 1, motion.tool_t0, motion.tool_t1, pick(tool.triangles, k, faces));
           return find_coplanar(PairKind::vertex_face, pairs, params.minimum_separation);
         },
-        [&](int face) { test(body_vertex_motion(motion), w, face, worker.body_entries); });
+        [&](int face, std::size_t) { test(body_vertex_motion(motion), w, face, worker.body_entries); });
   }
 }
 
+/// Edges of the tool's faces near any of these of the body, each once.
+void ContactDetector::Impl::collect_tool_edges(std::array<int, 2> body_faces, Worker& worker) const {
+  worker.tool_features.clear();
+  worker.has_edge.clear();
+  for (const int body_face : body_faces)
+    for (const int face : near_faces[static_cast<std::size_t>(body_face)].list())
+      for (const int edge : tool.triangle_edges.col(face))
+        if (worker.has_edge.set(static_cast<std::size_t>(edge))) worker.tool_features.push_back(edge);
+}
+
 /// The edges of a body's face with those of the tool's faces near it. A pair that is already inside may have
-/// only some of its faces near each other, so it is found by any of them. One that stays farther from the
-/// tool's centre than `reach`, or is concave throughout, can bear no force.
+/// only some of its faces near each other, so it is found by any of them. The owner of the body's edge tests
+/// what is near either of its faces; the last face does so where nothing is near the owner. An edge that
+/// stays farther from the tool's centre than `reach`, or is concave throughout, can bear no force.
 void ContactDetector::Impl::test_edges(int body_face, double reach, const Motion& motion, Worker& worker) {
+  const auto has_near = [this](int face) {
+    return near_faces[static_cast<std::size_t>(face)].worker != nullptr;
+  };
+  if (!has_near(body_face)) return;
   const SurfaceAt body_t0{body, motion.body_t0, motion.body_t0},
       body_t1{body, motion.body_t1, motion.body_t1};
   const SurfaceAt tool_t0_at{tool, motion.tool_t0, motion.tool_t0};
   const SurfaceAt tool_t1_at{tool, motion.tool_t1, motion.tool_t1};
-  std::vector<int>& tool_features = worker.tool_features;
-  tool_features.clear();
-  for (const int face : worker.tool_candidates)
-    for (const int edge : tool.triangle_edges.col(face)) {
-      const int owner = tool.edge_owner[static_cast<std::size_t>(edge)];
-      if (owner == face || std::find(worker.tool_candidates.begin(), worker.tool_candidates.end(), owner) ==
-                               worker.tool_candidates.end())
-        tool_features.push_back(edge);
-    }
   FourPairs pairs;
   for (const int body_edge : body.triangle_edges.col(body_face)) {
+    const int owner = body.edge_owner[static_cast<std::size_t>(body_edge)];
+    const int last = body.edge_triangles(1, body_edge);
+    if (body_face != owner && body_face == last && has_near(owner)) continue;
     if (is_concave(body_t0, body_edge) && is_concave(body_t1, body_edge)) continue;
     const EdgePath b(motion.body_t0, motion.body_t1, body.edges.col(body_edge));
     if (b.swept().squared_distance(centre_t0) > reach * reach) continue;
+    collect_tool_edges({body_face, body_face == owner ? last : owner}, worker);
     for (int k = 0; k < 2; ++k)
       set_points(pairs, k + 2, motion.body_t0, motion.body_t1, body.edges(k, body_edge));
-    const auto test = [&](int tool_edge) {
+    unsigned alongside = 0, coplanar = 0;  // bits for four pairs: may they be crossed, may they meet
+    const auto test = [&](int tool_edge, std::size_t i) {
       const EdgePath a(motion.tool_t0, motion.tool_t1, tool.edges.col(tool_edge));
       EdgePair pair{tool_edge, body_edge};
-      pair.inside_t0 = is_crossed(a.t0, b.t0, tool_t0_at, tool_edge, body_t0, body_edge);
-      pair.inside_t1 = is_crossed(a.t1, b.t1, tool_t1_at, tool_edge, body_t1, body_edge);
+      if (is_set(alongside, i)) {
+        pair.inside_t0 = is_crossed(a.t0, b.t0, tool_t0_at, tool_edge, body_t0, body_edge);
+        pair.inside_t1 = is_crossed(a.t1, b.t1, tool_t1_at, tool_edge, body_t1, body_edge);
+      }
       if (pair.inside_t0 || pair.inside_t1 ||
-          find_time_of_impact(PairKind::edge_edge,
-                              {{a.t0[0], a.t0[1], b.t0[0], b.t0[1]}, {a.t1[0], a.t1[1], b.t1[0], b.t1[1]}},
-                              params.minimum_separation))
+          (is_set(coplanar, i) &&
+           find_time_of_impact(PairKind::edge_edge,
+                               {{a.t0[0], a.t0[1], b.t0[0], b.t0[1]}, {a.t1[0], a.t1[1], b.t1[0], b.t1[1]}},
+                               params.minimum_separation)))
         worker.edge_pairs.push_back(pair);
     };
     each_four(
-        tool_features,
+        worker.tool_features,
         [&](const std::array<int, FourPairs::kCount>& edges) {
           for (int k = 0; k < 2; ++k)
             set_points(pairs, k, motion.tool_t0, motion.tool_t1, pick(tool.edges, k, edges));
-          return find_alongside(pairs) | find_coplanar(PairKind::edge_edge, pairs, params.minimum_separation);
+          alongside = find_alongside(pairs);
+          coplanar = find_coplanar(PairKind::edge_edge, pairs, params.minimum_separation);
+          return alongside | coplanar;
         },
         test);
   }
