@@ -73,17 +73,39 @@ std::array<int, 3> TetLocator::box(const Vec3& x) const {
   return result;
 }
 
-TetLocator::Place TetLocator::find(const Vec3& x) const {
+std::size_t TetLocator::box_index(const Vec3& x) const {
   const std::array<int, 3> b = box(x);
-  const auto index = static_cast<std::size_t>(b[0] + m_counts[0] * (b[1] + m_counts[1] * b[2]));
+  return static_cast<std::size_t>(b[0] + m_counts[0] * (b[1] + m_counts[1] * b[2]));
+}
+
+Vec4 TetLocator::compute_weights(int tet, const Vec3& x) const {
+  return compute_barycentric_weights(m_vertices.col(m_tets(0, tet)), m_vertices.col(m_tets(1, tet)),
+                                     m_vertices.col(m_tets(2, tet)), m_vertices.col(m_tets(3, tet)), x);
+}
+
+TetLocator::Place TetLocator::find(const Vec3& x) const {
+  const std::size_t index = box_index(x);
   for (int i = m_begin[index]; i < m_begin[index + 1]; ++i) {
     const int t = m_list[static_cast<std::size_t>(i)];
-    const Vec4 weights =
-        compute_barycentric_weights(m_vertices.col(m_tets(0, t)), m_vertices.col(m_tets(1, t)),
-                                    m_vertices.col(m_tets(2, t)), m_vertices.col(m_tets(3, t)), x);
+    const Vec4 weights = compute_weights(t, x);
     if (weights.minCoeff() >= -kWeightTolerance) return {t, weights};
   }
   return {};
+}
+
+TetLocator::Place TetLocator::find_near(const Vec3& x, double beyond) const {
+  Place near = find(x);
+  if (near.tet >= 0) return near;
+  const std::size_t index = box_index(x);
+  double highest = -beyond;
+  for (int i = m_begin[index]; i < m_begin[index + 1]; ++i) {
+    const int t = m_list[static_cast<std::size_t>(i)];
+    const Vec4 weights = compute_weights(t, x);
+    if (weights.minCoeff() < highest || (near.tet >= 0 && weights.minCoeff() == highest)) continue;
+    highest = weights.minCoeff();
+    near = {t, weights};
+  }
+  return near;
 }
 
 }  // namespace argil::embed

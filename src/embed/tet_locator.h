@@ -21,9 +21,14 @@ class TetLocator {
   /// Lowest tet with all weights of x at or above −1e-10, so that no point falls between two tets by
   /// round-off.
   Place find(const Vec3& x) const;
+  /// The same; of a point outside, the near tet whose weights have the highest minimum, then negative but at
+  /// or above −`beyond`: by so much of its height the point lies beyond a face. −1: none is so near.
+  Place find_near(const Vec3& x, double beyond) const;
 
  private:
   std::array<int, 3> box(const Vec3& x) const;
+  std::size_t box_index(const Vec3& x) const;
+  Vec4 compute_weights(int tet, const Vec3& x) const;
 
   Points m_vertices;
   Tets m_tets;
