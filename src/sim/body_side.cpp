@@ -16,7 +16,7 @@ BodySide::BodySide(Body body, const Params& params)
       m_solid(m_body.mesh, m_body.topology, m_body.supports, params.solid, params.threads),
       m_region(m_solid, restricts_to_region(params, m_body.supports, m_solid.model.num_free())),
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation, params.threads),
-      m_surface(params.contact_surface, m_body, m_solid.model.elements),
+      m_surface(params.contact_surface, params.contact.law, m_body, m_solid.model.elements),
       m_surface_moduli(m_surface, m_solid, params.contact),
       m_force(solid::compute_load_force(m_solid.model.elements, m_body.topology.boundary, m_body.loads)),
       m_loads{m_force.total()},

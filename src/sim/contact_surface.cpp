@@ -5,10 +5,13 @@
 #include <iterator>
 
 #include "base/check.h"
+#include "embed/fine_skin.h"
 #include "mesh/quadratic.h"
 
 namespace argil::sim {
 namespace {
+
+constexpr double kSkinOverCell = 1.0 / 3.0;  // longest edge of a touched triangle, over the cell
 
 /// Does one tet have all the nodes of this stiffness?
 bool shares_tet(const solid::PointStiffness& s, const solid::Elements& elements) {
@@ -25,34 +28,50 @@ bool shares_tet(const solid::PointStiffness& s, const solid::Elements& elements)
 
 }  // namespace
 
-ContactSurface::ContactSurface(SurfaceKind kind, const Body& body, const solid::Elements& elements) {
+ContactSurface::ContactSurface(SurfaceKind kind, contact::ContactLaw law, const Body& body,
+                               const solid::Elements& elements) {
   m_begin.push_back(0);
-  const auto add = [this](int node, double weight) {
-    m_node.push_back(node);
-    m_weight.push_back(weight);
-  };
-  const auto close = [this] { m_begin.push_back(static_cast<int>(m_node.size())); };
   if (kind == SurfaceKind::cage) {
-    m_triangles = elements.surface;
-    for (int v = 0; v < elements.num_nodes(); ++v) {
-      add(v, 1.0);
-      close();
-    }
-    m_is_corner.resize(static_cast<std::size_t>(elements.num_nodes()), 0);
-    for (const int node : m_triangles.reshaped()) m_is_corner[static_cast<std::size_t>(node)] = 1;
-    for (const int tet : body.topology.boundary_tet)
-      m_tets.insert(m_tets.end(), static_cast<std::size_t>(elements.surface_per_face), tet);
+    take_boundary(body, elements);
     return;
   }
-  const embed::Embedding& embedding = body.skin_embedding;
-  ARGIL_ASSERT(embedding.num_points() > 0);
-  m_triangles = body.skin.triangles;
+  ARGIL_ASSERT(body.skin_embedding.num_points() > 0);
+  if (law == contact::ContactLaw::pairs) {
+    take_skin(body.skin.triangles, body.skin_embedding, elements);
+    return;
+  }
+  const double nodes_per_edge = elements.nodes_per_tet == 4 ? 1.0 : 2.0;
+  const embed::FineSkin fine =
+      embed::split_to_cells(body.skin, body.skin_embedding, body.mesh, kSkinOverCell / nodes_per_edge);
+  take_skin(fine.triangles, fine.embedding, elements);
+}
+
+void ContactSurface::add_node(int node, double weight) {
+  m_node.push_back(node);
+  m_weight.push_back(weight);
+}
+
+void ContactSurface::take_boundary(const Body& body, const solid::Elements& elements) {
+  m_triangles = elements.surface;
+  for (int v = 0; v < elements.num_nodes(); ++v) {
+    add_node(v, 1.0);
+    close_vertex();
+  }
+  m_is_corner.resize(static_cast<std::size_t>(elements.num_nodes()), 0);
+  for (const int node : m_triangles.reshaped()) m_is_corner[static_cast<std::size_t>(node)] = 1;
+  for (const int tet : body.topology.boundary_tet)
+    m_tets.insert(m_tets.end(), static_cast<std::size_t>(elements.surface_per_face), tet);
+}
+
+void ContactSurface::take_skin(const Triangles& triangles, const embed::Embedding& embedding,
+                               const solid::Elements& elements) {
+  m_triangles = triangles;
   for (int v = 0; v < embedding.num_points(); ++v) {
     const auto nodes = elements.nodes.col(embedding.tet[static_cast<std::size_t>(v)]);
     Eigen::VectorXd shape = embedding.weights.col(v);
     if (nodes.size() == 10) shape = mesh::compute_quadratic_shape(embedding.weights.col(v));
-    for (Eigen::Index k = 0; k < nodes.size(); ++k) add(nodes(k), shape(k));
-    close();
+    for (Eigen::Index k = 0; k < nodes.size(); ++k) add_node(nodes(k), shape(k));
+    close_vertex();
   }
   m_tets_per_triangle = 3;
   for (Eigen::Index t = 0; t < m_triangles.cols(); ++t)

@@ -21,9 +21,14 @@ struct SurfaceForce {
 /// What the tool touches: the boundary of the solid, or the skin embedded in it. Its vertices lie at x_s = W
 /// x, and what acts on them acts on the nodes as f = Wᵀ f_s: the same weights, so that force, torque and work
 /// are the same on both.
+///
+/// By the pressure law a skin's triangles that are larger than the body's cells are split, so that what is
+/// touched follows the body everywhere and the force does not hang on how many triangles the skin has. The
+/// skin that is written and drawn stays as it is.
 class ContactSurface {
  public:
-  ContactSurface(SurfaceKind kind, const Body& body, const solid::Elements& elements);
+  ContactSurface(SurfaceKind kind, contact::ContactLaw law, const Body& body,
+                 const solid::Elements& elements);
 
   const Triangles& triangles() const { return m_triangles; }
   int num_vertices() const { return static_cast<int>(m_begin.size()) - 1; }
@@ -60,6 +65,11 @@ class ContactSurface {
                          std::vector<double>& area) const;
 
  private:
+  void add_node(int node, double weight);
+  void close_vertex() { m_begin.push_back(static_cast<int>(m_node.size())); }
+  void take_boundary(const Body& body, const solid::Elements& elements);
+  void take_skin(const Triangles& triangles, const embed::Embedding& embedding,
+                 const solid::Elements& elements);
   template <class Value>
   std::span<const Value> slice(const std::vector<Value>& list, int vertex) const {
     const auto begin = static_cast<std::size_t>(m_begin[static_cast<std::size_t>(vertex)]);

@@ -28,8 +28,9 @@ enum class Extent {
 
 /// What the tool meets.
 enum class SurfaceKind {
-  cage,  ///< the boundary of the solid (the paper)
-  skin,  ///< the embedded surface: what the eye sees
+  cage,       ///< the boundary of the solid (the paper)
+  skin,       ///< the embedded surface: what the eye sees
+  automatic,  ///< of a scenario: by the pressure law the skin where there is one, else the cage
 };
 
 /// Rates as whole numbers of haptic ticks.

@@ -48,7 +48,7 @@ TEST_P(EverySurface, CarriesForceAndTorqueToTheNodesToRounding) {
   const auto [kind, element] = GetParam();
   const Body body = make_skin_block(0.8);
   const solid::Elements elements = solid::make_elements(body.mesh, body.topology, element);
-  const ContactSurface surface(kind, body, elements);
+  const ContactSurface surface(kind, contact::ContactLaw::pairs, body, elements);
   Rng rng(5, "surface");
   Points x = elements.rest;
   for (Eigen::Index v = 0; v < x.cols(); ++v)
