@@ -212,7 +212,12 @@ void check_skin(const Scenario& s, const mesh::TriangleMesh& skin) {
   if (skin.num_triangles() == 0)
     throw InputError(s.file, "/contact/surface", "is \"skin\" but the body has none",
                      "give /body/surface or /body/shape/skin_triangles, or set \"cage\"");
-  contact::require_closed_surface(skin, s.body.kind == BodyKind::surface ? s.body.file : s.file);
+  try {
+    contact::require_closed_surface(skin, s.body.kind == BodyKind::surface ? s.body.file : s.file);
+  } catch (const InputError& error) {
+    throw InputError(s.file, "/contact/surface", std::string("is \"skin\": ") + error.what(),
+                     "or set \"cage\": the tool then meets the boundary of the solid");
+  }
 }
 
 /// A pulling tool's grip bears what the clay does, unless it is given.
@@ -248,6 +253,14 @@ void check_trace(const Scenario& s, const device::Trace& trace) {
 }
 
 }  // namespace
+
+sim::SurfaceKind choose_surface(const Scenario& s) {
+  if (s.params.contact_surface != sim::SurfaceKind::automatic) return s.params.contact_surface;
+  const bool has_skin =
+      s.body.kind == BodyKind::surface || (s.body.kind == BodyKind::shape && s.body.skin_triangles > 0);
+  const bool meets_skin = has_skin && s.params.contact.law == contact::ContactLaw::pressure;
+  return meets_skin ? sim::SurfaceKind::skin : sim::SurfaceKind::cage;
+}
 
 Scene build_scene(const Scenario& s) {
   Scene scene;

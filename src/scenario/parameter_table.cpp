@@ -315,10 +315,14 @@ void bind_water_and_tool(Binder& b, Scenario& s, const std::string& folder) {
                                   not_negative(), "N/m", "pairs: k_ee of eq. 8, per pair.");
   edge_edge.required = true;
   edge_edge.applies = pairs;
-  b.choice<sim::SurfaceKind>("/contact/surface", s.params.contact_surface,
-                             {{sim::SurfaceKind::cage, "cage"}, {sim::SurfaceKind::skin, "skin"}},
-                             "What the tool meets: the boundary of the solid (the paper), or the skin that "
-                             "the eye sees.");
+  b.choice<sim::SurfaceKind>(
+      "/contact/surface", s.params.contact_surface,
+      {{sim::SurfaceKind::automatic, "auto"},
+       {sim::SurfaceKind::cage, "cage"},
+       {sim::SurfaceKind::skin, "skin"}},
+      "What the tool meets: the boundary of the solid (the paper), or the skin that "
+      "the eye sees; auto: by the pressure law the skin where there is one, by that of "
+      "pairs the cage.");
   b.choice<contact::PenaltyKind>(
       "/contact/penalty", c.penalty,
       {{contact::PenaltyKind::continuous, "continuous"}, {contact::PenaltyKind::discrete, "discrete"}},

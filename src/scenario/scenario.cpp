@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "material/moisture.h"
+#include "scenario/build.h"
 #include "scenario/medium_check.h"
 #include "scenario/parameter_table.h"
 #include "scenario/setting.h"
@@ -58,14 +59,12 @@ void choose_mode(Scenario& s, const Json& document) {
 
 void check_rates(const Scenario& s) {
   const sim::RateParams& r = s.params.rates;
-  const auto require_multiple = [&](const char* pointer, int value) {
-    const int period = r.physics_period_ticks;
-    const int next = (value / period + 1) * period;
+  const auto require_multiple = [&, period = r.physics_period_ticks](const char* pointer, int value) {
     if (value % period != 0)
       throw InputError(
           s.file, pointer,
           std::to_string(value) + " is no multiple of physics_period_ticks (" + std::to_string(period) + ")",
-          "give a multiple of it, for instance " + std::to_string(next));
+          "give a multiple of it, for instance " + std::to_string((value / period + 1) * period));
   };
   require_multiple("/haptics/water_period_ticks", r.water_period_ticks);
   require_multiple("/haptics/frame_period_ticks", r.frame_period_ticks);
@@ -116,6 +115,7 @@ void leave_out_pairs(Scenario& s, const Json& document) {
 
 void check_contact(Scenario& s) {
   contact::ContactParams& c = s.params.contact;
+  s.params.contact_surface = choose_surface(s);
   c.round_tool = find_round_tool(s.tool);
   if (c.law == contact::ContactLaw::pairs) return;
   if (c.damping > 0.0)
@@ -335,6 +335,7 @@ void check_combinations(Scenario& s) {
 Scenario::Scenario() {
   params.extent = sim::Extent::automatic;
   params.contact.law = contact::ContactLaw::pressure;
+  params.contact_surface = sim::SurfaceKind::automatic;
 }
 
 Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings) {
@@ -342,8 +343,7 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
   if (!document.is_object())
     throw InputError(file, "", "is not a JSON object", "a scenario is {\"about\": …}");
   for (const Setting& setting : settings) apply_setting(document, setting, file);
-  const Json preset = document.value("preset", Json("none"));
-  if (preset == "paper") {
+  if (document.value("preset", Json("none")) == "paper") {
     Json below = Json::parse(kPaperPreset);
     below.merge_patch(document);
     document = below;

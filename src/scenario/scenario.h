@@ -78,7 +78,7 @@ struct HandSpec {
 
 /// A validated scene in SI units; paths resolved against the scenario's folder.
 struct Scenario {
-  Scenario();  ///< extent and law of contact as they are where a scenario does not say
+  Scenario();  ///< extent, law of contact and touched surface as they are where a scenario does not say
 
   std::string file;
   std::string about;

@@ -102,6 +102,13 @@ TEST_F(BadInput, CageThatLeavesSkinVerticesOutsideIsRefusedWithTheirNumber) {
                  {"cage.mesh", "1 of 4", "outside", "3"});
 }
 
+TEST_F(BadInput, SkinThatIsOpenIsRefusedWhereItIsTouched) {
+  test::write_text(folder / "open.obj",
+                   "v 0 0 0\nv 0.03 0 0\nv 0 0.03 0\nv 0 0 0.03\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
+  expect_refused(with_body(R"("surface": {"file": "open.obj", "target_tets": 1000})"),
+                 {"/contact/law=pressure"}, {"/contact/surface", "open.obj", "open", "set \"cage\""});
+}
+
 TEST_F(BadInput, NumberOfTetsThatAShapeCannotHaveIsRefusedWithItsPointer) {
   expect_refused(ball(), {"/body/shape/target_tets=400"},
                  {"scene.json: /body/shape: target_tets 400", "15 %", "ask for"});

@@ -52,6 +52,21 @@ TEST_F(ScenarioFile, PortableOneIsTheSameWhereverTheFolderLies) {
   EXPECT_EQ(print_portable(load_scenario(moved, {})), print_portable(load()));
 }
 
+TEST_F(ScenarioFile, TheSkinIsTouchedByThePressureLawUnlessTheCageIsNamed) {
+  const std::string skin = "/body/shape/skin_triangles=60", pressure = "/contact/law=pressure";
+  const auto touched = [&](const std::vector<std::string>& settings) {
+    return load(settings).params.contact_surface;
+  };
+  EXPECT_EQ(touched({pressure, skin}), sim::SurfaceKind::skin);
+  EXPECT_EQ(touched({pressure}), sim::SurfaceKind::cage);  // there is none
+  EXPECT_EQ(touched({skin}), sim::SurfaceKind::cage);      // by pairs
+  EXPECT_EQ(touched({pressure, skin, "/contact/surface=cage"}), sim::SurfaceKind::cage);
+  EXPECT_EQ(touched({skin, "/contact/surface=skin"}), sim::SurfaceKind::skin);
+  EXPECT_EQ(touched({"/preset=paper", kPaper[1], skin}), sim::SurfaceKind::cage);
+  const std::string shown = print_resolved(load({pressure, skin}));
+  EXPECT_EQ(parse_json(shown, file)["contact"]["surface"], "skin");
+}
+
 /// The scene gives pairs their law and stiffness.
 TEST_F(ScenarioFile, PressureIsTheLawUnlessAnotherIsNamed) {
   EXPECT_EQ(load().params.contact.law, contact::ContactLaw::pairs);
