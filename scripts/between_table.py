@@ -6,47 +6,27 @@ Usage: between_table.py ARGIL [-o FILE.csv]      writes results/contact/between.
 """
 import argparse
 import csv
-import json
 import math
-import subprocess
 import tempfile
 from pathlib import Path
 
-import h5py
 import numpy as np
 
+from ball_on_block import EDGE, PERIOD, find_force
+
 ROOT = Path(__file__).resolve().parent.parent
-RADIUS, EDGE, DEPTH, GAP = 0.01, 0.04, 0.002, 0.0003  # of ball and block, deepest place, way before the touch [m]
-SECONDS, PERIOD = 1.2, 0.001  # [s]
+RADIUS, DEPTH, GAP = 0.01, 0.002, 0.0003  # of the ball, deepest place, way before the touch [m]
+SECONDS = 1.2
 SIDEWAYS = 0.005  # [m/s], of the motion that slides
 
 
-def write_motion(file, hertz, sideways):
-    lines = ["t,x,y,z"]
+def make_motion(hertz, sideways):
+    places = []
     for tick in range(round(SECONDS / PERIOD)):
         t = tick * PERIOD
         z = EDGE + RADIUS + GAP - DEPTH * 0.5 * (1 - math.cos(2 * math.pi * hertz * t))
-        lines.append(f"{t:.3f},{0.003 + sideways * t:.9f},0.002,{z:.9f}")
-    file.write_text("\n".join(lines) + "\n")
-
-
-def find_force(argil, folder, friction, period, between):
-    scene = {
-        "about": "A ball goes into a block and out again.",
-        "body": {"shape": {"kind": "box", "size_m": EDGE, "target_tets": 8000, "skin_triangles": 0},
-                 "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 1e-6}]},
-        "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3, "plasticity": {"enabled": False},
-                     "clay_kernel": {"form": "off"}},
-        "tool": {"shape": {"kind": "sphere", "radius_m": RADIUS}, "mode": "push"},
-        "contact": {"law": "pressure", "friction": friction},
-        "haptics": {"physics_period_ticks": period, "water_period_ticks": period, "frame_period_ticks": 100 * period,
-                    "between_frames": between, "chatter_limit": 1},
-        "trace": {"file": "motion.csv"},
-    }
-    (folder / "scene.json").write_text(json.dumps(scene))
-    subprocess.run([argil, "run", folder / "scene.json", "-q", "-o", folder / "run.h5"], check=True)
-    with h5py.File(folder / "run.h5") as run:
-        return run["haptic/force"][:]
+        places.append((0.003 + sideways * t, 0.002, z))
+    return places
 
 
 def main():
@@ -58,12 +38,13 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for hertz, sideways, friction in ((1, 0, 0), (5, 0, 0), (1, SIDEWAYS, 0.3)):
-            write_motion(folder / "motion.csv", hertz, sideways)
-            fine = find_force(options.argil, folder, friction, 1, "hold")
+            places = make_motion(hertz, sideways)
+            fine = find_force(options.argil, folder, places, radius=RADIUS, friction=friction)
             peak = np.linalg.norm(fine, axis=1).max()
             for period in (5, 14):
                 for between in ("hold", "re_evaluate", "compliant"):
-                    force = find_force(options.argil, folder, friction, period, between)
+                    force = find_force(options.argil, folder, places, radius=RADIUS, friction=friction, ticks_of_step=period,
+                                       between=between)
                     off = np.sqrt(((force - fine) ** 2).sum(axis=1).mean()) / peak
                     jump = np.linalg.norm(np.diff(force, axis=0), axis=1).max() / peak
                     rows.append([hertz, sideways, friction, period, between, f"{off:.4f}", f"{jump:.4f}"])

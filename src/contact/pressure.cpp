@@ -14,6 +14,13 @@ namespace {
 constexpr int kMostLevels = 10;        // of splitting a triangle in four
 constexpr double kLeastRadius = 0.25;  // of that of the covered area
 
+/// Mean over the corners of how near each is to the tool: 1 inside, 0 farther than `band`.
+double compute_share_within(const std::array<double, 3>& distance, double band) {
+  double sum = 0.0;
+  for (const double d : distance) sum += std::clamp(1.0 - d / band, 0.0, 1.0);
+  return sum / 3.0;
+}
+
 Vec3 centre_of(const std::array<Vec3, 3>& piece) {
   return (piece[0] + piece[1] + piece[2]) / 3.0;
 }
@@ -73,7 +80,7 @@ void PressureContact::find_faces(const Points& x) {
     if (m_passage && facing_share(m_passage->inward, face.normal) == 0.0) continue;
     const double longest = std::sqrt(std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()}));
     face.size = std::max(0.5 * longest, std::sqrt(4.0 / std::numbers::sqrt3 * face.area));
-    face.whole = measure_cover(face, kWhole, 0, find_sag(face));
+    face.whole = measure_cover(face, kWhole, 0, find_band(face));
     if (face.whole.area > 0.0 || face.whole.may_touch) m_faces.push_back(face);
   }
 }
@@ -85,20 +92,21 @@ PressureContact::Cover& PressureContact::Cover::operator+=(const Cover& other) {
   return *this;
 }
 
-/// How far the corners of a face may lie outside the tool that count as covered [m]: a half more than those
-/// of a regular triangle whose middle touches a ball like the tool. So the area that is covered is the same
-/// whether the corners or points between them hold the face up, and steps do not change it back and forth.
-double PressureContact::find_sag(const Face& face) const {
+/// How far from the tool the corners of a face still count in part as covered [m]: three times as far as
+/// those of a regular triangle are whose middle touches a ball like the tool. So about the same area is
+/// covered whether corners or points between them hold the face up, and it changes by degrees as the tool
+/// slides.
+double PressureContact::find_band(const Face& face) const {
   if (m_yielding == Yielding::no || m_passage) return 0.0;
   const double side = face.size;
-  return std::min(0.25 * side * side / m_tool.radius(), 0.15 * side);
+  return std::min(0.5 * side * side / m_tool.radius(), 0.3 * side);
 }
 
 /// Of a piece of a triangle, the distance taken as linear on its pieces of `level`. As the distance changes
 /// by no more than the point moves, a piece whose centre is farther than its corners is wholly on one side.
-/// `grown`: of a tool that is so much larger [m].
+/// With a `band`, of a face whose corners count by how near they are.
 PressureContact::Cover PressureContact::measure_cover(const Face& face, const Piece& piece, int level,
-                                                      double grown) {
+                                                      double band) {
   const Vec3 centre = face.at(centre_of(piece));
   std::array<Vec3, 3> x;
   double reach = 0.0;
@@ -106,9 +114,8 @@ PressureContact::Cover PressureContact::measure_cover(const Face& face, const Pi
     x[k] = face.at(piece[k]);
     reach = std::max(reach, (x[k] - centre).norm());
   }
-  LeastDistance found = find_least_distance(centre, reach + grown);
-  found.distance -= grown;
-  if (found.distance >= reach) return {};
+  const LeastDistance found = find_least_distance(centre, reach + band);
+  if (found.distance >= reach + band) return {};
   const bool is_inside = found.distance <= -reach;
   if (level > 0 && !is_inside) {
     Cover sum;
@@ -121,14 +128,13 @@ PressureContact::Cover PressureContact::measure_cover(const Face& face, const Pi
   if (!is_inside) {
     std::array<double, 3> distance;
     for (std::size_t k = 0; k < 3; ++k) {
-      LeastDistance corner = find_least_distance(x[k], kAnywhere);
-      corner.distance -= grown;
+      const LeastDistance corner = find_least_distance(x[k], kAnywhere);
       distance[k] = corner.distance;
       if (!(corner.distance < deepest.distance) || found.distance < 0.0) continue;
       deepest = corner;
       at = x[k];
     }
-    share = compute_negative_share(distance);
+    share = band > 0.0 ? compute_share_within(distance, band) : compute_negative_share(distance);
   }
   const double area = share * 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
   double facing = facing_share(found.outward, face.normal);
@@ -225,13 +231,16 @@ PressureContact::Cover PressureContact::press_pieces(const Face& face, const Pie
   return m_needs_cover ? measure_cover(face, piece, yields ? 0 : 1) : Cover{};
 }
 
-/// With pieces of about the size `spacing`: between two numbers of halvings, a mean of both. Where the body
-/// yields, faces that small press with their corners: as nodes do that a tool moves.
+/// With pieces of about the size `spacing`: between two numbers of halvings, a mean of both, so that the
+/// force has no jump as the patch grows. Where the body yields, faces that small press with their corners: as
+/// nodes do that a tool moves.
 void PressureContact::press_face(Face& face, double spacing, Contacts& out) {
   const double levels = std::clamp(std::log2(face.size / spacing), 0.0, static_cast<double>(kMostLevels));
   const int level = static_cast<int>(levels);
-  constexpr double kPassage = 0.4;  // of a halving, in which one number of them gives way to the next
-  const double share = std::clamp((levels - level - 0.5) / kPassage + 0.5, 0.0, 1.0);
+  // In which part of a halving one number of them gives way to the next: where the body yields, the force
+  // hangs on it most.
+  const double passage = m_yielding == Yielding::yes ? 1.0 : 0.4;
+  const double share = std::clamp((levels - level - 0.5) / passage + 0.5, 0.0, 1.0);
   face.cover = {};
   for (int i = 0; i < 2; ++i) {
     const double part = i == 0 ? 1.0 - share : share;

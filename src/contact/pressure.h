@@ -126,8 +126,8 @@ class PressureContact {
   void place_tool(const Pose& pose_t0, const Pose& pose_t1);
   void find_faces(const Points& x);
   double find_patch_radius();
-  double find_sag(const Face& face) const;
-  Cover measure_cover(const Face& face, const Piece& piece, int level, double grown = 0.0);
+  double find_band(const Face& face) const;
+  Cover measure_cover(const Face& face, const Piece& piece, int level, double band = 0.0);
   Cover measure_cover(const Face& face, int level) {
     return level == 0 ? face.whole : measure_cover(face, kWhole, level);
   }

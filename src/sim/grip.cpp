@@ -1,9 +1,12 @@
 #include "sim/grip.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace argil::sim {
 namespace {
+
+constexpr double kTouching = 0.05;  // gap of a point over its size, up to which it is part of the patch
 
 Vec3 find_point(const std::array<int, 3>& vertex, const std::array<double, 3>& weight, const Points& x) {
   Vec3 point = Vec3::Zero();
@@ -25,6 +28,12 @@ void Grip::hold(const contact::Contacts& contacts, const Vec3& on_hand, const co
     m_state.bonds.push_back({c.vertex, c.weight,
                              tool.orientation.conjugate() * (without_force - tool.position),
                              tool.orientation.conjugate() * c.normal, c.end_stiffness, c.area});
+  }
+  for (const contact::Contact& c : contacts.near) {
+    const double gap = -c.force.dot(c.normal) / c.stiffness;
+    if (gap > kTouching * std::sqrt(c.area)) continue;
+    m_state.bonds.push_back({c.vertex, c.weight, tool.orientation.conjugate() * (c.point - tool.position),
+                             tool.orientation.conjugate() * c.normal, c.stiffness, c.area});
   }
   m_state.pressing_force = holds() ? std::max(0.0, -on_hand.dot(find_normal(tool))) : 0.0;
 }

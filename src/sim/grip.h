@@ -18,8 +18,9 @@ class Grip {
   /// It has torn off, and holds nothing more until release().
   bool has_let_go() const { return m_state.has_let_go; }
 
-  /// Bonds the points of these contacts to the tool where they press on it: they carry the same forces.
-  /// That is what is held until the tool presses harder than now.
+  /// Bonds the points of these contacts to the tool where they press on it: they carry the same forces. So
+  /// does it points so near to it that which of them press is the mesh's doing; they carry none yet. That is
+  /// what is held until the tool presses harder than now.
   void hold(const contact::Contacts& contacts, const Vec3& on_hand, const contact::Pose& tool);
   void release() { m_state = {}; }
   /// `on_hand` [N]: the force that the patch exerts on the tool. Lets go when it pulls by more than the grip

@@ -1,0 +1,31 @@
+"""A ball on an elastic block that stands on its floor: the scene that the tables of the pressure law share."""
+import json
+import subprocess
+
+import h5py
+
+EDGE = 0.04  # of the block [m]
+PERIOD = 0.001  # [s]
+
+
+def find_force(argil, folder, places, *, radius, friction=0.0, ticks_of_step=1, between="hold", modulus=1e5, target_tets=8000):
+    """Force at the hand [N] in each tick (N×3), with the ball's middle at `places` (N×3) [m] one tick after the other. `modulus`
+    is E [Pa]; `folder` takes the scene and its result."""
+    lines = ["t,x,y,z"] + [f"{i * PERIOD:.3f},{x:.9f},{y:.9f},{z:.9f}" for i, (x, y, z) in enumerate(places)]
+    (folder / "motion.csv").write_text("\n".join(lines) + "\n", encoding="ascii")
+    scene = {
+        "about": "A ball on a block.",
+        "body": {"shape": {"kind": "box", "size_m": EDGE, "target_tets": target_tets, "skin_triangles": 0},
+                 "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 1e-6}]},
+        "material": {"youngs_modulus_Pa": modulus, "poissons_ratio": 0.3, "plasticity": {"enabled": False},
+                     "clay_kernel": {"form": "off"}},
+        "tool": {"shape": {"kind": "sphere", "radius_m": radius}, "mode": "push"},
+        "contact": {"law": "pressure", "friction": friction},
+        "haptics": {"physics_period_ticks": ticks_of_step, "water_period_ticks": ticks_of_step,
+                    "frame_period_ticks": 100 * ticks_of_step, "between_frames": between, "chatter_limit": 1},
+        "trace": {"file": "motion.csv"},
+    }
+    (folder / "scene.json").write_text(json.dumps(scene), encoding="ascii")
+    subprocess.run([argil, "run", folder / "scene.json", "-q", "-o", folder / "run.h5"], check=True)
+    with h5py.File(folder / "run.h5") as run:
+        return run["haptic/force"][:]
