@@ -2,7 +2,7 @@
 """Friction of the pressure law: a ball slides over an elastic block at constant depth, for several coefficients, moduli, meshes and
 lengths of a step.
 
-Usage: friction_table.py ARGIL [-o FILE.csv]      writes results/contact/friction.csv
+Usage: friction_table.py ARGIL [-o FILE.csv] [--tets COUNT …]      writes results/contact/friction.csv
 
 Columns: side force over normal force, mean over the way, over the coefficient; the largest change of that from step to step that goes
 back and forth (second difference); both forces are those at the hand.
@@ -33,11 +33,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
     parser.add_argument("argil", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "results/contact/friction.csv", metavar="FILE")
+    parser.add_argument("--tets", type=int, nargs="+", default=[8000], metavar="COUNT", help="meshes of the block")
     options = parser.parse_args()
     rows = []
     places = make_motion()
     with tempfile.TemporaryDirectory() as folder:
-        for tets, modulus, step, friction in itertools.product((8000, 40000), (3e4, 1e5), (1, 5, 14), (0.2, 0.5, 1.0)):
+        for tets, modulus, step, friction in itertools.product(options.tets, (3e4, 1e5), (1, 5, 14), (0.2, 0.5, 1.0)):
             force = find_force(options.argil, Path(folder), places, radius=RADIUS, friction=friction, ticks_of_step=step,
                                modulus=modulus, target_tets=tets)[DOWN + REST + SETTLED::step]
             ratio = -force[:, 0] / force[:, 2] / friction
