@@ -254,14 +254,6 @@ void check_trace(const Scenario& s, const device::Trace& trace) {
 
 }  // namespace
 
-sim::SurfaceKind choose_surface(const Scenario& s) {
-  if (s.params.contact_surface != sim::SurfaceKind::automatic) return s.params.contact_surface;
-  const bool has_skin =
-      s.body.kind == BodyKind::surface || (s.body.kind == BodyKind::shape && s.body.skin_triangles > 0);
-  const bool meets_skin = has_skin && s.params.contact.law == contact::ContactLaw::pressure;
-  return meets_skin ? sim::SurfaceKind::skin : sim::SurfaceKind::cage;
-}
-
 Scene build_scene(const Scenario& s) {
   Scene scene;
   scene.notes = s.warnings;

@@ -18,10 +18,6 @@ struct Scene {
   std::vector<std::string> notes;  ///< for the user: mesh quality, cage report, warnings
 };
 
-/// What the tool meets: where the scenario does not say, by the pressure law the skin if the body has one, by
-/// that of pairs (the paper) the cage.
-sim::SurfaceKind choose_surface(const Scenario& scenario);
-
 /// Reads or generates the body, its cage and skin, the tool and the trace. Throws InputError for what cannot
 /// run: inverted or flat tets, orphan vertices, regions without vertices, node numbers out of range, an open
 /// tool, a trace that is shorter than asked; IoError when a file cannot be read.

@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "material/moisture.h"
-#include "scenario/build.h"
 #include "scenario/medium_check.h"
 #include "scenario/parameter_table.h"
 #include "scenario/setting.h"
@@ -111,6 +110,16 @@ void leave_out_pairs(Scenario& s, const Json& document) {
                            "clay. Leave it out, or set /contact/law to pairs");
       return;
     }
+}
+
+/// What the tool meets: where the scenario does not say, by the pressure law the skin if the body has one, by
+/// that of pairs (the paper) the cage.
+sim::SurfaceKind choose_surface(const Scenario& s) {
+  if (s.params.contact_surface != sim::SurfaceKind::automatic) return s.params.contact_surface;
+  const bool has_skin =
+      s.body.kind == BodyKind::surface || (s.body.kind == BodyKind::shape && s.body.skin_triangles > 0);
+  const bool meets_skin = has_skin && s.params.contact.law == contact::ContactLaw::pressure;
+  return meets_skin ? sim::SurfaceKind::skin : sim::SurfaceKind::cage;
 }
 
 void check_contact(Scenario& s) {
