@@ -48,7 +48,7 @@ struct Contact {
 struct Contacts {
   std::vector<Contact> contacts;
   /// Of a pressure that a step solves for: points near the tool that press where the body comes to it, with
-  /// `force` + `stiffness` · way. `force` is along −`normal` and acts on nothing.
+  /// `force` + `stiffness` · way. `force` is along −`normal` and does not act.
   std::vector<Contact> near;
   bool with_touched = true;                ///< asked by the caller: also find the touched area (costs time)
   std::vector<int> touched_triangle;       ///< body triangles with an inside point, increasing

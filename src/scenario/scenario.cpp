@@ -58,12 +58,14 @@ void choose_mode(Scenario& s, const Json& document) {
 
 void check_rates(const Scenario& s) {
   const sim::RateParams& r = s.params.rates;
-  const auto require_multiple = [&, period = r.physics_period_ticks](const char* pointer, int value) {
+  const auto require_multiple = [&](const char* pointer, int value) {
+    const int period = r.physics_period_ticks;
+    const int next = (value / period + 1) * period;
     if (value % period != 0)
       throw InputError(
           s.file, pointer,
           std::to_string(value) + " is no multiple of physics_period_ticks (" + std::to_string(period) + ")",
-          "give a multiple of it, for instance " + std::to_string((value / period + 1) * period));
+          "give a multiple of it, for instance " + std::to_string(next));
   };
   require_multiple("/haptics/water_period_ticks", r.water_period_ticks);
   require_multiple("/haptics/frame_period_ticks", r.frame_period_ticks);
@@ -352,7 +354,8 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
   if (!document.is_object())
     throw InputError(file, "", "is not a JSON object", "a scenario is {\"about\": …}");
   for (const Setting& setting : settings) apply_setting(document, setting, file);
-  if (document.value("preset", Json("none")) == "paper") {
+  const Json preset = document.value("preset", Json("none"));
+  if (preset == "paper") {
     Json below = Json::parse(kPaperPreset);
     below.merge_patch(document);
     document = below;
