@@ -22,18 +22,16 @@ Vec3 place_in_world(const contact::Pose& tool, const Vec3& place) {
 
 void Grip::hold(const contact::Contacts& contacts, const Vec3& on_hand, const contact::Pose& tool) {
   m_state.bonds.clear();
-  for (const contact::Contact& c : contacts.contacts) {
-    if (!(c.end_stiffness > 0.0)) continue;
-    const Vec3 without_force = c.point + c.end_force / c.end_stiffness * c.normal;
-    m_state.bonds.push_back({c.vertex, c.weight,
-                             tool.orientation.conjugate() * (without_force - tool.position),
-                             tool.orientation.conjugate() * c.normal, c.end_stiffness, c.area});
-  }
+  const auto bond = [&](const contact::Contact& c, const Vec3& place, double stiffness) {
+    const Quat to_tool = tool.orientation.conjugate();
+    m_state.bonds.push_back(
+        {c.vertex, c.weight, to_tool * (place - tool.position), to_tool * c.normal, stiffness, c.area});
+  };
+  for (const contact::Contact& c : contacts.contacts)
+    if (c.end_stiffness > 0.0) bond(c, c.point + c.end_force / c.end_stiffness * c.normal, c.end_stiffness);
   for (const contact::Contact& c : contacts.near) {
     const double gap = -c.force.dot(c.normal) / c.stiffness;
-    if (gap > kTouching * std::sqrt(c.area)) continue;
-    m_state.bonds.push_back({c.vertex, c.weight, tool.orientation.conjugate() * (c.point - tool.position),
-                             tool.orientation.conjugate() * c.normal, c.stiffness, c.area});
+    if (gap <= kTouching * std::sqrt(c.area)) bond(c, c.point, c.stiffness);
   }
   m_state.pressing_force = holds() ? std::max(0.0, -on_hand.dot(find_normal(tool))) : 0.0;
 }
