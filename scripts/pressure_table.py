@@ -11,7 +11,7 @@ from pathlib import Path
 
 import plot_hertz
 
-CHOSEN = 40  # kappa is so many times E* over the cell
+CHOSEN = 80  # kappa is so many times E* over the cell
 CELL = (6 * 2**0.5 / 6) ** (1 / 3)  # edge of a regular tet that has a sixth of a cube's volume, over the cube's edge
 
 

@@ -39,7 +39,6 @@ struct Contact {
   double spring = 0.0;       ///< κ·area of the point [N/m], as long as it is in touch
   double begin_force = 0.0;  ///< force along `normal` at t₀ [N]
   double friction = 0.0;  ///< μ: `resistance` is what the spring along the surface would carry without limit
-  double area = 0.0;      ///< pressure: of the body's surface [m²]
   Vec3 point =
       Vec3::Zero();  ///< where the force acts at the end of the tick [m], for the torque and the picture
 };

@@ -14,7 +14,7 @@ enum class ContactLaw {
 
 /// κ h/E* [–] of a pressure whose κ is chosen: doubling it changes the force by less than a hundredth where
 /// the patch's radius has two cells or more.
-inline constexpr double kChosenStiffness = 40.0;
+inline constexpr double kChosenStiffness = 80.0;
 
 /// How deep a pair counts.
 enum class PenaltyKind {

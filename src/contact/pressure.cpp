@@ -28,11 +28,12 @@ Vec3 centre_of(const std::array<Vec3, 3>& piece) {
 }  // namespace
 
 PressureContact::PressureContact(const Triangles& surface, int num_vertices, ToolSolid tool,
-                                 SurfaceStiffness stiffness, bool is_solved_for)
+                                 SurfaceStiffness stiffness, bool is_solved_for, PenaltyKind penalty)
     : m_surface(surface),
       m_tool(std::move(tool)),
       m_stiffness(std::move(stiffness)),
       m_is_solved_for(is_solved_for),
+      m_penalty(penalty),
       m_passages(m_tool.inner_balls().size(), surface.cols()),
       m_corner_of_vertex(static_cast<std::size_t>(num_vertices), -1) {
   ARGIL_ASSERT(m_stiffness.per_area.size() == surface.cols(), m_stiffness.per_area.size());
@@ -80,7 +81,7 @@ void PressureContact::find_faces(const Points& x) {
     if (m_passage && facing_share(m_passage->inward, face.normal) == 0.0) continue;
     const double longest = std::sqrt(std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()}));
     face.size = std::max(0.5 * longest, std::sqrt(4.0 / std::numbers::sqrt3 * face.area));
-    face.whole = measure_cover(face, kWhole, 0, find_band(face));
+    face.whole = measure_cover(face, kWhole, 0, find_band(face, 0));
     if (face.whole.area > 0.0 || face.whole.may_touch) m_faces.push_back(face);
   }
 }
@@ -92,13 +93,13 @@ PressureContact::Cover& PressureContact::Cover::operator+=(const Cover& other) {
   return *this;
 }
 
-/// How far from the tool the corners of a face still count in part as covered [m]: three times as far as
-/// those of a regular triangle are whose middle touches a ball like the tool. So about the same area is
-/// covered whether corners or points between them hold the face up, and it changes by degrees as the tool
-/// slides.
-double PressureContact::find_band(const Face& face) const {
+/// How far from the tool the corners of a face's pieces of `level` still count in part as covered [m]: three
+/// times as far as those of a regular triangle are whose middle touches a ball like the tool. So about the
+/// same area is covered whether corners or points between them hold the face up, and it changes by degrees as
+/// the tool slides.
+double PressureContact::find_band(const Face& face, int level) const {
   if (m_yielding == Yielding::no || m_passage) return 0.0;
-  const double side = face.size;
+  const double side = std::ldexp(face.size, -level);
   return std::min(0.5 * side * side / m_tool.radius(), 0.3 * side);
 }
 
@@ -119,7 +120,7 @@ PressureContact::Cover PressureContact::measure_cover(const Face& face, const Pi
   const bool is_inside = found.distance <= -reach;
   if (level > 0 && !is_inside) {
     Cover sum;
-    for (const Piece& part : quarter(piece)) sum += measure_cover(face, part, level - 1);
+    for (const Piece& part : quarter(piece)) sum += measure_cover(face, part, level - 1, band);
     return sum;
   }
   LeastDistance deepest = found;
@@ -143,11 +144,13 @@ PressureContact::Cover PressureContact::measure_cover(const Face& face, const Pi
   return {area, area * facing, share == 0.0};
 }
 
-/// Radius of a disc as large as the patch, 0 where nothing is touched [m]. Triangles are split until a piece
-/// is no larger than that.
+/// Radius of a disc as large as the patch, 0 where nothing is touched [m]. It hangs on how finely the
+/// triangles are split to measure it; what counts is that found with pieces of just its size, between two
+/// halvings by degrees.
 double PressureContact::find_patch_radius() {
   double spacing = 0.0;
   for (const Face& face : m_faces) spacing = std::max(spacing, face.size);
+  double coarser = 0.0;  // the radius with pieces twice as large
   for (int pass = 0; pass <= kMostLevels; ++pass, spacing *= 0.5) {
     Cover patch;
     for (const Face& face : m_faces) {
@@ -158,13 +161,19 @@ double PressureContact::find_patch_radius() {
     // As large as this part of all that is covered, however little of it faces the tool.
     const double least = kLeastRadius * std::sqrt(patch.area / std::numbers::pi);
     const double radius = std::max(least, std::sqrt(patch.facing_area / std::numbers::pi));
-    if (spacing <= radius) return radius;
+    if (spacing <= radius) {
+      if (coarser == 0.0) return radius;
+      const double above = std::log2(2.0 * spacing / coarser);
+      const double part = above / (above + std::log2(radius / spacing));
+      return std::pow(coarser, 1.0 - part) * std::pow(radius, part);
+    }
+    coarser = radius;
   }
   return 2.0 * spacing;  // smaller than can be told: as small as a piece
 }
 
 void PressureContact::add_contact(const std::array<int, 3>& vertex, const Vec3& weight,
-                                  const PointDepth& depth, double area, double stiffness, const Vec3& point,
+                                  const PointDepth& depth, double stiffness, const Vec3& point,
                                   Contacts& out) const {
   const bool touches = depth.mean > 0.0 || depth.begin > 0.0;
   if (!(stiffness > 0.0) || (!touches && !finds_near())) return;
@@ -179,7 +188,6 @@ void PressureContact::add_contact(const std::array<int, 3>& vertex, const Vec3& 
   c.passes = depth.end <= 0.0;
   c.spring = stiffness;
   c.begin_force = stiffness * std::max(0.0, depth.begin);
-  c.area = area;
   c.point = point;
   if (touches) {
     out.contacts.push_back(c);
@@ -200,7 +208,6 @@ void PressureContact::press_corners(const Face& face, double share) {
     }
     Corner& corner = m_corners[static_cast<std::size_t>(place)];
     const double area = share * face.area / 3.0 * facing_share(corner.depth.outward, face.normal);
-    corner.area += area;
     corner.stiffness += area * stiffness_of(face);
   }
 }
@@ -225,7 +232,7 @@ PressureContact::Cover PressureContact::press_pieces(const Face& face, const Pie
     const Vec3 b = face.at(piece[2]) - face.at(piece[0]);
     const double area = share * 0.5 * a.cross(b).norm() * facing_share(depth.outward, face.normal);
     const Eigen::Vector3i v = m_surface.col(face.number);
-    add_contact({v(0), v(1), v(2)}, centre, depth, area, area * stiffness_of(face), x, out);
+    add_contact({v(0), v(1), v(2)}, centre, depth, area * stiffness_of(face), x, out);
   }
   // Where κ hangs on the patch's area, once finer than the pressure.
   return m_needs_cover ? measure_cover(face, piece, yields ? 0 : 1) : Cover{};
@@ -261,14 +268,26 @@ void PressureContact::press_face(Face& face, double spacing, Contacts& out) {
 void PressureContact::press_all_corners(const Points& x, Contacts& out) {
   for (const Corner& corner : m_corners) {
     m_corner_of_vertex[static_cast<std::size_t>(corner.vertex)] = -1;
-    add_contact({corner.vertex, -1, -1}, Vec3::UnitX(), corner.depth, corner.area, corner.stiffness,
-                x.col(corner.vertex), out);
+    add_contact({corner.vertex, -1, -1}, Vec3::UnitX(), corner.depth, corner.stiffness, x.col(corner.vertex),
+                out);
   }
   m_corners.clear();
 }
 
 double PressureContact::stiffness_of(const Face& face) const {
   return m_yielding == Yielding::yes ? m_stiffness.per_area(face.number) : 1.0;
+}
+
+Patch PressureContact::find_patch() const {
+  constexpr double kUncovered = 1e-6;  // weight of a face none of whose corners is near
+  double area = 0.0;
+  double modulus = 0.0;
+  for (const Face& face : m_faces) {
+    const double weight = face.whole.facing_area + kUncovered * face.area;
+    area += weight;
+    modulus += weight * m_stiffness.modulus(face.number);
+  }
+  return {m_patch_radius, area > 0.0 ? modulus / area : 0.0};
 }
 
 /// κ [Pa/m] of a tool under which the body keeps its shape. Hertz: a ball that is d deep in a half-space is
@@ -307,7 +326,9 @@ void PressureContact::find_contacts(const Points& x, const Pose& pose_t0, const 
                                     Yielding yielding, Contacts& contacts) {
   if (!m_tree) prepare(x);
   m_passage = m_passages.find(m_tool.inner_balls(), pose_t0, pose_t1, {x, m_surface, *m_tree});
-  press(x, pose_t0, pose_t1, yielding, contacts);
+  // A tool that passes the surface is met on its way in any case.
+  const bool at_end = m_penalty == PenaltyKind::discrete && !m_passage;
+  press(x, at_end ? pose_t1 : pose_t0, pose_t1, yielding, contacts);
 }
 
 void PressureContact::find_unpressed(const Points& x, const Pose& pose, Contacts& contacts) {
@@ -320,16 +341,17 @@ void PressureContact::press(const Points& x, const Pose& pose_t0, const Pose& po
                             Contacts& contacts) {
   contacts.clear();
   m_yielding = yielding;
+  m_patch_radius = 0.0;
   m_needs_cover = yielding == Yielding::no || contacts.with_touched;
   place_tool(pose_t0, pose_t1);
   find_faces(x);
   if (m_faces.empty()) return;
   // Of clay that yields, the force is the clay's, and the points only share it out; where it keeps its shape
   // they are all that counts.
-  const double points_per_radius = yielding == Yielding::yes ? 2.0 : 4.0;
-  const double radius = find_patch_radius();
-  if (radius == 0.0) return;
-  for (Face& face : m_faces) press_face(face, radius / points_per_radius, contacts);
+  const double points_per_radius = yielding == Yielding::yes ? 3.0 : 4.0;
+  m_patch_radius = find_patch_radius();
+  if (m_patch_radius == 0.0) return;
+  for (Face& face : m_faces) press_face(face, m_patch_radius / points_per_radius, contacts);
   press_all_corners(x, contacts);
   if (yielding == Yielding::no) hold_shape(contacts);
   for (const Face& face : m_faces) {

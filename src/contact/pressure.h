@@ -26,6 +26,12 @@ struct StiffnessOfTriangle {
   double modulus = 0.0;
 };
 
+/// What of the body's surface a tool touches.
+struct Patch {
+  double radius = 0.0;   ///< of a disc as large [m]
+  double modulus = 0.0;  ///< E* [Pa] of the body under it
+};
+
 /// How the body answers the tool.
 enum class Yielding {
   yes,  ///< its shape gives way: κ is a penalty
@@ -45,7 +51,7 @@ class PressureContact {
   /// far the body comes along with a tool that draws back, and lets go what would draw. A contact that the
   /// tool has left by the end of its way then has the force of the mean depth, even below zero.
   PressureContact(const Triangles& surface, int num_vertices, ToolSolid tool, SurfaceStiffness stiffness,
-                  bool is_solved_for = false);
+                  bool is_solved_for = false, PenaltyKind penalty = PenaltyKind::continuous);
 
   /// Makes for a body that is here what the next call would else make first.
   void prepare(const Points& x);
@@ -54,6 +60,9 @@ class PressureContact {
   SurfaceStiffness& stiffness() { return m_stiffness; }
   /// The next call may start anywhere.
   void forget() { m_tree.reset(); }
+
+  /// Of the last contacts.
+  Patch find_patch() const;
 
   void commit() { m_passages.commit(); }
   void roll_back() {
@@ -67,7 +76,7 @@ class PressureContact {
   void advance(const Points& x_before, const Points& x, std::optional<double> motion);
 
   /// Contacts while the tool goes from pose_t0 to pose_t1 and the body's vertices stay at x.
-  /// Depths are means over the way; each point of the tool moves linearly in so many pieces that none is
+  /// Depths are means over the way, or with the discrete penalty those at its end; each point of the tool moves linearly in so many pieces that none is
   /// longer than the tool is thick.
   void find_contacts(const Points& x, const Pose& pose_t0, const Pose& pose_t1, Yielding yielding,
                      Contacts& contacts);
@@ -107,7 +116,6 @@ class PressureContact {
   struct Corner {  // of triangles that press with their corners
     int vertex = -1;
     PointDepth depth;
-    double area = 0.0;       // [m²]
     double stiffness = 0.0;  // Σ κ·area [N/m]
   };
   struct Face {
@@ -126,10 +134,10 @@ class PressureContact {
   void place_tool(const Pose& pose_t0, const Pose& pose_t1);
   void find_faces(const Points& x);
   double find_patch_radius();
-  double find_band(const Face& face) const;
+  double find_band(const Face& face, int level) const;
   Cover measure_cover(const Face& face, const Piece& piece, int level, double band = 0.0);
   Cover measure_cover(const Face& face, int level) {
-    return level == 0 ? face.whole : measure_cover(face, kWhole, level);
+    return level == 0 ? face.whole : measure_cover(face, kWhole, level, find_band(face, level));
   }
   ToolDistance find_distance(const Vec3& p, const Place& place, double far = kAnywhere);
   LeastDistance find_least_distance(const Vec3& p, double reach);
@@ -144,7 +152,7 @@ class PressureContact {
   void press_face(Face& face, double spacing, Contacts& out);
   void press_corners(const Face& face, double share);
   Cover press_pieces(const Face& face, const Piece& piece, int level, double share, Contacts& out);
-  void add_contact(const std::array<int, 3>& vertex, const Vec3& weight, const PointDepth& depth, double area,
+  void add_contact(const std::array<int, 3>& vertex, const Vec3& weight, const PointDepth& depth,
                    double stiffness, const Vec3& point, Contacts& out) const;
   void press_all_corners(const Points& x, Contacts& out);
   double stiffness_of(const Face& face) const;
@@ -157,6 +165,7 @@ class PressureContact {
   ToolSolid m_tool;
   SurfaceStiffness m_stiffness;
   bool m_is_solved_for;
+  PenaltyKind m_penalty;
   std::optional<BoundingTree> m_tree;
   Passage m_passages;
   // Of the present call.
@@ -167,6 +176,7 @@ class PressureContact {
   Mat3 m_turn = Mat3::Identity();              // from the tool's end back to its start
   Yielding m_yielding = Yielding::yes;
   bool m_needs_cover = false;
+  double m_patch_radius = 0.0;  // [m]
   std::vector<int> m_candidates;
   std::vector<Face> m_faces;  // near the tool's way, by number
   std::vector<Corner> m_corners;

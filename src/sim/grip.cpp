@@ -2,43 +2,80 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace argil::sim {
 namespace {
 
-constexpr double kTouching = 0.05;  // gap of a point over its size, up to which it is part of the patch
+constexpr double kStiffness = 50.0;  // of all bonds, over that of a half-space under the patch
 
-Vec3 find_point(const std::array<int, 3>& vertex, const std::array<double, 3>& weight, const Points& x) {
-  Vec3 point = Vec3::Zero();
-  for (std::size_t k = 0; k < 3 && vertex[k] >= 0; ++k) point += weight[k] * x.col(vertex[k]);
-  return point;
+struct VertexForce {
+  int vertex = -1;
+  Vec3 force = Vec3::Zero();
+};
+
+/// What presses on each vertex at the end of the way.
+std::vector<VertexForce> find_vertex_forces(const contact::Contacts& contacts) {
+  std::vector<VertexForce> parts;
+  for (const contact::Contact& c : contacts.contacts)
+    for (std::size_t k = 0; k < 3 && c.vertex[k] >= 0; ++k)
+      parts.push_back({c.vertex[k], c.weight[k] * c.end_force * c.normal});
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const VertexForce& a, const VertexForce& b) { return a.vertex < b.vertex; });
+  std::vector<VertexForce> sums;
+  for (const VertexForce& part : parts) {
+    if (sums.empty() || sums.back().vertex != part.vertex) sums.push_back({part.vertex});
+    sums.back().force += part.force;
+  }
+  std::erase_if(sums, [](const VertexForce& f) { return f.force.isZero(0.0); });
+  return sums;
 }
 
 Vec3 place_in_world(const contact::Pose& tool, const Vec3& place) {
   return tool.position + tool.orientation * place;
 }
 
+/// Of a disc on which a ball would press as far apart [m]: the mean square distance of Hertz's pressure from
+/// the middle is 2/5 of its radius squared.
+double find_radius(const std::vector<VertexForce>& forces, const Points& x) {
+  double sum = 0.0;
+  Vec3 centre = Vec3::Zero();
+  for (const auto& [vertex, force] : forces) {
+    sum += force.norm();
+    centre += force.norm() / sum * (x.col(vertex) - centre);
+  }
+  double square = 0.0;
+  for (const auto& [vertex, force] : forces)
+    square += force.norm() / sum * (x.col(vertex) - centre).squaredNorm();
+  return std::sqrt(2.5 * square);
+}
+
 }  // namespace
 
-void Grip::hold(const contact::Contacts& contacts, const Vec3& on_hand, const contact::Pose& tool) {
+void Grip::hold(const contact::Contacts& contacts, const contact::Patch& patch, const Points& x,
+                const Vec3& on_hand, const contact::Pose& tool) {
+  const std::vector<VertexForce> forces = find_vertex_forces(contacts);
+  const double radius = std::max(patch.radius, find_radius(forces, x));
+  const double stiffness = kStiffness * 2.0 * patch.modulus * radius;
+  double squares = 0.0;
+  for (const VertexForce& f : forces) squares += f.force.squaredNorm();
+  const Quat to_tool = tool.orientation.conjugate();
   m_state.bonds.clear();
-  const auto bond = [&](const contact::Contact& c, const Vec3& place, double stiffness) {
-    const Quat to_tool = tool.orientation.conjugate();
-    m_state.bonds.push_back(
-        {c.vertex, c.weight, to_tool * (place - tool.position), to_tool * c.normal, stiffness, c.area});
-  };
-  for (const contact::Contact& c : contacts.contacts)
-    if (c.end_stiffness > 0.0) bond(c, c.point + c.end_force / c.end_stiffness * c.normal, c.end_stiffness);
-  for (const contact::Contact& c : contacts.near) {
-    const double gap = -c.force.dot(c.normal) / c.stiffness;
-    if (gap <= kTouching * std::sqrt(c.area)) bond(c, c.point, c.stiffness);
+  Vec3 on_body = Vec3::Zero();
+  for (const auto& [vertex, force] : forces) {
+    on_body += force;
+    const double part = force.squaredNorm() / squares * stiffness;
+    const Vec3 place = x.col(vertex) + force / part;
+    m_state.bonds.push_back({vertex, to_tool * (place - tool.position), to_tool * force.normalized(), part});
   }
-  m_state.pressing_force = holds() ? std::max(0.0, -on_hand.dot(find_normal(tool))) : 0.0;
+  m_state.area = std::numbers::pi * patch.radius * patch.radius;
+  const Vec3 normal = find_normal(tool);
+  m_state.pressing_force = holds() ? std::max({0.0, on_body.dot(normal), -on_hand.dot(normal)}) : 0.0;
 }
 
 Vec3 Grip::find_normal(const contact::Pose& tool) const {
   Vec3 normal = Vec3::Zero();
-  for (const Bond& bond : m_state.bonds) normal += bond.area * bond.normal;
+  for (const Bond& bond : m_state.bonds) normal += bond.stiffness * bond.normal;
   return tool.orientation * normal.normalized();
 }
 
@@ -47,10 +84,8 @@ void Grip::test(const Vec3& on_hand, const contact::Pose& tool) {
   const Vec3 normal = find_normal(tool);
   const double pressing = std::max(0.0, -on_hand.dot(normal));
   if (pressing > m_state.pressing_force) return release();
-  double area = 0.0;
-  for (const Bond& bond : m_state.bonds) area += bond.area;
   const Vec3 pull = on_hand + pressing * normal;
-  if (pull.norm() <= m_strength * area) return;
+  if (pull.norm() <= m_strength * m_state.area) return;
   m_state.bonds.clear();
   m_state.has_let_go = true;
 }
@@ -59,17 +94,16 @@ void Grip::find_contacts(const Points& x, const contact::Pose& from, const conta
                          contact::Contacts& contacts) const {
   contacts.clear();
   for (const Bond& bond : m_state.bonds) {
-    const Vec3 point = find_point(bond.vertex, bond.weight, x);
+    const Vec3 point = x.col(bond.vertex);
     const Vec3 end = place_in_world(to, bond.place) - point;
     const Vec3 mean = 0.5 * (place_in_world(from, bond.place) - point + end);
     contact::Contact c;
-    c.vertex = bond.vertex;
-    c.weight = bond.weight;
+    c.vertex = {bond.vertex, -1, -1};
+    c.weight = {1.0, 0.0, 0.0};
     c.normal = to.orientation * bond.normal;
     c.force = bond.stiffness * mean;
     c.stiffness = c.end_stiffness = c.spring = bond.stiffness;
     c.end_force = bond.stiffness * c.normal.dot(end);
-    c.area = bond.area;
     c.point = point;
     contacts.contacts.push_back(c);
   }
@@ -78,13 +112,13 @@ void Grip::find_contacts(const Points& x, const contact::Pose& from, const conta
 
 void Grip::serialize(Archive& archive) {
   archive.number("grip/has_let_go", m_state.has_let_go);
+  archive.number("grip/area", m_state.area);
   archive.number("grip/pressing_force", m_state.pressing_force);
   archive.records("grip/bonds", m_state.bonds, [](Bond& bond, auto field) {
-    for (int& vertex : bond.vertex) field(vertex);
-    for (double& weight : bond.weight) field(weight);
+    field(bond.vertex);
     for (double& value : bond.place) field(value);
     for (double& value : bond.normal) field(value);
-    field(bond.stiffness), field(bond.area);
+    field(bond.stiffness);
   });
   if (archive.is_restoring()) commit();
 }

@@ -1,15 +1,19 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "base/archive.h"
-#include "contact/contact.h"
+#include "contact/pressure.h"
 
 namespace argil::sim {
 
-/// The patch that a pulling tool holds: each of its points hangs on a place of the tool by a spring that
-/// pulls as it pushes, along the surface as across it, until the mean traction is more than the grip bears.
+/// The patch that a pulling tool holds: vertices of the touched surface hang on places of the tool by springs
+/// that pull as they push, along the surface as across it, until the mean traction is more than the grip
+/// bears.
+///
+/// All springs together are kStiffness times as stiff as an elastic half-space under a disc as large as the
+/// patch, 2 E* a, or as the cells that bear it. Each has its part by the square of the force that presses on
+/// its vertex: that hardly hangs on κ, and a rim that hardly presses hardly holds.
 class Grip {
  public:
   explicit Grip(double strength) : m_strength(strength) {}
@@ -18,10 +22,10 @@ class Grip {
   /// It has torn off, and holds nothing more until release().
   bool has_let_go() const { return m_state.has_let_go; }
 
-  /// Bonds the points of these contacts to the tool where they press on it: they carry the same forces. So
-  /// does it points so near to it that which of them press is the mesh's doing; they carry none yet. That is
-  /// what is held until the tool presses harder than now.
-  void hold(const contact::Contacts& contacts, const Vec3& on_hand, const contact::Pose& tool);
+  /// Bonds what these contacts press on to the tool. The bonds carry the same forces, and hold until the tool
+  /// presses harder than now. `x`: the touched surface's vertices (3×n) [m].
+  void hold(const contact::Contacts& contacts, const contact::Patch& patch, const Points& x,
+            const Vec3& on_hand, const contact::Pose& tool);
   void release() { m_state = {}; }
   /// `on_hand` [N]: the force that the patch exerts on the tool. Lets go when it pulls by more than the grip
   /// bears; what presses does not count. Where the tool presses harder than when it took hold, it holds
@@ -38,15 +42,14 @@ class Grip {
 
  private:
   struct Bond {
-    std::array<int, 3> vertex = {-1, -1, -1};  ///< of the surface; −1 beyond the last
-    std::array<double, 3> weight = {};
-    Vec3 place = Vec3::Zero();   ///< in the tool frame, where the point is without force [m]
+    int vertex = -1;             ///< of the surface
+    Vec3 place = Vec3::Zero();   ///< in the tool frame, where the vertex is without force [m]
     Vec3 normal = Vec3::Zero();  ///< in the tool frame: the way out of the tool, unit
     double stiffness = 0.0;      ///< [N/m], in all directions
-    double area = 0.0;           ///< [m²]
   };
   struct State {
     std::vector<Bond> bonds;
+    double area = 0.0;            ///< of the patch [m²]
     double pressing_force = 0.0;  ///< [N] when it took hold
     bool has_let_go = false;
   };

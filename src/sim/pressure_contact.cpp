@@ -28,7 +28,8 @@ void HandSide::update_grip() {
   if (m_grip.holds() || m_grip.has_let_go() || m_state.num_contacts == 0 || !turns_back) return;
   m_pressure->find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.contact_tool, m_state.yielding,
                             m_contacts);
-  m_grip.hold(m_contacts, m_state.hand_force, m_state.contact_tool);
+  m_grip.hold(m_contacts, m_pressure->find_patch(), m_touched.x_t1(), m_state.hand_force,
+              m_state.contact_tool);
 }
 
 void HandSide::meet_surface() {

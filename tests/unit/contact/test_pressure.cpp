@@ -244,5 +244,29 @@ TEST(Pressure, IsAMeanOverTheWay) {
   EXPECT_NEAR(contacts.force_on_tool.z() / mean, 1.0, 0.03);
 }
 
+/// What a tool passes through it meets on its way all the same.
+TEST(Pressure, WithTheDiscretePenaltyIsThatOfTheEnd) {
+  const mesh::TriangleMesh plane = make_flat_slab(40);
+  const Eigen::Index count = plane.triangles.cols();
+  const SurfaceStiffness stiffness{Field::Constant(count, kStiffness), Field::Constant(count, kModulus)};
+  const Pose out{{0.001, 0.002, kRadius + 0.001}};
+  const Pose high{{0.001, 0.002, kRadius - 0.001}};
+  const Pose low{{0.001, 0.002, kRadius - 0.002}};
+  for (const Yielding yielding : {Yielding::yes, Yielding::no}) {
+    PressureContact pressure(plane.triangles, plane.num_vertices(), ToolSolid(kBall), stiffness, false,
+                             PenaltyKind::discrete);
+    Contacts contacts;
+    const double at_low = press(plane, low.position, yielding).force_on_tool.z();
+    for (const Pose& from : {out, high, low}) {
+      pressure.find_contacts(plane.vertices, from, low, yielding, contacts);
+      EXPECT_EQ(contacts.force_on_tool.z(), at_low);
+    }
+    pressure.find_contacts(plane.vertices, low, out, yielding, contacts);
+    EXPECT_TRUE(contacts.contacts.empty());
+    pressure.find_contacts(plane.vertices, out, Pose{{0.001, 0.002, -0.05}}, yielding, contacts);
+    EXPECT_GT(contacts.force_on_tool.z(), at_low);
+  }
+}
+
 }  // namespace
 }  // namespace argil::contact

@@ -1,9 +1,11 @@
 // A grip bonds a touched patch to the tool: the same springs both ways, until the mean traction is more than
-// it bears. Expected: k · (place on the tool − point), strength · area.
+// it bears. Expected: the forces that pressed, springs of 50 · 2 E* a in all, by the squares of these forces,
+// strength · area.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "sim/grip.h"
@@ -11,35 +13,35 @@
 namespace argil::sim {
 namespace {
 
-constexpr double kStrength = 2000.0;  // [Pa]
-constexpr double kArea = 1e-5;        // of a point [m²]
+constexpr double kStrength = 2000.0;          // [Pa]
+constexpr contact::Patch kPatch{0.005, 1e5};  // wider than the points lie apart
 constexpr int kPoints = 3;
+constexpr double kContact = 1e5;  // stiffness of a point [N/m]
 
 /// Three points that a tool above presses down by forces of 0.1, 0.2 and 0.3 N.
-struct Patch {
+struct Scene {
   Points x{3, 3 * kPoints};
   contact::Contacts pressed;
   contact::Pose tool{{0.001, 0.002, 0.01}, Quat(Eigen::AngleAxisd(0.3, Vec3(1, 1, 0).normalized()))};
   Vec3 on_hand = Vec3::Zero();
   Grip grip{kStrength};
 
-  Patch() {
+  Scene() {
     for (int v = 0; v < x.cols(); ++v) x.col(v) << 1e-3 * (v % 3), 2e-3 * (v / 3), 1e-4 * v;
     for (int i = 0; i < kPoints; ++i) {
       contact::Contact c;
       c.vertex = {3 * i, 3 * i + 1, 3 * i + 2};
       c.weight = {0.5, 0.25, 0.25};
       c.normal = -Vec3::UnitZ();
-      c.end_stiffness = c.stiffness = 1000.0 * (i + 1);
+      c.end_stiffness = c.stiffness = kContact;
       c.end_force = 0.1 * (i + 1);
       c.force = c.end_force * c.normal;
-      c.area = kArea;
       c.point = 0.5 * x.col(3 * i) + 0.25 * x.col(3 * i + 1) + 0.25 * x.col(3 * i + 2);
       pressed.contacts.push_back(c);
       on_hand -= c.force;
     }
   }
-  void hold() { grip.hold(pressed, on_hand, tool); }
+  void hold() { grip.hold(pressed, kPatch, x, on_hand, tool); }
   contact::Contacts find(const contact::Pose& from, const contact::Pose& to) const {
     contact::Contacts found;
     grip.find_contacts(x, from, to, found);
@@ -52,33 +54,62 @@ contact::Pose shift(const contact::Pose& pose, const Vec3& by) {
   return {pose.position + by, pose.orientation};
 }
 
+/// What presses on a vertex, of the scene above: half of a point's force or a quarter.
+double find_pressing(int vertex) {
+  return 0.1 * (vertex / 3 + 1) * (vertex % 3 == 0 ? 0.5 : 0.25);
+}
+
 TEST(Grip, TakesHoldWithTheForcesThatPress) {
-  Patch patch;
+  Scene patch;
   patch.hold();
   const contact::Contacts found = patch.find(patch.tool);
-  ASSERT_EQ(found.contacts.size(), patch.pressed.contacts.size());
-  for (std::size_t i = 0; i < found.contacts.size(); ++i) {
-    EXPECT_LT((found.contacts[i].force - patch.pressed.contacts[i].force).norm(), 1e-12);
-    EXPECT_LT((found.contacts[i].point - patch.pressed.contacts[i].point).norm(), 1e-15);
+  ASSERT_EQ(found.contacts.size(), 3 * kPoints);
+  for (const contact::Contact& c : found.contacts) {
+    EXPECT_LT((c.force + find_pressing(c.vertex[0]) * Vec3::UnitZ()).norm(), 1e-12);
+    EXPECT_EQ(c.point, patch.x.col(c.vertex[0]));
   }
   EXPECT_LT((found.force_on_tool - patch.on_hand).norm(), 1e-12);
+  Vec3 torque = Vec3::Zero();
+  for (const contact::Contact& c : patch.pressed.contacts)
+    torque -= (c.point - patch.tool.position).cross(c.force);
+  EXPECT_LT((found.torque_on_tool - torque).norm(), 1e-15);
 }
 
 TEST(Grip, PullsAsItPushesInAllDirections) {
-  Patch patch;
-  patch.hold();
-  for (const Vec3& by : {Vec3(0, 0, 1e-3), Vec3(0, 0, -1e-3), Vec3(2e-4, 0, 0), Vec3(-1e-4, 3e-4, 5e-4)}) {
-    const contact::Contacts found = patch.find(shift(patch.tool, by));
-    for (std::size_t i = 0; i < found.contacts.size(); ++i) {
-      const contact::Contact& before = patch.pressed.contacts[i];
-      EXPECT_LT((found.contacts[i].force - before.force - before.end_stiffness * by).norm(), 1e-12);
-      EXPECT_EQ(found.contacts[i].stiffness, before.end_stiffness);
-    }
+  for (const double contact : {10.0, 1e6}) {  // stiffness of the contact, which does not matter
+    Scene patch;
+    for (contact::Contact& c : patch.pressed.contacts) c.end_stiffness = contact;
+    patch.hold();
+    const double all = 50.0 * 2.0 * kPatch.modulus * kPatch.radius;
+    double squares = 0.0;
+    for (int v = 0; v < 3 * kPoints; ++v) squares += find_pressing(v) * find_pressing(v);
+    for (const Vec3& by : {Vec3(0, 0, 1e-3), Vec3(0, 0, -1e-3), Vec3(2e-4, 0, 0), Vec3(-1e-4, 3e-4, 5e-4)})
+      for (const contact::Contact& c : patch.find(shift(patch.tool, by)).contacts) {
+        const double pressing = find_pressing(c.vertex[0]);
+        const double stiffness = all * pressing * pressing / squares;
+        EXPECT_NEAR(c.stiffness, stiffness, 1e-12 * all);
+        EXPECT_LT((c.force + pressing * Vec3::UnitZ() - stiffness * by).norm(), 1e-12);
+      }
   }
 }
 
+/// Where triangles are larger than the patch, the bonds are as stiff as befits the cells that bear it: the
+/// forces have the mean square distance from their middle of Hertz's pressure on a disc, 2/5 a².
+TEST(Grip, IsAsStiffAsTheCellsThatBearIt) {
+  Scene patch;
+  patch.grip.hold(patch.pressed, {1e-4, kPatch.modulus}, patch.x, patch.on_hand, patch.tool);
+  Vec3 centre = Vec3::Zero();
+  for (int v = 0; v < 3 * kPoints; ++v) centre += find_pressing(v) / 0.6 * patch.x.col(v);
+  double square = 0.0;
+  for (int v = 0; v < 3 * kPoints; ++v)
+    square += find_pressing(v) / 0.6 * (patch.x.col(v) - centre).squaredNorm();
+  double all = 0.0;
+  for (const contact::Contact& c : patch.find(patch.tool).contacts) all += c.stiffness;
+  EXPECT_NEAR(all / (50.0 * 2.0 * kPatch.modulus * std::sqrt(2.5 * square)), 1.0, 1e-12);
+}
+
 TEST(Grip, TurnsWithTheTool) {
-  Patch patch;
+  Scene patch;
   patch.hold();
   const Quat turn(Eigen::AngleAxisd(0.7, Vec3(1, -1, 2).normalized()));
   const Vec3 by(0.01, 0.02, -0.03);
@@ -94,7 +125,7 @@ TEST(Grip, TurnsWithTheTool) {
 }
 
 TEST(Grip, ActsOnTheToolAsOnTheBodyByTheMeanOfTheWay) {
-  Patch patch;
+  Scene patch;
   patch.hold();
   const contact::Pose from = shift(patch.tool, Vec3(1e-4, 0, 0));
   const contact::Pose to = shift(patch.tool, Vec3(3e-4, 2e-4, 1e-3));
@@ -113,9 +144,9 @@ TEST(Grip, ActsOnTheToolAsOnTheBodyByTheMeanOfTheWay) {
 }
 
 TEST(Grip, LetsGoBeyondItsStrengthTimesItsArea) {
-  const double most = kStrength * kArea * kPoints;  // [N]
+  const double most = kStrength * std::numbers::pi * kPatch.radius * kPatch.radius;  // [N]
   for (const Vec3& direction : {Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0.6, 0, -0.8)}) {
-    Patch patch;
+    Scene patch;
     patch.hold();
     patch.grip.test(0.999 * most * direction, patch.tool);
     EXPECT_TRUE(patch.grip.holds()) << direction.transpose();
@@ -130,7 +161,7 @@ TEST(Grip, LetsGoBeyondItsStrengthTimesItsArea) {
 }
 
 TEST(Grip, HoldsWhatPressesLessThanWhenItTookHold) {
-  Patch patch;
+  Scene patch;
   patch.hold();
   patch.grip.test(0.99 * patch.on_hand, patch.tool);
   EXPECT_TRUE(patch.grip.holds());
@@ -140,17 +171,17 @@ TEST(Grip, HoldsWhatPressesLessThanWhenItTookHold) {
 }
 
 TEST(Grip, HoldsNoPointThatHasLeft) {
-  Patch patch;
-  patch.pressed.contacts[1].end_stiffness = 0.0;
+  Scene patch;
+  patch.pressed.contacts[1].end_force = 0.0;
   patch.hold();
-  EXPECT_EQ(patch.find(patch.tool).contacts.size(), patch.pressed.contacts.size() - 1);
+  EXPECT_EQ(patch.find(patch.tool).contacts.size(), 3 * (kPoints - 1));
   patch.pressed.contacts.clear();
   patch.hold();
   EXPECT_FALSE(patch.grip.holds());
 }
 
 TEST(Grip, GoesOnFromWhatWasCommittedOrSaved) {
-  Patch patch;
+  Scene patch;
   patch.hold();
   patch.grip.commit();
   const contact::Pose pulled = shift(patch.tool, Vec3(0, 0, 1e-3));
@@ -164,7 +195,7 @@ TEST(Grip, GoesOnFromWhatWasCommittedOrSaved) {
   EXPECT_FALSE(patch.grip.has_let_go());
   EXPECT_EQ(patch.find(pulled).force_on_tool, wanted);
 
-  Patch other;
+  Scene other;
   Archive restoring = Archive::make_restoring(saved, "saved");
   other.grip.serialize(restoring);
   other.grip.release();

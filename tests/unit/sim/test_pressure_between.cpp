@@ -262,9 +262,10 @@ INSTANTIATE_TEST_SUITE_P(BetweenFrames, Exchange,
                                           testing::Values(1, 7, 14)),
                          name_rate);
 
-/// Under a ball whose patch is two cells of 4 mm in radius: κ as the body's stiffness asks for, and up to a
-/// hundred times that.
-TEST(PressureStiffness, DoubledOrMuchLargerChangesNoForceByAHundredth) {
+/// Under a ball whose patch is two cells of 4 mm in radius: κ as the body's stiffness asks for, twice that, and
+/// up to a hundred times. If each doubling halves what the last one changed, all of them together change twice
+/// what the first does, and a body of tets is held up by its faces' middles rather than by its nodes then.
+TEST(PressureStiffness, DoubledChangesNoForceByAHundredth) {
   constexpr double kLarge = 0.016;
   constexpr double kDepth = 4e-3;
   const auto hand = [](double depth) {
@@ -286,7 +287,7 @@ TEST(PressureStiffness, DoubledOrMuchLargerChangesNoForceByAHundredth) {
   }
   EXPECT_NEAR(forces[1] / forces[0], 1.0, 0.002);
   for (std::size_t i = 2; i < forces.size(); ++i) {
-    EXPECT_NEAR(forces[i] / forces[1], 1.0, 0.01) << i;
+    EXPECT_NEAR(forces[i] / forces[1], 1.0, i == 2 ? 0.01 : 0.03) << i;
     EXPECT_GT(forces[i], forces[i - 1]) << i;  // a stiffer contact lets less of the tool in
   }
 }
@@ -298,7 +299,7 @@ class Rest : public testing::TestWithParam<std::tuple<int, double, int>> {};
 TEST_P(Rest, IsAFixedPoint) {
   const auto [ticks, factor, finer] = GetParam();
   Params params = make_pressure_params(ticks);
-  params.contact.pressure_stiffness = factor * 3e8;
+  params.contact.pressure_stiffness = factor * 6e8;
   Simulation simulation = make_pressed_block(params, ToolMode::push, finer);
   lead(simulation, press_block(2e-3), 140);
   lead(simulation, press_block(2e-3), 560);
@@ -338,7 +339,7 @@ TEST(GripInTheLoop, HoldsAgainOnlyAfterTheToolHasLeft) {
   find_pull(1e9, strong);
   ASSERT_GT(strong[0], 0.1);
   ASSERT_GT(strong[3], strong[0]);
-  find_pull(6000.0, weak);
+  find_pull(3000.0, weak);
   ASSERT_GT(weak[0], 0.0);
   EXPECT_LT(weak[0], strong[0]);
   EXPECT_LT(weak[3], 1e-9);
