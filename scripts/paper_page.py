@@ -352,7 +352,8 @@ def main():
     page += "\n".join(f"## {number}. {title}\n\n{write().rstrip()}\n"
                       for number, (title, write) in enumerate(ITEMS, start=1))
     options.output.parent.mkdir(parents=True, exist_ok=True)
-    options.output.write_text(page, encoding="utf-8")
+    if not options.output.is_file() or options.output.read_text(encoding="utf-8") != page:  # others may read it
+        options.output.write_text(page, encoding="utf-8")
     print(options.output)
 
 

@@ -27,7 +27,7 @@ INLINE = {  # outside of blocks, as written → as typed, or the test that types
     "ctest --test-dir build -L quick": "ctest --test-dir build -L quick -N",
     "cmake --preset release": "cmake --list-presets | grep --quiet release",
     "scripts/build argil viewer": "scripts/build argil viewer",
-    "scripts/reproduce": "scripts/reproduce limits",  # of its items the one with the shortest runs
+    "scripts/reproduce": "scripts/reproduce page",  # of its items the one without runs; scripts.paper makes them
     "argil --version": "build/bin/argil --version",
     "cmake --install build": ("install.find_package",),
     "man argil": ("install.find_package",),
