@@ -41,6 +41,11 @@ class Splitter {
       m_x.push_back(skin.vertices.col(v));
       m_weights.push_back(embedding.weights.col(v));
     }
+    m_halvings.resize(m_x.size(), 0);
+    double longest = m_shortest;
+    for (const auto& v : skin.triangles.colwise())
+      for (int k = 0; k < 3; ++k) longest = std::max(longest, (x(v(k)) - x(v((k + 1) % 3))).norm());
+    m_most_halvings = 1 + static_cast<int>(std::ceil(std::log2(longest / m_shortest)));
   }
 
   void split(const std::array<int, 3>& v) {
@@ -92,7 +97,9 @@ class Splitter {
   /// The vertex that halves an edge; kNone where it is not halved.
   int find_middle(int a, int b) {
     const double length = (x(a) - x(b)).norm();
-    if (!(length > m_shortest)) return kNone;
+    const int halvings =
+        1 + std::max(m_halvings[static_cast<std::size_t>(a)], m_halvings[static_cast<std::size_t>(b)]);
+    if (!(length > m_shortest) || halvings > m_most_halvings) return kNone;
     const auto [found, is_new] = m_middle.try_emplace(std::minmax(a, b), kNone);
     if (!is_new) return found->second;
     const Vec3 place = 0.5 * (x(a) + x(b));
@@ -101,6 +108,7 @@ class Splitter {
     if (!(length > std::min({m_longest(tet(a)), m_longest(tet(b)), m_longest(in.tet)}))) return kNone;
     found->second = static_cast<int>(m_x.size());
     m_x.push_back(place);
+    m_halvings.push_back(halvings);
     m_tet.push_back(in.tet);
     m_weights.push_back(in.weights);
     return found->second;
@@ -123,6 +131,10 @@ class Splitter {
   Field m_longest;  // edge of a triangle, by the tet beneath [m]
   double m_shortest;
   std::vector<Vec3> m_x;
+  // Of each vertex, how many times edges were halved to come to it. An edge that has to stay as it is would
+  // else have the triangle beside it halved for ever, whose other edges are together longer than that one.
+  std::vector<int> m_halvings;
+  int m_most_halvings = 0;  // after so many the longest edge is shorter than any cell asks for
   std::vector<int> m_tet;
   std::vector<Vec4> m_weights;
   std::map<std::pair<int, int>, int> m_middle;  // of edges that were looked at

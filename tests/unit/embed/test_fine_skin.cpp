@@ -162,5 +162,33 @@ TEST(FineSkin, LeavesAnEdgeWhoseMiddleLiesOutOfTheCage) {
   EXPECT_LT((Vec3(x.col(3)) - Vec3(0.001, 0.005, 0.005)).norm(), 1e-15);
 }
 
+/// An edge many cells long stays as it is, and the triangle beside it can have no short edges only.
+TEST(FineSkin, EndsBesideALongEdgeThatStays) {
+  mesh::TetMesh cage = test::make_block(4, 8, 4, Vec3(0.01, 0.02, 0.01));
+  const int n = cage.num_vertices(), m = cage.num_tets();
+  cage.vertices.conservativeResize(3, 2 * n);
+  cage.vertices.rightCols(n) = cage.vertices.leftCols(n).colwise() + Vec3(0.05, 0, 0);
+  cage.tets.conservativeResize(4, 2 * m);
+  cage.tets.rightCols(m) = cage.tets.leftCols(m).array() + n;
+  mesh::TriangleMesh skin;
+  skin.vertices.resize(3, 4);
+  skin.vertices.col(0) = Vec3(0.009, 0.001, 0.005);
+  skin.vertices.col(1) = Vec3(0.051, 0.001, 0.005);
+  skin.vertices.col(2) = Vec3(0.009, 0.019, 0.005);
+  skin.vertices.col(3) = Vec3(0.051, 0.019, 0.005);
+  skin.triangles.resize(3, 2);
+  skin.triangles << 0, 1, 1, 3, 2, 2;
+  const FineSkin fine = split(skin, cage, 0.5);
+  const Points x = place(fine, cage, cage.vertices);
+  double area = 0.0;
+  for (Eigen::Index t = 0; t < fine.triangles.cols(); ++t) {
+    const Vec3 a = area_vector(x, fine.triangles.col(t));
+    EXPECT_GT(a.z(), 0.0);
+    area += a.z();
+  }
+  EXPECT_NEAR(area / (0.042 * 0.018), 1.0, 1e-12);
+  EXPECT_LT(fine.triangles.cols(), 1000);
+}
+
 }  // namespace
 }  // namespace argil::embed
