@@ -251,13 +251,12 @@ class Figures(unittest.TestCase):
 
     @unittest.skipUnless(importlib.util.find_spec("vtk") and shutil.which("Xvfb"), "needs python3-vtk9 and xvfb")
     def test_the_picture_is_blue_where_it_is_wet(self):
-        # Each panel takes seconds without a graphics card.
-        self.assertEqual(self.draw("render.py", "dry.h5", "--frames", "before,after", "-o", "dry.png").returncode, 0)
-        self.assertEqual(self.draw("render.py", "wet.h5", "-o", "wet.png").returncode, 0)
+        for name in ("dry", "wet"):  # one panel each: it takes seconds without a graphics card
+            self.assertEqual(self.draw("render.py", f"{name}.h5", "--frames", "after", "-o", f"{name}.png").returncode, 0)
 
         def share_of_blue(name):
             pixels = matplotlib.image.imread(self.file(name))
-            body = pixels[:, : int(0.85 * pixels.shape[1])]  # without the colour bar
+            body = pixels[:, : int(0.7 * pixels.shape[1])]  # without the colour bar
             return np.mean(body[..., 2] > body[..., 0] + 0.12)
 
         self.assertEqual(share_of_blue("dry.png"), 0)
