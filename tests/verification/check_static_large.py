@@ -1,6 +1,8 @@
 """Static solutions of argil at large rotation against a small program of numpy and scipy, node by node.
 
-Usage: check_static_large.py ARGIL
+Usage: check_static_large.py ARGIL [--fine]
+
+Every law with every element on coarse bars, 8 s; --fine: on bars of 360 and 192 tets, a minute of an idle core.
 
 The laws, with F = R S by singular value decomposition, J = det F, W per rest volume [J/m³] and P = ∂W/∂F [Pa]:
   corotational  P = 2μ (F − R) + λ tr(S − 1) R
@@ -68,7 +70,7 @@ def corotational(F, lame):
 def neo_hookean(F, lame):
     J = np.linalg.det(F)
     pressure = (lame[:, 0] + lame[:, 1]) * (J - 1.0) - lame[:, 1]
-    cofactor = J[:, None, None] * np.linalg.inv(F).transpose(0, 2, 1)
+    cofactor = np.stack([np.cross(F[:, 1], F[:, 2]), np.cross(F[:, 2], F[:, 0]), np.cross(F[:, 0], F[:, 1])], axis=1)
     return lame[:, 1, None, None] * F + pressure[:, None, None] * cofactor
 
 
@@ -170,11 +172,12 @@ def compare(argil, folder, name, loads, model, element, num_shares):
     return error <= TOLERANCE and turn > 30.0 and count <= MOST_LINEARISATIONS
 
 
-def main(argil):
+def main(argil, is_fine):
+    bars = (("p1", (10, 3, 2)), ("p2", (8, 2, 2))) if is_fine else (("p1", (6, 2, 1)), ("p2", (4, 1, 1)))
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         results = []
-        for element, cells in (("p1", (10, 3, 2)), ("p2", (8, 2, 2))):
+        for element, cells in bars:
             nodes, tets = sp.bar_mesh(cells, (0.1, 0.03, 0.02))
             sp.write_mesh(folder / "bar.msh", nodes, tets)
             for motion, loads, num_shares in (("bent", bend(nodes), 8), ("turned", twist(nodes, 80), 10)):
@@ -185,4 +188,4 @@ def main(argil):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(sys.argv[1], "--fine" in sys.argv[2:])
