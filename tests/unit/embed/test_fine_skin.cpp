@@ -140,14 +140,18 @@ TEST(FineSkin, DoesNotHangOnNumbers) {
   EXPECT_EQ(list_places(xa, a.triangles), list_places(xb, b.triangles));
 }
 
-TEST(FineSkin, LeavesAnEdgeWhoseMiddleLiesOutOfTheCage) {
-  // Two blocks apart, and a skin that reaches from one to the other.
-  mesh::TetMesh cage = test::make_block(2, 2, 2, Vec3::Constant(0.01));
+/// A block and the same again 50 mm along x, for skins that reach from one to the other.
+mesh::TetMesh make_two_apart(mesh::TetMesh cage) {
   const int n = cage.num_vertices(), m = cage.num_tets();
   cage.vertices.conservativeResize(3, 2 * n);
   cage.vertices.rightCols(n) = cage.vertices.leftCols(n).colwise() + Vec3(0.05, 0, 0);
   cage.tets.conservativeResize(4, 2 * m);
   cage.tets.rightCols(m) = cage.tets.leftCols(m).array() + n;
+  return cage;
+}
+
+TEST(FineSkin, LeavesAnEdgeWhoseMiddleLiesOutOfTheCage) {
+  const mesh::TetMesh cage = make_two_apart(test::make_block(2, 2, 2, Vec3::Constant(0.01)));
   mesh::TriangleMesh skin;
   skin.vertices.resize(3, 3);
   skin.vertices.col(0) = Vec3(0.001, 0.001, 0.005);
@@ -164,12 +168,7 @@ TEST(FineSkin, LeavesAnEdgeWhoseMiddleLiesOutOfTheCage) {
 
 /// An edge many cells long stays as it is, and the triangle beside it can have no short edges only.
 TEST(FineSkin, EndsBesideALongEdgeThatStays) {
-  mesh::TetMesh cage = test::make_block(4, 8, 4, Vec3(0.01, 0.02, 0.01));
-  const int n = cage.num_vertices(), m = cage.num_tets();
-  cage.vertices.conservativeResize(3, 2 * n);
-  cage.vertices.rightCols(n) = cage.vertices.leftCols(n).colwise() + Vec3(0.05, 0, 0);
-  cage.tets.conservativeResize(4, 2 * m);
-  cage.tets.rightCols(m) = cage.tets.leftCols(m).array() + n;
+  const mesh::TetMesh cage = make_two_apart(test::make_block(4, 8, 4, Vec3(0.01, 0.02, 0.01)));
   mesh::TriangleMesh skin;
   skin.vertices.resize(3, 4);
   skin.vertices.col(0) = Vec3(0.009, 0.001, 0.005);
