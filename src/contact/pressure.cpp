@@ -144,9 +144,8 @@ PressureContact::Cover PressureContact::measure_cover(const Face& face, const Pi
   return {area, area * facing, share == 0.0};
 }
 
-/// Radius of a disc as large as the patch, 0 where nothing is touched [m]. It hangs on how finely the
-/// triangles are split to measure it; what counts is that found with pieces of just its size, between two
-/// halvings by degrees.
+/// Radius of a disc as large as the patch, 0 where nothing is touched [m]: the one that is found with pieces
+/// of just that size. Between two halvings of the pieces it is interpolated, so that it has no jump.
 double PressureContact::find_patch_radius() {
   double spacing = 0.0;
   for (const Face& face : m_faces) spacing = std::max(spacing, face.size);

@@ -76,8 +76,8 @@ class PressureContact {
   void advance(const Points& x_before, const Points& x, std::optional<double> motion);
 
   /// Contacts while the tool goes from pose_t0 to pose_t1 and the body's vertices stay at x.
-  /// Depths are means over the way, or with the discrete penalty those at its end; each point of the tool moves linearly in so many pieces that none is
-  /// longer than the tool is thick.
+  /// Depths are means over the way, or with the discrete penalty those at its end; each point of the tool
+  /// moves linearly in so many pieces that none is longer than the tool is thick.
   void find_contacts(const Points& x, const Pose& pose_t0, const Pose& pose_t1, Yielding yielding,
                      Contacts& contacts);
   /// As if the body kept its shape, of a tool that stands at `pose`; not a part of its way.

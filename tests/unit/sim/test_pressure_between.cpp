@@ -262,9 +262,8 @@ INSTANTIATE_TEST_SUITE_P(BetweenFrames, Exchange,
                                           testing::Values(1, 7, 14)),
                          name_rate);
 
-/// Under a ball whose patch is two cells of 4 mm in radius: κ as the body's stiffness asks for, twice that, and
-/// up to a hundred times. If each doubling halves what the last one changed, all of them together change twice
-/// what the first does, and a body of tets is held up by its faces' middles rather than by its nodes then.
+/// Under a ball whose patch is two cells of 4 mm in radius: κ as the body's stiffness asks for, twice that,
+/// and up to a hundred times, where the middles of faces bear the ball and not the nodes alone.
 TEST(PressureStiffness, DoubledChangesNoForceByAHundredth) {
   constexpr double kLarge = 0.016;
   constexpr double kDepth = 4e-3;
