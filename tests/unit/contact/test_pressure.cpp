@@ -268,5 +268,22 @@ TEST(Pressure, WithTheDiscretePenaltyIsThatOfTheEnd) {
   }
 }
 
+/// Where it becomes larger than a triangle, too. Steps of 4 µm, in which its radius grows by 2 % at most.
+TEST(Pressure, MeasuresThePatchWithoutJumps) {
+  for (const int n : {4, 20, 60}) {
+    const mesh::TriangleMesh plane = make_flat_slab(n);
+    PressureContact pressure = make_contact(plane, ToolSolid(kBall));
+    Contacts contacts;
+    double before = 0.0;
+    for (int i = 50; i <= 750; ++i) {
+      const Pose pose{{0.0011, 0.0023, kRadius - 4e-6 * i}};
+      pressure.find_contacts(plane.vertices, pose, pose, Yielding::yes, contacts);
+      const double radius = pressure.find_patch().radius;
+      if (before > 0.0) EXPECT_NEAR(radius / before, 1.0, 0.05) << n << ' ' << i;
+      before = radius;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace argil::contact
