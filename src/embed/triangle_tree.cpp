@@ -100,29 +100,46 @@ void TriangleTree::set_radius(const Field& radius) {
   }
 }
 
-double TriangleTree::compute_distance(const Vec3& x, double limit) const {
-  if (m_tree.is_empty()) return limit;
-  double smallest = limit;
+template <class AtTriangle>
+void TriangleTree::look_near(const Vec3& x, bool is_thick, const double& smallest,
+                             AtTriangle at_triangle) const {
   const auto bound = [&](int index) {
     const Tree::Node& node = m_tree.node(index);
-    return node.box.distance(x) - node.kept.radius;
+    return node.box.distance(x) - (is_thick ? node.kept.radius : 0.0);
   };
   const auto is_near = [&](double distance) { return distance < smallest; };
   const auto at_leaf = [&](int index) {
     for (const int t : m_tree.triangles_of(m_tree.node(index))) {
-      const auto corners = m_surface.triangles.col(t);
-      const Vec3 radius(m_radius(corners(0)), m_radius(corners(1)), m_radius(corners(2)));
-      const ClosestPoint closest =
-          find_closest_point(m_surface.vertices.col(corners(0)), m_surface.vertices.col(corners(1)),
-                             m_surface.vertices.col(corners(2)), x);
-      smallest = std::min(smallest, (x - closest.point).norm() - closest.weights.dot(radius));
-      if (radius.maxCoeff() == radius.minCoeff()) continue;
-      for (int k = 0; k < 3; ++k)  // a thick corner's ball can reach past the closest point's
-        smallest = std::min(smallest, (x - m_surface.vertices.col(corners(k))).norm() - radius(k));
+      const Eigen::Vector3i corners = m_surface.triangles.col(t);
+      at_triangle(corners,
+                  find_closest_point(m_surface.vertices.col(corners(0)), m_surface.vertices.col(corners(1)),
+                                     m_surface.vertices.col(corners(2)), x));
     }
   };
-  if (is_near(bound(0))) m_tree.descend_by_distance(bound, is_near, at_leaf, [](int) {});
+  if (!m_tree.is_empty() && is_near(bound(0)))
+    m_tree.descend_by_distance(bound, is_near, at_leaf, [](int) {});
+}
+
+double TriangleTree::compute_distance(const Vec3& x, double limit) const {
+  double smallest = limit;
+  look_near(x, true, smallest, [&](const Eigen::Vector3i& corners, const ClosestPoint& closest) {
+    const Vec3 radius(m_radius(corners(0)), m_radius(corners(1)), m_radius(corners(2)));
+    smallest = std::min(smallest, (x - closest.point).norm() - closest.weights.dot(radius));
+    if (radius.maxCoeff() == radius.minCoeff()) return;
+    for (int k = 0; k < 3; ++k)  // a thick corner's ball can reach past the closest point's
+      smallest = std::min(smallest, (x - m_surface.vertices.col(corners(k))).norm() - radius(k));
+  });
   return smallest;
+}
+
+TriangleTree::Nearest TriangleTree::find_nearest(const Vec3& x, double limit) const {
+  Nearest nearest;
+  nearest.distance = limit;
+  look_near(x, false, nearest.distance, [&](const Eigen::Vector3i&, const ClosestPoint& closest) {
+    const double distance = (x - closest.point).norm();
+    if (distance < nearest.distance) nearest = {distance, closest.point};
+  });
+  return nearest;
 }
 
 void TriangleTree::add_solid_angle(int index, const Vec3& x, double& sum) const {

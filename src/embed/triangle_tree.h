@@ -30,6 +30,13 @@ class TriangleTree {
   /// closest points p; negative within the radius on either side. Returns `limit` where it is larger.
   double compute_distance(const Vec3& x, double limit) const;
 
+  struct Nearest {
+    double distance = 0.0;  ///< [m]
+    Vec3 point = Vec3::Zero();
+  };
+  /// The point of the surface, not thickened, that is nearest to x; `limit` and no point where it is farther.
+  Nearest find_nearest(const Vec3& x, double limit) const;
+
   /// How often the surface winds round x: 1 inside and 0 outside a closed surface, a smooth field between
   /// where there are holes. Far groups of triangles count as one dipole [Barill et al. 2018, eq. 14].
   double compute_winding_number(const Vec3& x) const;
@@ -44,6 +51,9 @@ class TriangleTree {
   };
   using Tree = mesh::BoxTree<Group>;
 
+  /// Calls at_triangle(corners, closest point) for triangles that may be nearer to x than `smallest`.
+  template <class AtTriangle>
+  void look_near(const Vec3& x, bool is_thick, const double& smallest, AtTriangle at_triangle) const;
   void summarise(Tree::Node& node, std::span<const int> triangles) const;
   /// Adds to `sum` the solid angle [steradian] of what lies below a node.
   void add_solid_angle(int index, const Vec3& x, double& sum) const;

@@ -73,4 +73,16 @@ void sort_tets(TetMesh& mesh) {
   mesh.numbers = std::move(order);
 }
 
+std::vector<int> sort_vertices(TetMesh& mesh) {
+  std::vector<int> order(static_cast<std::size_t>(mesh.num_vertices()));
+  std::iota(order.begin(), order.end(), 0);
+  sort_along_curve(mesh.vertices, order);
+  std::vector<int> number(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    number[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
+  mesh.vertices = Points(mesh.vertices(Eigen::all, order));
+  for (int& v : mesh.tets.reshaped()) v = number[static_cast<std::size_t>(v)];
+  return number;
+}
+
 }  // namespace argil::mesh

@@ -16,6 +16,9 @@ void sort_along_curve(const Points& x, std::vector<int>& list);
 /// vertices to the tets around them, then find in the cache what they ask for. Vertices stay as they are.
 void sort_tets(TetMesh& mesh);
 
+/// Numbers the vertices along that curve. Returns the new number of each.
+std::vector<int> sort_vertices(TetMesh& mesh);
+
 /// Entities of tets, a column each, by the numbers that the tets had before they were sorted.
 template <class Columns>
 Columns in_file_order(const TetMesh& mesh, const Columns& of_tets) {

@@ -125,19 +125,9 @@ void measure_tet(const TetMesh& mesh, int t, double volume, QualityReport& repor
   } else if (volume < 0.0) {
     report.inverted.push_back(t);
   }
-  std::array<Vec3, 4> normal;  // outward, or all inward
-  for (std::size_t f = 0; f < 4; ++f) {
-    const auto corner = [&](std::size_t i) { return x[static_cast<std::size_t>(kOppositeFace[f][i])]; };
-    normal[f] = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-  }
-  for (std::size_t a = 0; a < 4; ++a)
-    for (std::size_t b = a + 1; b < 4; ++b) {
-      const bool has_area = normal[a].squaredNorm() > 0.0 && normal[b].squaredNorm() > 0.0;
-      const double angle = std::atan2(normal[a].cross(normal[b]).norm(), -normal[a].dot(normal[b]));
-      const double degrees = angle * 180.0 / std::numbers::pi;
-      report.min_dihedral_degrees = std::min(report.min_dihedral_degrees, has_area ? degrees : 0.0);
-      report.max_dihedral_degrees = std::max(report.max_dihedral_degrees, has_area ? degrees : 180.0);
-    }
+  const DihedralAngles angles = compute_dihedral_angles(x);
+  report.min_dihedral_degrees = std::min(report.min_dihedral_degrees, angles.smallest_degrees);
+  report.max_dihedral_degrees = std::max(report.max_dihedral_degrees, angles.largest_degrees);
 }
 
 void find_orphans(const TetMesh& mesh, QualityReport& report) {
@@ -189,6 +179,24 @@ void refuse(const std::string& file, const std::vector<int>& found, int total, c
 }
 
 }  // namespace
+
+DihedralAngles compute_dihedral_angles(const std::array<Vec3, 4>& x) {
+  std::array<Vec3, 4> normal;  // outward, or all inward
+  for (std::size_t f = 0; f < 4; ++f) {
+    const auto corner = [&](std::size_t i) { return x[static_cast<std::size_t>(kOppositeFace[f][i])]; };
+    normal[f] = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+  }
+  DihedralAngles angles{180.0, 0.0};
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = a + 1; b < 4; ++b) {
+      const bool has_area = normal[a].squaredNorm() > 0.0 && normal[b].squaredNorm() > 0.0;
+      const double angle = std::atan2(normal[a].cross(normal[b]).norm(), -normal[a].dot(normal[b]));
+      const double degrees = angle * 180.0 / std::numbers::pi;
+      angles.smallest_degrees = std::min(angles.smallest_degrees, has_area ? degrees : 0.0);
+      angles.largest_degrees = std::max(angles.largest_degrees, has_area ? degrees : 180.0);
+    }
+  return angles;
+}
 
 QualityReport compute_quality(const TetMesh& mesh) {
   QualityReport report;

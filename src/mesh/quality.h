@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,13 @@ inline constexpr double kLargestSize = 1e9;
 
 /// Throws InputError when what `file` holds is smaller or larger across, or lies farther off the origin.
 void require_size(const Points& vertices, const std::string& file);
+
+/// Between the faces of a tet, inside it: 0 and 180 where a face has no area.
+struct DihedralAngles {
+  double smallest_degrees = 0.0;
+  double largest_degrees = 0.0;
+};
+DihedralAngles compute_dihedral_angles(const std::array<Vec3, 4>& corners);
 
 /// What a reviewer asks of a tet mesh. Lists hold element or vertex numbers from 0, increasing.
 struct QualityReport {

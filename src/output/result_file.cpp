@@ -67,6 +67,12 @@ void write_mesh(const Group& mesh, const ResultHeader& header) {
   write_entities(mesh, "skin_triangles", header.skin_triangles, schema::kSkinTriangles);
   write_entities(mesh, "tool_vertices", header.tool.vertices, schema::kToolVertices);
   write_entities(mesh, "tool_triangles", header.tool.triangles, schema::kToolTriangles);
+  if (header.touched_places.empty()) return;
+  Eigen::Matrix4Xd places(4, static_cast<Eigen::Index>(header.touched_places.size()));
+  for (std::size_t i = 0; i < header.touched_places.size(); ++i)
+    places.col(static_cast<Eigen::Index>(i)) << header.touched_places[i].position,
+        header.touched_places[i].radius;
+  write_entities(mesh, "touched_places", places, schema::kTouchedPlaces);
 }
 
 void write_provenance(const Group& provenance, const ResultHeader& header) {

@@ -12,6 +12,7 @@
 #include "device/haptic_device.h"
 #include "mesh/tet_mesh.h"
 #include "sim/record.h"
+#include "sim/state.h"
 
 namespace argil::output {
 
@@ -19,10 +20,11 @@ namespace argil::output {
 struct ResultHeader {
   Points rest_position;  ///< 3×n [m]
   Tets tets;
-  Triangles surface_triangles;  ///< boundary of the tets, outward
-  Triangles skin_triangles;     ///< 3×0 without a skin
-  mesh::TriangleMesh tool;      ///< tool surface in its own frame
-  double haptic_period = 0.0;   ///< [s]
+  Triangles surface_triangles;                    ///< boundary of the tets, outward
+  Triangles skin_triangles;                       ///< 3×0 without a skin
+  mesh::TriangleMesh tool;                        ///< tool surface in its own frame
+  std::vector<sim::TouchedPlace> touched_places;  ///< by which cells were graded
+  double haptic_period = 0.0;                     ///< [s]
   sim::FidelityMode fidelity = sim::FidelityMode::full;
   std::vector<std::pair<std::string, std::string>>
       provenance;  ///< name → text: resolved scenario, contact's stiffness, hashes, numerics tag
@@ -49,9 +51,10 @@ struct SessionTick {
 struct Session {
   SessionHead head;
   std::vector<SessionTick> ticks;
-  std::vector<device::DeviceSample> samples;  ///< that each of them consumed, world coordinates
-  std::string end_hash;                       ///< of the state at its end; empty when it was killed
-  bool is_interrupted = false;                ///< it was stopped, or killed
+  std::vector<device::DeviceSample> samples;      ///< that each of them consumed, world coordinates
+  std::vector<sim::TouchedPlace> touched_places;  ///< by which cells were graded
+  std::string end_hash;                           ///< of the state at its end; empty when it was killed
+  bool is_interrupted = false;                    ///< it was stopped, or killed
 };
 
 /// Wall clock of a tick of a live session.

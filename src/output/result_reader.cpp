@@ -107,6 +107,18 @@ std::optional<Failure> ResultReader::read_failure() const {
       group.read_text("quantity"), group.read_real("value"), group.read_real("bound")};
 }
 
+namespace {
+
+std::vector<sim::TouchedPlace> read_touched_places(const Group& mesh) {
+  std::vector<sim::TouchedPlace> places;
+  if (!mesh.has("touched_places")) return places;
+  const auto columns = read_entities<Eigen::Matrix4Xd>(mesh, "touched_places");
+  for (const auto& place : columns.colwise()) places.push_back({place.head<3>(), place(3)});
+  return places;
+}
+
+}  // namespace
+
 ResultHeader ResultReader::read_header() const {
   const Group mesh = m_root.open_group("mesh");
   ResultHeader header;
@@ -117,6 +129,7 @@ ResultHeader ResultReader::read_header() const {
   header.skin_triangles = read_entities<Triangles>(mesh, "skin_triangles");
   header.tool.vertices = read_entities<Points>(mesh, "tool_vertices");
   header.tool.triangles = read_elements<Triangles>(mesh, "tool_triangles", header.tool.vertices.cols());
+  header.touched_places = read_touched_places(mesh);
   header.haptic_period = m_root.read_real("haptic_period_s");
   const Group provenance = m_root.open_group("provenance");
   for (const std::string& name : provenance.names())
@@ -315,6 +328,7 @@ std::optional<Session> ResultReader::find_session() const {
     session.ticks.push_back({sample(i), seen_step(i), begun_step(i),
                              static_cast<device::DeviceState>(device_state(i)),
                              static_cast<device::HandFeed>(feed(i))});
+  session.touched_places = read_touched_places(m_root.open_group("mesh"));
   session.is_interrupted = outcome() == Outcome::interrupted || outcome() == Outcome::running;
   if (group.has_attribute("end_hash")) session.end_hash = group.read_text("end_hash");
   return session;

@@ -137,6 +137,7 @@ inline constexpr hdf5::Label kSurfaceTriangles{"1", "boundary of the tets, verte
 inline constexpr hdf5::Label kSkinTriangles{"1", "triangles of the skin, numbers of skin vertices, outward"};
 inline constexpr hdf5::Label kToolVertices{"m", "vertices of the tool's surface in its own frame"};
 inline constexpr hdf5::Label kToolTriangles{"1", "triangles of the tool's surface, outward"};
+inline constexpr hdf5::Label kTouchedPlaces{"m", "x, y, z, radius of the places by which cells were graded"};
 inline constexpr hdf5::Label kPosition{"m", "positions of the cage's vertices"};
 inline constexpr hdf5::Label kSaturation{"1", "water saturation of each tet, 0 to 1"};
 inline constexpr hdf5::Label kPlasticStrain{"1",

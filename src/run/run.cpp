@@ -88,7 +88,7 @@ int run_replay(const scenario::Scenario& s, const output::Session& session, cons
   if (options.resume)
     throw InputError(options.trace, "", "is a live session, whose replay has no checkpoints",
                      "leave --resume out");
-  scenario::Scene scene = scenario::build_scene(s);
+  scenario::Scene scene = scenario::build_scene(s, &session.touched_places);
   if (!note.empty()) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
   const mesh::TriangleMesh tool = scene.tool;
   sim::Simulation simulation(std::move(scene.body), tool, session_params(session.head, s.params),

@@ -37,6 +37,7 @@ output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulat
   header.surface_triangles = simulation.body().topology.boundary;
   header.skin_triangles = simulation.body().skin.triangles;
   header.tool = tool;
+  header.touched_places = simulation.body().touched_places;
   header.haptic_period = s.params.rates.haptic_period;
   if (s.params.fidelity.mode != sim::FidelityMode::full) header.fidelity = sim::FidelityMode::automatic;
   std::string notes;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "base/error.h"
 #include "base/print.h"
@@ -12,6 +14,7 @@
 #include "mesh/quality.h"
 #include "mesh/sliver.h"
 #include "mesh_files/readers.h"
+#include "scenario/cell_sizes.h"
 #include "scenario/medium_check.h"
 #include "solid/rigid_motion.h"
 
@@ -54,6 +57,18 @@ Points take_axes(const Scenario& s, const mesh::TetMesh& mesh) {
   return axes;
 }
 
+/// Fields of the mesh file.
+void take_fields(const Scenario& s, sim::Body& body) {
+  body.initial_saturation =
+      s.body.saturation_field.empty()
+          ? Field(Field::Constant(body.mesh.num_tets(), s.params.water.initial_saturation))
+          : take_field(s, body.mesh, s.body.saturation_field, "/body/mesh/saturation_field", 0.0, 1.0);
+  if (!s.body.modulus_field.empty())
+    body.youngs_modulus =
+        take_field(s, body.mesh, s.body.modulus_field, "/body/mesh/youngs_modulus_field", 1e-6, 1e15);
+  if (!s.body.pore_axis_field.empty()) body.pore_axis = take_axes(s, body.mesh);
+}
+
 std::string describe_cage(const embed::CageReport& report) {
   std::ostringstream text;
   text << "cage: " << report.num_tets << " tets, boundary " << report.offset * 1e3
@@ -72,7 +87,14 @@ auto from_scenario(const Scenario& s, const char* pointer, const Make& make) {
   }
 }
 
-void make_mesh(const Scenario& s, Scene& scene) {
+/// The file that the tets are from.
+const std::string& name_origin(const Scenario& s) {
+  if (s.body.kind == BodyKind::mesh) return s.body.file;
+  return s.body.cage_file.empty() ? s.file : s.body.cage_file;
+}
+
+/// Before its cells are graded: messages name the tets of the file.
+void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
   sim::Body& body = scene.body;
   switch (s.body.kind) {
     case BodyKind::mesh:
@@ -81,12 +103,12 @@ void make_mesh(const Scenario& s, Scene& scene) {
     case BodyKind::shape:
       if (s.body.skin_triangles > 0) body.skin = shapes::make_shape_skin(s.body.shape, s.body.skin_triangles);
       if (body.skin.num_triangles() > 0) {
-        embed::Cage cage = embed::make_cage(body.skin, {s.body.target_tets}, s.file);
+        embed::Cage cage = embed::make_cage(body.skin, {num_tets}, s.file);
         scene.notes.push_back(describe_cage(cage.report));
         body.mesh = std::move(cage.mesh);
       } else {
-        body.mesh = from_scenario(s, "/body/shape",
-                                  [&] { return shapes::make_shape_mesh(s.body.shape, s.body.target_tets); });
+        body.mesh =
+            from_scenario(s, "/body/shape", [&] { return shapes::make_shape_mesh(s.body.shape, num_tets); });
       }
       if (s.body.sliver < 1.0)
         from_scenario(s, "/body/shape/sliver", [&] { mesh::flatten_tet(body.mesh, s.body.sliver); });
@@ -94,7 +116,7 @@ void make_mesh(const Scenario& s, Scene& scene) {
     case BodyKind::surface:
       body.skin = mesh_files::read_triangle_mesh(s.body.file, s.body.scale);
       if (s.body.cage_file.empty()) {
-        embed::Cage cage = embed::make_cage(body.skin, {s.body.target_tets}, s.body.file);
+        embed::Cage cage = embed::make_cage(body.skin, {num_tets}, s.body.file);
         scene.notes.push_back(describe_cage(cage.report));
         body.mesh = std::move(cage.mesh);
       } else {
@@ -102,16 +124,26 @@ void make_mesh(const Scenario& s, Scene& scene) {
       }
       break;
   }
-  const std::string& origin = s.body.kind == BodyKind::mesh ? s.body.file
-                              : !s.body.cage_file.empty()   ? s.body.cage_file
-                                                            : s.file;
+  const std::string& origin = name_origin(s);
   mesh::require_size(body.mesh.vertices, origin);
   const std::string warning = mesh::require_usable(mesh::compute_quality(body.mesh), origin);
   if (!warning.empty()) scene.notes.push_back(warning);
-  mesh::sort_tets(body.mesh);
-  body.topology = mesh::make_topology(body.mesh);
-  if (body.skin.num_triangles() > 0)
-    body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, origin);
+  take_fields(s, body);
+}
+
+Halvings make_cells(const Scenario& s, const std::vector<sim::TouchedPlace>* places, Scene& scene) {
+  if (s.body.cells.kind == CellKind::even) {
+    make_mesh(s, s.body.target_tets, scene);
+    return {};
+  }
+  const std::vector<std::string> notes = scene.notes;
+  make_mesh(s, count_first_tets(s.body), scene);
+  std::optional<Halvings> halvings = grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes);
+  if (halvings) return *std::move(halvings);
+  scene.notes = notes;
+  scene.notes.push_back("cells: even, as the motion does not reach the body at rest");
+  make_mesh(s, s.body.target_tets, scene);
+  return {};
 }
 
 void require_vertices(const Scenario& s, const std::string& pointer, const std::vector<int>& nodes,
@@ -122,11 +154,12 @@ void require_vertices(const Scenario& s, const std::string& pointer, const std::
                        "give numbers from 0 to " + std::to_string(num_vertices - 1));
 }
 
-void fix_and_load(const Scenario& s, sim::Body& body) {
+void fix_and_load(const Scenario& s, const Halvings& halvings, sim::Body& body) {
+  const int num_given = body.mesh.num_vertices() - static_cast<int>(halvings.ends.size());
   for (std::size_t i = 0; i < s.body.fixed.size(); ++i) {
     const solid::Region& region = s.body.fixed[i].region;
     const std::string pointer = "/body/fixed/" + std::to_string(i);
-    require_vertices(s, pointer + "/nodes", region.nodes, body.mesh.num_vertices());
+    require_vertices(s, pointer + "/nodes", region.nodes, num_given);
     if (solid::find_nodes(body.mesh.vertices, std::span(&region, 1)).empty()) {
       const Vec3 low = body.mesh.vertices.rowwise().minCoeff();
       const Vec3 high = body.mesh.vertices.rowwise().maxCoeff();
@@ -136,15 +169,19 @@ void fix_and_load(const Scenario& s, sim::Body& body) {
     }
   }
   body.supports = s.body.fixed;
+  for (solid::Support& support : body.supports) halvings.renumber_with_middles(support.region.nodes);
   body.loads = s.body.loads;
-  for (std::size_t i = 0; i < s.body.loads.nodal.size(); ++i)
+  for (std::size_t i = 0; i < s.body.loads.nodal.size(); ++i) {
     require_vertices(s, "/body/loads/nodal/" + std::to_string(i) + "/nodes", s.body.loads.nodal[i].nodes,
-                     body.mesh.num_vertices());
+                     num_given);
+    halvings.renumber(body.loads.nodal[i].nodes);
+  }
   for (std::size_t i = 0; i < s.body.loads.pressure.size(); ++i) {
     const solid::Region& region = s.body.loads.pressure[i].region;
     const std::string pointer = "/body/loads/pressure/" + std::to_string(i);
-    require_vertices(s, pointer + "/nodes", region.nodes, body.mesh.num_vertices());
-    if (solid::find_faces(body.mesh.vertices, body.topology.boundary, region).empty())
+    require_vertices(s, pointer + "/nodes", region.nodes, num_given);
+    halvings.renumber_with_middles(body.loads.pressure[i].region.nodes);
+    if (solid::find_faces(body.mesh.vertices, body.topology.boundary, body.loads.pressure[i].region).empty())
       throw InputError(s.file, pointer, "holds no boundary face of the body",
                        "widen it so that all three corners of a face lie in it");
   }
@@ -254,32 +291,28 @@ void check_trace(const Scenario& s, const device::Trace& trace) {
 
 }  // namespace
 
-Scene build_scene(const Scenario& s) {
+Scene build_scene(const Scenario& s, const std::vector<sim::TouchedPlace>* places) {
   Scene scene;
   scene.notes = s.warnings;
-  make_mesh(s, scene);
+  scene.tool = make_tool(s);
+  if (s.mode == Mode::dynamic && !s.trace.file.empty()) {
+    scene.trace = device::read_trace(s.trace.file, s.trace.options);
+    check_trace(s, scene.trace);
+  }
+  const Halvings halvings = make_cells(s, places, scene);
   sim::Body& body = scene.body;
-  const Eigen::Index num_tets = body.mesh.num_tets();
-  body.initial_saturation =
-      s.body.saturation_field.empty()
-          ? Field(Field::Constant(num_tets, s.params.water.initial_saturation))
-          : take_field(s, body.mesh, s.body.saturation_field, "/body/mesh/saturation_field", 0.0, 1.0);
-  if (!s.body.modulus_field.empty())
-    body.youngs_modulus =
-        take_field(s, body.mesh, s.body.modulus_field, "/body/mesh/youngs_modulus_field", 1e-6, 1e15);
-  if (!s.body.pore_axis_field.empty()) body.pore_axis = take_axes(s, body.mesh);
+  mesh::sort_tets(body.mesh);
+  take_fields(s, body);
+  body.topology = mesh::make_topology(body.mesh);
+  if (body.skin.num_triangles() > 0)
+    body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, name_origin(s));
   check_medium(s, scene);
   check_diffusion(s, body);
-  fix_and_load(s, body);
-  scene.tool = make_tool(s);
-  if (s.mode == Mode::equilibrium) {
+  fix_and_load(s, halvings, body);
+  if (s.mode == Mode::equilibrium)
     check_supports(s, body);
-    return scene;
-  }
-  check_skin(s, body.skin);
-  if (s.trace.file.empty()) return scene;
-  scene.trace = device::read_trace(s.trace.file, s.trace.options);
-  check_trace(s, scene.trace);
+  else
+    check_skin(s, body.skin);
   return scene;
 }
 

@@ -20,7 +20,8 @@ struct Scene {
 
 /// Reads or generates the body, its cage and skin, the tool and the trace. Throws InputError for what cannot
 /// run: inverted or flat tets, orphan vertices, regions without vertices, node numbers out of range, an open
-/// tool, a trace that is shorter than asked; IoError when a file cannot be read.
-Scene build_scene(const Scenario& scenario);
+/// tool, a trace that is shorter than asked; IoError when a file cannot be read. Cells are graded by the
+/// scenario's trace, or by `touched_places` where they are given: those of a session that is replayed.
+Scene build_scene(const Scenario& scenario, const std::vector<sim::TouchedPlace>* touched_places = nullptr);
 
 }  // namespace argil::scenario

@@ -62,6 +62,14 @@ void describe_support(Binder& b, solid::Support& support) {
            "When they are there; not after the start: at once.");
 }
 
+void describe_cell_region(Binder& b, CellRegion& region) {
+  b.vector("/centre_m", region.centre, "m", "Centre of a ball.").required = true;
+  b.number("/radius_m", region.radius, not_negative(), "m", "Its radius.").required = true;
+  b.number("/size_m", region.size, size_range(), "m",
+           "Largest size of cells in it, the edge of a cube of twelve tets.")
+      .required = true;
+}
+
 void describe_pressure(Binder& b, solid::PressureLoad& load) {
   describe_region(b, load.region);
   b.number("/pressure_Pa", load.pressure, any_finite(), "Pa",
@@ -125,6 +133,19 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
   b.integer("/body/surface/target_tets", body.target_tets, between(100, 5e6),
             "Wanted number of tets of a cage made now.")
       .applies = only(BodyKind::surface);
+  b.choice<CellKind>("/body/cells/kind", body.cells.kind,
+                     {{CellKind::even, "even"}, {CellKind::graded, "graded"}},
+                     "Cells of one size, or smaller ones where the tool's motion meets the body.");
+  const auto is_graded = [&body] { return body.cells.kind == CellKind::graded; };
+  b.number("/body/cells/near_tool_m", body.cells.near_tool, not_negative(), "m",
+           "graded: size of the cells where the tool comes, the edge of a cube of twelve tets; 0: chosen.")
+      .applies = is_graded;
+  b.number("/body/cells/growth", body.cells.growth, between(0, 10), "",
+           "graded: how much larger they become per distance from there; 0: chosen.")
+      .applies = is_graded;
+  b.objects("/body/cells/regions", body.cells.regions, describe_cell_region,
+            "graded: balls with small cells, whether the tool comes there or not.")
+      .applies = is_graded;
   b.number("/body/initial_saturation", p.water.initial_saturation, between(0, 1), "",
            "Saturation of every tet at the start.");
   b.objects("/body/fixed", body.fixed, describe_support,

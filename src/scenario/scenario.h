@@ -28,6 +28,25 @@ enum class Preset {
           ///< hold
 };
 
+enum class CellKind {
+  even,    ///< all of one size
+  graded,  ///< small where the tool comes
+};
+
+/// A ball in which cells are small.
+struct CellRegion {
+  Vec3 centre = Vec3::Zero();  ///< [m]
+  double radius = 0.0;         ///< [m]
+  double size = 0.0;           ///< of cells within, at most [m]
+};
+
+struct CellSpec {
+  CellKind kind = CellKind::even;
+  double near_tool = 0.0;           ///< graded: size where the tool comes [m]; 0: chosen
+  double growth = 0.0;              ///< graded: of the size per distance from there [–]; 0: chosen
+  std::vector<CellRegion> regions;  ///< graded
+};
+
 /// Where the body comes from. Exactly one kind is given.
 struct BodySpec {
   BodyKind kind = BodyKind::shape;
@@ -44,6 +63,7 @@ struct BodySpec {
       pore_axis_field;  ///< mesh: cell data NAME_x, NAME_y, NAME_z along aligned pores; empty: one axis
   std::vector<solid::Support> fixed;
   solid::Loads loads;
+  CellSpec cells;
 };
 
 struct ToolSpec {

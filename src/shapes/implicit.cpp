@@ -36,20 +36,6 @@ Vec3 compute_gradient(const ImplicitSurface& surface, const Vec3& x, double step
   return gradient;
 }
 
-// Newton steps along the gradient onto value = 0. Keeps x where the function has no usable slope.
-Vec3 project(const ImplicitSurface& surface, Vec3 x, double cell_size) {
-  constexpr int kSteps = 4;
-  for (int i = 0; i < kSteps; ++i) {
-    const Vec3 gradient = compute_gradient(surface, x, 1e-4 * cell_size);
-    const double slope = gradient.squaredNorm();
-    if (!(slope > 0.01)) break;  // of a signed distance it is 1
-    const double distance = surface.value(x);
-    x -= (distance / slope) * gradient;
-    if (std::abs(distance) < 1e-12 * cell_size) break;
-  }
-  return x;
-}
-
 // Worst of the triangles `around` a vertex when it lies at `x`; 1: equilateral, negative: turned over.
 double smallest_quality(const mesh::TriangleMesh& mesh, const std::vector<int>& around, int vertex,
                         const Vec3& x) {
@@ -73,6 +59,19 @@ double smallest_quality(const mesh::TriangleMesh& mesh, const std::vector<int>& 
 }
 
 }  // namespace
+
+Vec3 project_onto(const ImplicitSurface& surface, Vec3 x, double length) {
+  constexpr int kSteps = 4;
+  for (int i = 0; i < kSteps; ++i) {
+    const Vec3 gradient = compute_gradient(surface, x, 1e-4 * length);
+    const double slope = gradient.squaredNorm();
+    if (!(slope > 0.01)) break;  // of a signed distance it is 1
+    const double distance = surface.value(x);
+    x -= (distance / slope) * gradient;
+    if (std::abs(distance) < 1e-12 * length) break;
+  }
+  return x;
+}
 
 mesh::TetMesh stuff_isosurface(const ImplicitSurface& surface, double cell_size) {
   CutLattice cut_lattice(surface, cell_size);
@@ -118,7 +117,7 @@ void relax(const ImplicitSurface& surface, double cell_size, mesh::TriangleMesh&
           if (mesh.triangles(i, t) != v) mean += mesh.vertices.col(mesh.triangles(i, t));
       mean /= 2.0 * static_cast<double>(triangles.size());
       const Vec3 before = mesh.vertices.col(v);
-      const Vec3 after = project(surface, mean, cell_size);
+      const Vec3 after = project_onto(surface, mean, cell_size);
       if (smallest_quality(mesh, triangles, v, after) > smallest_quality(mesh, triangles, v, before))
         mesh.vertices.col(v) = after;
     }

@@ -20,4 +20,8 @@ mesh::TetMesh stuff_isosurface(const ImplicitSurface& surface, double cell_size)
 /// Closed, manifold triangle surface of value = 0, normals outward, from a lattice of `cell_size` [m].
 mesh::TriangleMesh extract_isosurface(const ImplicitSurface& surface, double cell_size);
 
+/// The point near x where value = 0, by Newton steps along the gradient; x itself where the function has no
+/// usable slope. `length` [m]: the smallest that matters there.
+Vec3 project_onto(const ImplicitSurface& surface, Vec3 x, double length);
+
 }  // namespace argil::shapes

@@ -169,6 +169,23 @@ mesh::TetMesh make_shape_mesh(const Shape& shape, int target_tets) {
   return mesh;
 }
 
+mesh::BoundaryPoint make_boundary_point(const Shape& shape) {
+  if (shape.kind == ShapeKind::box) return {};
+  if (shape.kind != ShapeKind::cylinder)
+    return [surface = make_implicit_shape(shape)](const Vec3& a, const Vec3& b) {
+      return project_onto(surface, 0.5 * (a + b), (b - a).norm());
+    };
+  const double wall = 0.25 * shape.size;
+  return [wall](const Vec3& a, const Vec3& b) {
+    const auto is_on_wall = [wall](const Vec3& x) {
+      return std::abs(x.head<2>().norm() - wall) < 1e-9 * wall;
+    };
+    Vec3 middle = 0.5 * (a + b);
+    if (is_on_wall(a) && is_on_wall(b)) middle.head<2>() *= wall / middle.head<2>().norm();
+    return middle;
+  };
+}
+
 mesh::TriangleMesh make_shape_skin(const Shape& shape, int min_triangles) {
   require_size(shape);
   ARGIL_ASSERT(min_triangles <= 20'000'000, min_triangles);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/bisection.h"
 #include "mesh/tet_mesh.h"
 #include "shapes/implicit.h"
 
@@ -23,6 +24,9 @@ ImplicitSurface make_implicit_shape(const Shape& shape);
 
 /// Tetrahedral body of a shape with about `target_tets` tets. Box and cylinder have sharp edges.
 mesh::TetMesh make_shape_mesh(const Shape& shape, int target_tets);
+
+/// The shape's surface, for meshes of it that are halved; none where its faces are flat.
+mesh::BoundaryPoint make_boundary_point(const Shape& shape);
 
 /// Triangle skin of a shape with at least `min_triangles` triangles, closed and manifold.
 mesh::TriangleMesh make_shape_skin(const Shape& shape, int min_triangles);

@@ -19,6 +19,12 @@ struct Params;
 
 /// The body as a scene gives it; nothing in it changes during a run. Steps change BodyState and what water,
 /// materials, economy and flow keep.
+/// A place of the body at rest that the tool's motion takes it into.
+struct TouchedPlace {
+  Vec3 position = Vec3::Zero();  ///< on the surface, nearest to the middle of the tool [m]
+  double radius = 0.0;           ///< √(R d) of a ball of radius R that is d deep: Hertz's patch [m]
+};
+
 struct Body {
   mesh::TetMesh mesh;
   mesh::Topology topology;
@@ -29,6 +35,7 @@ struct Body {
   solid::Loads loads;
   mesh::TriangleMesh skin;  ///< empty without a skin
   embed::Embedding skin_embedding;
+  std::vector<TouchedPlace> touched_places;  ///< by which its cells were graded; empty: they are even
 };
 
 /// The hand at the end of some tick, as it is known outside: what a picture and its hash take from it.

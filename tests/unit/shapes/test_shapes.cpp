@@ -33,6 +33,33 @@ TEST(MakeShapeMesh, CountComesWithinFifteenPercentAndTetsAreSound) {
     }
 }
 
+TEST(HalvedShape, HasItsNewVerticesOnTheTrueSurfaceAndSoundTets) {
+  for (const ShapeKind kind : kAllShapes) {
+    SCOPED_TRACE(testing::Message() << "shape " << static_cast<int>(kind));
+    const Shape shape{kind, 0.1};
+    const mesh::TetMesh coarse = make_shape_mesh(shape, 2000);
+    const mesh::Topology topology = mesh::make_topology(coarse);
+    const Vec3 place = coarse.vertices.col(topology.boundary(0, topology.boundary.cols() / 2));
+    mesh::BisectedMesh fine = mesh::bisect(
+        coarse, [&](const Vec3& x) { return 0.0005 + 0.3 * (x - place).norm(); }, 1'000'000,
+        make_boundary_point(shape));
+    ASSERT_GT(fine.mesh.num_tets(), coarse.num_tets() + 1000);
+    const test::AngleRange range = test::compute_dihedral_range(fine.mesh);
+    EXPECT_GT(range.smallest, 10.0);
+    EXPECT_LT(range.largest, 165.0);
+    const ImplicitSurface surface = make_implicit_shape(shape);
+    int num_off = 0;
+    int num_new = 0;
+    for (const int v : mesh::make_topology(fine.mesh).boundary.reshaped()) {
+      if (v < coarse.num_vertices()) continue;
+      ++num_new;
+      if (std::abs(surface.value(fine.mesh.vertices.col(v))) > 1e-9) ++num_off;
+    }
+    EXPECT_GT(num_new, 500);
+    EXPECT_LT(num_off, 0.01 * num_new);  // creases of the creatures
+  }
+}
+
 TEST(MakeShapeMesh, APostIsABoxOfItsSlenderness) {
   const Shape post = {ShapeKind::box, 0.1, 4.0};  // 25 mm × 25 mm × 100 mm
   for (const int target : {300, 1200, 5000}) {

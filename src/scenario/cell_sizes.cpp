@@ -1,0 +1,220 @@
+#include "scenario/cell_sizes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "embed/triangle_tree.h"
+#include "mesh/order.h"
+#include "mesh/topology.h"
+#include "shapes/shapes.h"
+
+namespace argil::scenario {
+namespace {
+
+constexpr double kPlaceSpacing = 0.25;  // of touched places, over their radius
+constexpr double kGrowth = 0.9;         // of the size in h₀, per distance in contact radii
+constexpr double kCellsPerRadius = 2.0;
+constexpr double kMostTets = 5'000'000;
+
+/// Adds a place to those of one ball, or makes the last one deeper.
+void add_place(const sim::TouchedPlace& place, std::size_t first, std::vector<sim::TouchedPlace>& places) {
+  if (places.size() > first) {
+    sim::TouchedPlace& last = places.back();
+    const double radius = std::max(last.radius, place.radius);
+    if ((place.position - last.position).norm() <= kPlaceSpacing * radius) {
+      if (place.radius > last.radius) last = place;
+      return;
+    }
+  }
+  places.push_back(place);
+}
+
+double find_largest_radius(const std::vector<sim::TouchedPlace>& places) {
+  double radius = 0.0;
+  for (const sim::TouchedPlace& place : places) radius = std::max(radius, place.radius);
+  return radius;
+}
+
+/// A body's tets before they are halved.
+struct Whole {
+  const mesh::TetMesh& mesh;
+  mesh::BoundaryPoint boundary_point;  ///< none: its boundary is flat
+};
+
+mesh::BisectedMesh bisect(const Whole& whole, const CellSizes& sizes, double most_tets) {
+  return mesh::bisect(
+      whole.mesh, [&sizes](const Vec3& x) { return sizes.find(x); },
+      static_cast<int>(std::min(most_tets, kMostTets)), whole.boundary_point);
+}
+
+}  // namespace
+
+std::vector<sim::TouchedPlace> find_touched_places(const Scenario& s, const device::Trace& trace,
+                                                   const contact::ToolSolid& tool,
+                                                   const mesh::TriangleMesh& surface) {
+  const embed::TriangleTree tree(surface);
+  const double begin = trace.time.front() + s.trace.start;
+  const double end = s.trace.duration > 0.0 ? begin + s.trace.duration : trace.time.back();
+  std::vector<sim::TouchedPlace> places;
+  for (const contact::InnerBall& ball : tool.inner_balls()) {
+    const std::size_t first = places.size();
+    for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+      if (trace.time[i] < begin || trace.time[i] > end) continue;
+      const device::DeviceSample& sample = trace.samples[i];
+      const Vec3 centre = sample.position + sample.orientation * ball.centre;
+      const bool is_inside = tree.compute_winding_number(centre) > 0.5;
+      const double reach = is_inside ? std::numeric_limits<double>::infinity() : ball.radius;
+      const embed::TriangleTree::Nearest nearest = tree.find_nearest(centre, reach);
+      if (!is_inside && !(nearest.distance < reach)) continue;
+      const double depth = ball.radius + (is_inside ? nearest.distance : -nearest.distance);
+      add_place({nearest.point, std::sqrt(ball.radius * std::min(depth, ball.radius))}, first, places);
+    }
+  }
+  return places;
+}
+
+double CellSizes::find(const Vec3& x) const {
+  double distance = std::numeric_limits<double>::infinity();
+  for (const sim::TouchedPlace& place : places)
+    distance = std::min(distance, (x - place.position).norm() - reach * place.radius);
+  double size = near + growth * std::max(0.0, distance);
+  for (const CellRegion& region : regions)
+    size = std::min(size, region.size + growth * std::max(0.0, (x - region.centre).norm() - region.radius));
+  return size;
+}
+
+namespace {
+
+/// Halvings until some number of tets is met: of a size that makes more than are wanted and one that makes
+/// less.
+struct Search {
+  static constexpr int kTries = 16;
+  static constexpr double kCloseEnough = 0.02;
+  double target = 0.0;
+  double error = std::numeric_limits<double>::infinity();
+  CellSizes sizes;
+  mesh::BisectedMesh best;
+
+  /// Whether it is too many.
+  bool look_at(const Whole& whole, const CellSizes& with) {
+    mesh::BisectedMesh found = bisect(whole, with, 2.0 * target);
+    const double more = found.mesh.num_tets() / target - 1.0;
+    if (std::abs(more) < error) {
+      error = std::abs(more);
+      sizes = with;
+      best = std::move(found);
+    }
+    return more > 0.0;
+  }
+};
+
+/// `target_tets` 0: no number is wanted. Completes the sizes.
+mesh::BisectedMesh halve(const Whole& whole, CellSizes& sizes, int target_tets) {
+  if (sizes.places.empty()) {
+    constexpr double kGrowthOfRegions = 0.3;
+    if (!(sizes.growth > 0.0)) sizes.growth = kGrowthOfRegions;
+    return bisect(whole, sizes, kMostTets);
+  }
+  const double radius = find_largest_radius(sizes.places);
+  const auto with_near = [radius, &sizes](double near) {
+    CellSizes with = sizes;
+    with.near = near;
+    if (!(with.growth > 0.0)) with.growth = kGrowth * near / radius;
+    return with;
+  };
+  if (sizes.near > 0.0 || target_tets == 0) {
+    sizes = with_near(sizes.near > 0.0 ? sizes.near : radius / kCellsPerRadius);
+    return bisect(whole, sizes, kMostTets);
+  }
+  Search search;
+  search.target = target_tets;
+  double low = 1e-3 * radius;
+  double high = 1e3 * radius;
+  for (int i = 0; i < Search::kTries && search.error > Search::kCloseEnough; ++i) {
+    const double near = std::sqrt(low * high);
+    (search.look_at(whole, with_near(near)) ? low : high) = near;
+  }
+  // Of a regular mesh many tets are halved at one size, all those around a place: then less of it.
+  double small = 0.0;
+  double large = kReach;
+  for (int i = 0; i < Search::kTries && search.error > Search::kCloseEnough; ++i) {
+    CellSizes with = with_near(low);
+    with.reach = 0.5 * (small + large);
+    (search.look_at(whole, with) ? large : small) = with.reach;
+  }
+  sizes = search.sizes;
+  return std::move(search.best);
+}
+
+std::string describe(const CellSizes& sizes, int before, int after) {
+  std::ostringstream text;
+  text << "cells: " << before << " tets become " << after;
+  if (!sizes.places.empty())
+    text << ", " << 1e3 * sizes.near << " mm where the tool comes, "
+         << find_largest_radius(sizes.places) / sizes.near << " along the radius of contact";
+  return text.str();
+}
+
+}  // namespace
+
+int count_first_tets(const BodySpec& body) {
+  const int target = body.target_tets;
+  if (body.cells.kind == CellKind::even || body.cells.near_tool > 0.0) return target;
+  // Limbs want so many; other shapes stand for themselves with fewer.
+  const bool has_limbs = body.kind == BodyKind::surface || body.shape.kind == shapes::ShapeKind::dinosaur ||
+                         body.shape.kind == shapes::ShapeKind::figure;
+  const int fewest = has_limbs ? 1500 : 300;
+  return std::min(target, std::max(fewest, target / 6));
+}
+
+void Halvings::renumber(std::vector<int>& nodes) const {
+  if (number.empty()) return;
+  for (int& v : nodes) v = number[static_cast<std::size_t>(v)];
+}
+
+void Halvings::renumber_with_middles(std::vector<int>& nodes) const {
+  if (nodes.empty() || number.empty()) return;
+  std::vector<bool> is_listed(number.size(), false);
+  for (const int v : nodes) is_listed[static_cast<std::size_t>(v)] = true;
+  std::size_t middle = number.size() - ends.size();
+  for (const auto& [a, b] : ends) {
+    if (is_listed[static_cast<std::size_t>(a)] && is_listed[static_cast<std::size_t>(b)]) {
+      is_listed[middle] = true;
+      nodes.push_back(static_cast<int>(middle));
+    }
+    ++middle;
+  }
+  renumber(nodes);
+}
+
+std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
+                                    const mesh::TriangleMesh& tool_surface,
+                                    const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
+                                    std::vector<std::string>& notes) {
+  const bool has_skin = body.skin.num_triangles() > 0;
+  CellSizes sizes{s.body.cells.near_tool, s.body.cells.growth, {}, s.body.cells.regions};
+  if (touched_places) {
+    sizes.places = *touched_places;
+  } else if (!trace.samples.empty()) {
+    const std::optional<contact::RoundTool>& round = s.params.contact.round_tool;
+    const contact::ToolSolid tool = round ? contact::ToolSolid(*round) : contact::ToolSolid(tool_surface);
+    const mesh::TriangleMesh boundary{body.mesh.vertices, mesh::make_topology(body.mesh).boundary};
+    sizes.places = find_touched_places(s, trace, tool, has_skin ? body.skin : boundary);
+  }
+  if (sizes.places.empty() && sizes.regions.empty()) return std::nullopt;
+  const bool has_target = s.body.kind != BodyKind::mesh && s.body.cage_file.empty();
+  Whole whole{body.mesh, {}};
+  if (s.body.kind == BodyKind::shape && !has_skin)
+    whole.boundary_point = shapes::make_boundary_point(s.body.shape);
+  mesh::BisectedMesh bisected = halve(whole, sizes, has_target ? s.body.target_tets : 0);
+  notes.push_back(describe(sizes, body.mesh.num_tets(), bisected.mesh.num_tets()));
+  body.mesh = std::move(bisected.mesh);
+  body.touched_places = std::move(sizes.places);
+  return Halvings{std::move(bisected.halved_edge), mesh::sort_vertices(body.mesh)};
+}
+
+}  // namespace argil::scenario

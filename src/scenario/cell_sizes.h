@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "contact/tool_solid.h"
+#include "device/trace.h"
+#include "mesh/bisection.h"
+#include "scenario/scenario.h"
+#include "sim/state.h"
+
+namespace argil::scenario {
+
+/// Places of a body at rest that a motion takes the tool into, each at the deepest and a quarter of its
+/// radius from the next; in order of time for each of the balls that stand for the tool.
+std::vector<sim::TouchedPlace> find_touched_places(const Scenario& s, const device::Trace& trace,
+                                                   const contact::ToolSolid& tool,
+                                                   const mesh::TriangleMesh& surface);
+
+inline constexpr double kReach = 1.5;
+
+/// Cells that are small where the tool comes and grow away from there.
+struct CellSizes {
+  double near = 0.0;    ///< where the tool comes [m]
+  double growth = 0.0;  ///< per distance from them [–]
+  std::vector<sim::TouchedPlace> places;
+  std::vector<CellRegion> regions;
+  double reach = kReach;  ///< of the small cells, over the radius of a touched place
+  /// Wanted at x [m].
+  double find(const Vec3& x) const;
+};
+
+/// Tets to begin with, before cells are graded: where that is asked for, less than are wanted in the end.
+int count_first_tets(const BodySpec& body);
+
+/// What became of the vertices of a body whose cells were graded.
+struct Halvings {
+  std::vector<std::array<int, 2>> ends;  ///< of each halved edge: vertices, or others halved before
+  std::vector<int> number;  ///< of the vertices that were there, then of the middles of those edges
+  /// Puts numbers in the graded body in the place of those before.
+  void renumber(std::vector<int>& nodes) const;
+  /// The same with the middles between two of them.
+  void renumber_with_middles(std::vector<int>& nodes) const;
+};
+
+/// Halves a body's tets as /body/cells asks for, by the motion of the tool or by `touched_places`, where they
+/// are given, and says so in `notes`. What the scenario leaves open of the sizes is chosen so that a body
+/// that argil makes gets about as many tets as wanted; in a mesh file's, so that two cells lie along the
+/// largest radius of a touched place. Sizes grow as an elastic body's error wants it: as h₀ (1 + 0.6 r/a) at
+/// a distance r from a patch of radius a.
+/// None where neither motion nor regions say where.
+std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
+                                    const mesh::TriangleMesh& tool_surface,
+                                    const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
+                                    std::vector<std::string>& notes);
+
+}  // namespace argil::scenario

@@ -1,0 +1,197 @@
+// Cells that are small where the tool comes: where, how small, how many, and what stays as it was.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "contact/tool_solid.h"
+#include "scenario/build.h"
+#include "scenario/cell_sizes.h"
+#include "support/scene_files.h"
+#include "support/temp_folder.h"
+
+namespace argil {
+namespace {
+
+class GradedCells : public testing::Test {
+ protected:
+  test::TempFolder folder;
+
+  /// A ball of clay of 40 mm, pressed from above by one of 6 mm; the tool's tip goes down to 38 mm.
+  scenario::Scene build(const std::vector<std::string>& settings, double bottom = 0.044) {
+    const std::string trace = test::write_press_trace(folder / "press.csv", 0.048, bottom, 0.1, "push");
+    return scenario::build_scene(load(test::make_ball_scenario(trace), settings));
+  }
+  scenario::Scenario load(const std::string& text, const std::vector<std::string>& settings) {
+    std::vector<scenario::Setting> list;
+    for (const std::string& setting : settings) list.push_back(scenario::parse_setting(setting));
+    return scenario::load_scenario(folder.write("scenario.json", text), list);
+  }
+};
+
+double find_size(const sim::Body& body, int tet) {
+  return mesh::compute_cell_size(mesh::compute_volumes(body.mesh.vertices, body.mesh.tets.col(tet))(0));
+}
+
+Vec3 find_centre(const sim::Body& body, int tet) {
+  return body.mesh.vertices(Eigen::all, body.mesh.tets.col(tet)).rowwise().mean();
+}
+
+TEST_F(GradedCells, ArePlacedAtTheDeepestContactWithHertzsRadius) {
+  const scenario::Scene scene = build({"/body/cells/kind=graded", "/body/cells/near_tool_m=0.0004"});
+  // A ball of 6 mm whose middle goes to 44 mm above the floor, 1.2 mm beside the axis, meets one of 20 mm:
+  // it is 26 mm - |c - m| deep, m the clay's middle.
+  const double depth = 0.026 - Vec3(0.001, 0.0007, 0.024).norm();
+  ASSERT_EQ(scene.body.touched_places.size(), 1U);
+  const sim::TouchedPlace& place = scene.body.touched_places[0];
+  EXPECT_NEAR(place.radius, std::sqrt(0.006 * depth), 0.05 * place.radius);  // the mesh is not quite a ball
+  EXPECT_NEAR((place.position - Vec3(0.0, 0.0, 0.02)).norm(), 0.02, 2e-4);
+  EXPECT_LT((place.position - Vec3(0.0, 0.0, 0.04)).norm(), 0.002);
+  for (int t = 0; t < scene.body.mesh.num_tets(); ++t)
+    if ((find_centre(scene.body, t) - place.position).norm() < place.radius) {
+      EXPECT_LE(find_size(scene.body, t), 0.0004);
+    }
+}
+
+TEST_F(GradedCells, AreAsManyAsWanted) {
+  for (const int target : {2000, 6000}) {
+    const scenario::Scene scene =
+        build({"/body/cells/kind=graded", "/body/shape/target_tets=" + std::to_string(target)});
+    EXPECT_NEAR(scene.body.mesh.num_tets(), target, 0.15 * target);
+    const sim::TouchedPlace& place = scene.body.touched_places.at(0);
+    double near = std::numeric_limits<double>::infinity();
+    double far = 0.0;
+    for (int t = 0; t < scene.body.mesh.num_tets(); ++t) {
+      const double distance = (find_centre(scene.body, t) - place.position).norm();
+      if (distance < place.radius) near = std::min(near, find_size(scene.body, t));
+      if (distance > 0.03) far = std::max(far, find_size(scene.body, t));
+    }
+    EXPECT_LT(near, 0.3 * far);
+  }
+}
+
+TEST_F(GradedCells, AreTheSameTwice) {
+  const scenario::Scene one = build({"/body/cells/kind=graded"});
+  const scenario::Scene other = build({"/body/cells/kind=graded"});
+  EXPECT_EQ(one.body.mesh.vertices, other.body.mesh.vertices);
+  EXPECT_EQ(one.body.mesh.tets, other.body.mesh.tets);
+}
+
+TEST_F(GradedCells, OfAReplayComeFromItsPlacesAlone) {
+  const std::string trace = test::write_press_trace(folder / "press.csv", 0.048, 0.044, 0.1, "push");
+  scenario::Scenario s = load(test::make_ball_scenario(trace), {"/body/cells/kind=graded"});
+  const scenario::Scene scene = scenario::build_scene(s);
+  s.trace = {};
+  const scenario::Scene again = scenario::build_scene(s, &scene.body.touched_places);
+  EXPECT_EQ(scene.body.mesh.vertices, again.body.mesh.vertices);
+  EXPECT_EQ(scene.body.mesh.tets, again.body.mesh.tets);
+}
+
+TEST_F(GradedCells, AreEvenWhereTheMotionDoesNotReach) {
+  const scenario::Scene scene = build({"/body/cells/kind=graded"}, 0.0475);
+  const scenario::Scene even = build({"/body/cells/kind=even"}, 0.0475);
+  EXPECT_EQ(scene.body.mesh.tets, even.body.mesh.tets);
+  ASSERT_FALSE(scene.notes.empty());
+  EXPECT_EQ(scene.notes.back(), "cells: even, as the motion does not reach the body at rest");
+}
+
+TEST_F(GradedCells, AreSmallInARegion) {
+  const scenario::Scene scene =
+      build({"/body/cells/kind=graded", "/body/cells/near_tool_m=0.004",
+             R"(/body/cells/regions=[{"centre_m": [0.02, 0, 0.02], "radius_m": 0.003, "size_m": 0.0008}])"});
+  int num_within = 0;
+  for (int t = 0; t < scene.body.mesh.num_tets(); ++t) {
+    if ((find_centre(scene.body, t) - Vec3(0.02, 0.0, 0.02)).norm() > 0.003) continue;
+    ++num_within;
+    EXPECT_LE(find_size(scene.body, t), 0.0008);
+  }
+  EXPECT_GT(num_within, 100);
+}
+
+class GradedFile : public GradedCells {
+ protected:
+  mesh::TetMesh ball = shapes::make_shape_mesh({shapes::ShapeKind::sphere, 0.04}, 600);
+
+  std::string write(const std::string& more_mesh) {
+    const std::string trace = test::write_press_trace(folder / "press.csv", 0.048, 0.044, 0.1, "push");
+    std::string text = test::make_ball_scenario(trace);
+    const std::string shape =
+        R"("shape": {"kind": "sphere", "size_m": 0.04, "target_tets": 600, "skin_triangles": 0})";
+    return text.replace(
+        text.find(shape), shape.size(),
+        R"("mesh": {"file": ")" + test::write_vtk(folder / "ball.vtk", ball) + "\"" + more_mesh + "}");
+  }
+};
+
+TEST_F(GradedFile, HasTwoCellsAlongTheRadiusOfContactAndItsFields) {
+  Field& E = ball.cell_fields["E"];
+  E.resize(ball.num_tets());
+  for (int t = 0; t < ball.num_tets(); ++t)  // stiff at x > 0
+    E(t) = ball.vertices(0, ball.tets.col(t)).mean() > 0.0 ? 2e5 : 5e4;
+  const scenario::Scene scene =
+      scenario::build_scene(load(write(R"(, "youngs_modulus_field": "E")"), {"/body/cells/kind=graded"}));
+  const sim::Body& body = scene.body;
+  ASSERT_GT(body.mesh.num_tets(), 2 * ball.num_tets());
+  const sim::TouchedPlace& place = body.touched_places.at(0);
+  double stiff_volume = 0.0;
+  const Field volume = mesh::compute_volumes(body.mesh.vertices, body.mesh.tets);
+  for (int t = 0; t < body.mesh.num_tets(); ++t) {
+    if ((find_centre(body, t) - place.position).norm() < place.radius) {
+      EXPECT_LE(find_size(body, t), 0.5 * place.radius);
+    }
+    if (body.youngs_modulus(t) == 2e5) stiff_volume += volume(t);
+  }
+  const Field coarse_volume = mesh::compute_volumes(ball.vertices, ball.tets);
+  EXPECT_NEAR(stiff_volume, (E.array() == 2e5).select(coarse_volume, 0.0).sum(), 1e-18);
+}
+
+TEST_F(GradedFile, HoldsWhatIsBetweenHeldNodes) {
+  ball.cell_fields["none"] = Field::Zero(ball.num_tets());
+  std::string nodes;
+  for (int v = 0; v < ball.num_vertices(); ++v)
+    if (ball.vertices(2, v) > 0.028) nodes += (nodes.empty() ? "" : ", ") + std::to_string(v);
+  const scenario::Scene scene = scenario::build_scene(
+      load(write(""), {"/body/cells/kind=graded", "/body/cells/near_tool_m=0.001",
+                       R"(/body/fixed=[{"kind": "nodes", "nodes": [)" + nodes + "]}]"}));
+  const std::vector<int>& held = scene.body.supports.at(0).region.nodes;
+  const auto is_held = [&](int v) { return std::find(held.begin(), held.end(), v) != held.end(); };
+  int num_held = 0;
+  for (int v = 0; v < scene.body.mesh.num_vertices(); ++v) {
+    if (scene.body.mesh.vertices(2, v) > 0.037) {
+      EXPECT_TRUE(is_held(v)) << v;
+      ++num_held;
+    }
+    if (scene.body.mesh.vertices(2, v) <= 0.028) {
+      EXPECT_FALSE(is_held(v)) << v;
+    }
+  }
+  EXPECT_GT(num_held, 50);
+}
+
+TEST_F(GradedFile, LoadsTheNodesThatTheFileNames) {
+  ball.cell_fields["none"] = Field::Zero(ball.num_tets());
+  const scenario::Scene scene = scenario::build_scene(
+      load(write(""),
+           {"/body/cells/kind=graded", R"(/body/loads/nodal=[{"nodes": [3, 101], "force_N": [0, 0, -1]}])"}));
+  const std::vector<int>& nodes = scene.body.loads.nodal.at(0).nodes;
+  ASSERT_EQ(nodes.size(), 2U);
+  EXPECT_LT((scene.body.mesh.vertices.col(nodes[0]) - ball.vertices.col(3)).norm(), 1e-9);
+  EXPECT_LT((scene.body.mesh.vertices.col(nodes[1]) - ball.vertices.col(101)).norm(), 1e-9);
+}
+
+TEST_F(GradedFile, NamesTheFilesTetsInErrors) {
+  Field& S = ball.cell_fields["S"];
+  S = Field::Zero(ball.num_tets());
+  S(17) = 1.5;
+  const scenario::Scenario s = load(write(R"(, "saturation_field": "S")"), {"/body/cells/kind=graded"});
+  try {
+    scenario::build_scene(s);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("tet 17"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace argil
