@@ -26,21 +26,23 @@ using run::ExitCode;
 struct Options {
   std::string first, second;
   double separation = 0.0;
-  int target_tets = embed::CageOptions().target_tets;
+  embed::CageOptions cage;
+  std::string fit = "enclose";
   double scale = 1.0;
 };
 
-int make_cage_file(const std::string& surface, const std::string& output, int target_tets, double scale) {
+int make_cage_file(const Options& o) {
+  const std::string& surface = o.first;
+  const std::string& output = o.second;
   run::require_input_file(surface);
   run::check_cage_name(surface, output);
+  embed::CageOptions options = o.cage;
+  options.fit = o.fit == "surface" ? embed::Fit::surface : embed::Fit::enclose;
   const embed::Cage cage =
-      embed::make_cage(mesh_files::read_triangle_mesh(surface, scale), {target_tets}, surface);
+      embed::make_cage(mesh_files::read_triangle_mesh(surface, o.scale), options, surface);
   mesh_files::write_gmsh(cage.mesh, output);
-  const embed::CageReport& r = cage.report;
-  std::printf("%s: %d tets, %d vertices, cell %.4g m, boundary %.4g m off the surface, ", output.c_str(),
-              r.num_tets, cage.mesh.num_vertices(), r.cell_size, r.offset);
-  std::printf("dihedral angles %.2f to %.2f degrees, %d surface vertices enclosed\n", r.min_dihedral_degrees,
-              r.max_dihedral_degrees, r.enclosed_vertices);
+  std::printf("%s: %d vertices, %s\n", output.c_str(), cage.mesh.num_vertices(),
+              embed::describe(cage.report).c_str());
   return ExitCode::kDone;
 }
 
@@ -81,12 +83,14 @@ void add_law_commands(CLI::App& app, int& code) {
       ->capture_default_str();
   ccd->callback([o, &code] { code = print_times_of_impact(o->second, o->first, o->separation); });
 
-  CLI::App* cage = app.add_subcommand("cage", "make a tetrahedral cage that encloses a surface");
+  CLI::App* cage = app.add_subcommand("cage", "make a tetrahedral body of a surface");
   cage->add_option("SURFACE", o->first, "OBJ, STL or PLY, clean or not")->required();
   cage->add_option("-o,--output", o->second, "cage (Gmsh, .msh)")->required();
-  cage->add_option("--tets", o->target_tets, "wanted number of tets")->check(CLI::Range(100, 5000000));
+  cage->add_option("--tets", o->cage.target_tets, "wanted number of tets")->check(CLI::Range(100, 5000000));
+  cage->add_option("--fit", o->fit, "surface: the boundary lies on it; enclose: it is all inside")
+      ->check(CLI::IsMember({"surface", "enclose"}));
   cage->add_option("--scale", o->scale, "metres per unit of the file")->check(finite_number(false));
-  cage->callback([o, &code] { code = make_cage_file(o->first, o->second, o->target_tets, o->scale); });
+  cage->callback([o, &code] { code = make_cage_file(*o); });
 }
 
 }  // namespace argil::cli

@@ -1,7 +1,9 @@
 #include "embed/cage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -9,6 +11,8 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "embed/embedding.h"
+#include "embed/skin_shape.h"
 #include "embed/tet_locator.h"
 #include "embed/triangle_tree.h"
 #include "mesh/quality.h"
@@ -20,6 +24,8 @@ namespace {
 
 // All lengths in cube edges of the lattice.
 constexpr double kBaseOffset = 0.1;   // covers what flat facets cut off a curved skin
+constexpr double kMostOutside = 0.8;  // of a vertex of a surface that the body is fitted to
+constexpr double kFirstOffset = 0.3;  // of what is thinner than a cell, then
 constexpr double kOffsetStep = 0.15;  // added where a vertex is still outside
 constexpr double kLargestOffset =
     1.2;                       // at 0.56 every skin point has an inside node, hence this is never needed
@@ -27,20 +33,7 @@ constexpr double kBand = 1.5;  // beyond this distance only the side matters
 constexpr int kRounds = 40;
 constexpr double kTetsPerCube = 12.0;
 constexpr double kCountTolerance = 0.15;
-
-// The surface with a triangle of three equal corners for every vertex that no triangle uses.
-mesh::TriangleMesh with_all_vertices(const mesh::TriangleMesh& surface) {
-  std::vector<bool> is_used(static_cast<std::size_t>(surface.num_vertices()), false);
-  for (Eigen::Index i = 0; i < surface.triangles.size(); ++i)
-    is_used[static_cast<std::size_t>(surface.triangles.data()[i])] = true;
-  mesh::TriangleMesh all = surface;
-  const auto num_loose = std::count(is_used.begin(), is_used.end(), false);
-  all.triangles.conservativeResize(3, surface.num_triangles() + num_loose);
-  Eigen::Index next = surface.num_triangles();
-  for (int v = 0; v < surface.num_vertices(); ++v)
-    if (!is_used[static_cast<std::size_t>(v)]) all.triangles.col(next++).setConstant(v);
-  return all;
-}
+constexpr double kMostAbove = 0.3;  // of tets, before parts are looked for that are lost
 
 void require_usable_input(const mesh::TriangleMesh& surface, const CageOptions& options,
                           const std::string& name) {
@@ -61,24 +54,45 @@ void require_usable_input(const mesh::TriangleMesh& surface, const CageOptions& 
                      "ask for a number of tets in this range");
 }
 
+double find_distance_to_box(const Vec3& x, const Vec3& lower, const Vec3& upper) {
+  return (lower - x).cwiseMax(x - upper).maxCoeff();  // stacked sheets wind far round
+}
+
 // Zero at the boundary of the union of the thickened skin and of what it winds round. The second part alone
 // closes holes; both are continuous where the union's boundary can lie.
-shapes::ImplicitSurface make_thick_surface(const TriangleTree& tree, const Points& vertices, double reach,
-                                           double cell_size) {
-  shapes::ImplicitSurface thick;
-  thick.lower = vertices.rowwise().minCoeff() - Vec3::Constant(reach);
-  thick.upper = vertices.rowwise().maxCoeff() + Vec3::Constant(reach);
-  const Vec3 lower = thick.lower;
-  const Vec3 upper = thick.upper;
-  thick.value = [&tree, cell_size, lower, upper](const Vec3& x) {
-    const double distance = tree.compute_distance(x, kBand * cell_size);
-    if (distance < 0.0) return distance;
-    const double outside_box = (lower - x).cwiseMax(x - upper).maxCoeff();  // stacked sheets wind far round
-    const double winding =
-        std::abs(tree.compute_winding_number(x));  // a surface turned inside out counts as well
-    return std::min(distance, std::max((0.5 - winding) * cell_size, outside_box));
+double compute_enclosing(const TriangleTree& tree, const Vec3& x, double cell_size, const Vec3& lower,
+                         const Vec3& upper) {
+  const double distance = tree.compute_distance(x, kBand * cell_size);
+  if (distance < 0.0) return distance;
+  const double winding =
+      std::abs(tree.compute_winding_number(x));  // a surface turned inside out counts as well
+  return std::min(distance, std::max((0.5 - winding) * cell_size, find_distance_to_box(x, lower, upper)));
+}
+
+// Distance from the skin, thickened where it is thin; negative in what it winds round.
+double compute_fitted(const TriangleTree& tree, const Vec3& x, double cell_size, const Vec3& lower,
+                      const Vec3& upper) {
+  const double distance = tree.compute_distance(x, kBand * cell_size);
+  if (distance < 0.0) return distance;
+  const bool is_inside =
+      std::abs(tree.compute_winding_number(x)) > 0.5 && !(find_distance_to_box(x, lower, upper) > 0.0);
+  return is_inside ? -tree.find_nearest(x, kBand * cell_size).distance : distance;
+}
+
+// The body's boundary, moved out by `level` [m].
+shapes::ImplicitSurface make_implicit(const TriangleTree& tree, const Points& vertices, Fit fit, double reach,
+                                      double level, double cell_size) {
+  shapes::ImplicitSurface surface;
+  const double margin = reach + std::max(0.0, level);
+  surface.lower = vertices.rowwise().minCoeff() - Vec3::Constant(margin);
+  surface.upper = vertices.rowwise().maxCoeff() + Vec3::Constant(margin);
+  const Vec3 lower = surface.lower;
+  const Vec3 upper = surface.upper;
+  const auto compute = fit == Fit::surface ? compute_fitted : compute_enclosing;
+  surface.value = [&tree, compute, level, cell_size, lower, upper](const Vec3& x) {
+    return compute(tree, x, cell_size, lower, upper) - level;
   };
-  return thick;
+  return surface;
 }
 
 // Numbers the parts of a tet mesh that hang together by faces.
@@ -106,20 +120,25 @@ std::vector<int> label_parts(const mesh::TetMesh& mesh) {
   return part;
 }
 
-// Skin vertices where the cage must grow: those outside, and the corners of triangles that reach from one
-// part of the cage to another.
-std::vector<int> find_bad_vertices(const mesh::TriangleMesh& skin, const mesh::TetMesh& cage) {
+// Skin vertices where the body must grow: those outside, or of a fitted body farther than `most_outside` [m],
+// and the corners of triangles that reach from one part of the body to another.
+std::vector<int> find_bad_vertices(const mesh::TriangleMesh& skin, const mesh::TetMesh& cage,
+                                   double most_outside) {
   if (cage.num_tets() == 0) {
     std::vector<int> all(static_cast<std::size_t>(skin.num_vertices()));
     std::iota(all.begin(), all.end(), 0);
     return all;
   }
-  const TetLocator locator(cage);
+  const NearTetLocator locator(cage);
+  const TriangleTree boundary({cage.vertices, mesh::make_topology(cage).boundary});
   const std::vector<int> part = label_parts(cage);
   std::vector<int> where(static_cast<std::size_t>(skin.num_vertices()), -1);
   std::vector<int> bad;
   for (int v = 0; v < skin.num_vertices(); ++v) {
-    const int tet = locator.find(skin.vertices.col(v)).tet;
+    const Vec3 x = skin.vertices.col(v);
+    int tet = locator.find(x, 0.0).tet;
+    if (tet < 0 && boundary.compute_distance(x, most_outside) < most_outside)
+      tet = locator.find(x, kMostBeyondFitted).tet;
     if (tet < 0)
       bad.push_back(v);
     else
@@ -151,23 +170,43 @@ std::vector<int> find_bad_vertices(const mesh::TriangleMesh& skin, const mesh::T
   throw InputError(name, "target_tets", problem.str(), "ask for more tets");
 }
 
-Cage finish(mesh::TetMesh mesh, double cell_size, const Field& offset, int num_vertices) {
+std::vector<double> list_distances(const Points& points, const TriangleTree& from) {
+  std::vector<double> distances;
+  for (const auto& x : points.colwise())
+    distances.push_back(from.find_nearest(x, std::numeric_limits<double>::infinity()).distance);
+  std::sort(distances.begin(), distances.end());
+  return distances;
+}
+
+Cage finish(mesh::TetMesh mesh, double cell_size, const mesh::TriangleMesh& surface,
+            const mesh::TriangleMesh& skin, const TriangleTree& tree) {
   const mesh::QualityReport quality = mesh::compute_quality(mesh);
   Cage cage;
-  cage.report.num_tets = mesh.num_tets();
-  cage.report.cell_size = cell_size;
-  cage.report.offset = kBaseOffset * cell_size;
-  cage.report.max_offset = offset.maxCoeff() * cell_size;
-  cage.report.min_dihedral_degrees = quality.min_dihedral_degrees;
-  cage.report.max_dihedral_degrees = quality.max_dihedral_degrees;
-  cage.report.enclosed_vertices = num_vertices;
+  CageReport& report = cage.report;
+  report.num_tets = mesh.num_tets();
+  report.cell_size = cell_size;
+  report.min_dihedral_degrees = quality.min_dihedral_degrees;
+  report.max_dihedral_degrees = quality.max_dihedral_degrees;
+  const Triangles boundary = mesh::make_topology(mesh).boundary;
+  std::vector<int> vertices(boundary.reshaped().begin(), boundary.reshaped().end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  const std::vector<double> distances = list_distances(mesh.vertices(Eigen::all, vertices), tree);
+  report.median_distance = distances[distances.size() / 2];
+  report.max_distance = distances.back();
+  report.max_skin_distance = list_distances(skin.vertices, TriangleTree({mesh.vertices, boundary})).back();
+  if (is_closed(surface)) report.volume_ratio = quality.volume / compute_skin_volume(surface);
+  report.num_vertices = surface.num_vertices();
+  const TetLocator locator(mesh);
+  for (const auto& x : surface.vertices.colwise())
+    report.enclosed_vertices += locator.find(x).tet >= 0 ? 1 : 0;
   cage.mesh = std::move(mesh);
   return cage;
 }
 
 // Lattice on which body and thickened skin together take about the wanted number of tets: the root h of
 // N h³ = 12 (V + A h/2), with the volume V and the area A that the triangles enclose and have.
-double guess_cell_size(const mesh::TriangleMesh& skin, int target_tets) {
+double guess_cell_size(const mesh::TriangleMesh& skin, int target_tets, double covered) {
   const Vec3 lower = skin.vertices.rowwise().minCoeff();
   const Vec3 extent = skin.vertices.rowwise().maxCoeff() - lower;
   double volume = 0.0;
@@ -185,7 +224,7 @@ double guess_cell_size(const mesh::TriangleMesh& skin, int target_tets) {
   constexpr int kHalvings = 40;
   for (int i = 0; i < kHalvings; ++i) {
     const double h = 0.5 * (low + high);
-    (target_tets * h * h * h > kTetsPerCube * (volume + 0.5 * area * h) ? high : low) = h;
+    (target_tets * h * h * h > kTetsPerCube * (volume + covered * area * h) ? high : low) = h;
   }
   return high;
 }
@@ -201,33 +240,124 @@ void require_room(const shapes::ImplicitSurface& thick, double cell_size, const 
 
 }  // namespace
 
+namespace {
+
+/// A lattice and how far the skin is thickened, by which a body gets the wanted number of tets and holds the
+/// skin.
+class CageSearch {
+ public:
+  CageSearch(const mesh::TriangleMesh& surface, const CageOptions& options, const std::string& name)
+      : m_options(options),
+        m_name(name),
+        m_surface(with_all_vertices(surface)),
+        m_cell_size(guess_cell_size(m_surface, options.target_tets, is_fitted() ? 0.0 : 0.5)),
+        m_skin(is_fitted() ? split_long_edges(m_surface, m_cell_size) : m_surface),
+        m_tree(m_skin),
+        m_offset(Field::Constant(m_skin.num_vertices(), is_fitted() ? 0.0 : kBaseOffset)) {}
+
+  Cage run() {
+    std::vector<int> bad;
+    int num_tets = 0;
+    for (int round = 0; round < kRounds; ++round) {
+      mesh::TetMesh mesh = stuff(0.0);
+      num_tets = mesh.num_tets();
+      const double ratio = static_cast<double>(std::max(num_tets, 1)) / m_options.target_tets;
+      const double count_error = std::abs(ratio - 1.0);
+      bad = find_bad_vertices(m_skin, mesh, is_fitted() ? kMostOutside * m_cell_size : 0.0);
+      const double wanted = round < kRounds / 2 ? 0.5 * kCountTolerance : kCountTolerance;
+      if (bad.empty() && count_error <= wanted) {
+        if (is_fitted()) mesh = fit_volume(std::move(mesh));
+        return finish(std::move(mesh), m_cell_size, m_surface, m_skin, m_tree);
+      }
+      // Of a fitted body, what is too coarse loses parts, and what has lost parts has too few tets.
+      const bool is_too_fine = is_fitted() && ratio > 1.0 + kMostAbove;
+      if (!is_too_fine)
+        for (const int v : bad) m_offset(v) += m_offset(v) > 0.0 ? kOffsetStep : kFirstOffset;
+      if (m_offset.maxCoeff() > kLargestOffset) break;
+      const bool is_growing = is_fitted() && !bad.empty() && !is_too_fine;
+      if (!is_growing && count_error > (bad.empty() ? wanted : 0.8 * kCountTolerance))
+        m_cell_size *= std::clamp(std::cbrt(ratio), 0.8, 1.5);
+    }
+    give_up(m_name, m_options, bad.size(), num_tets);
+  }
+
+ private:
+  bool is_fitted() const { return m_options.fit == Fit::surface; }
+
+  mesh::TetMesh stuff(double level) {
+    m_tree.set_radius(m_offset * m_cell_size);
+    const shapes::ImplicitSurface surface = make_implicit(
+        m_tree, m_skin.vertices, m_options.fit, m_offset.maxCoeff() * m_cell_size, level, m_cell_size);
+    require_room(surface, m_cell_size, m_name);
+    return shapes::stuff_isosurface(surface, m_cell_size);
+  }
+
+  /// Flat facets cut off what is round, and lattices sharp edges: moves the boundary as far as gives the body
+  /// the volume of its surface, if that is closed.
+  mesh::TetMesh fit_volume(mesh::TetMesh mesh) {
+    constexpr int kTries = 4;
+    constexpr double kCloseEnough = 1e-3;
+    constexpr double kMostLevel = 0.15;  // in cube edges
+    if (!is_closed(m_surface) || m_offset.maxCoeff() > 0.0) return mesh;
+    const double wanted = compute_skin_volume(m_surface);
+    double error = mesh::compute_volumes(mesh.vertices, mesh.tets).sum() - wanted;
+    double slope = 0.0;  // of the volume with the level: first the boundary's area
+    const Triangles boundary = mesh::make_topology(mesh).boundary;
+    for (const auto& t : boundary.colwise())
+      slope += 0.5 * (mesh.vertices.col(t(1)) - mesh.vertices.col(t(0)))
+                         .cross(mesh.vertices.col(t(2)) - mesh.vertices.col(t(0)))
+                         .norm();
+    double level = 0.0;
+    for (int i = 0; i < kTries && std::abs(error) > kCloseEnough * wanted; ++i) {
+      const double next = level - error / slope;
+      if (!(std::abs(next) < kMostLevel * m_cell_size)) break;
+      mesh::TetMesh moved = stuff(next);
+      const double moved_error = mesh::compute_volumes(moved.vertices, moved.tets).sum() - wanted;
+      if (!find_bad_vertices(m_skin, moved, kMostOutside * m_cell_size).empty() ||
+          !(std::abs(moved_error) < std::abs(error)))
+        break;
+      slope = std::max(0.5 * slope, (moved_error - error) / (next - level));
+      level = next;
+      error = moved_error;
+      mesh = std::move(moved);
+    }
+    return mesh;
+  }
+
+  CageOptions m_options;
+  std::string m_name;
+  mesh::TriangleMesh m_surface;
+  double m_cell_size;         // [m]
+  mesh::TriangleMesh m_skin;  // the same surface; of a fitted body with triangles no larger than cells
+  TriangleTree m_tree;
+  Field m_offset;  // of each vertex of the skin, in cube edges
+};
+
+bool winds_round_something(const mesh::TriangleMesh& surface) {
+  const Vec3 extent = surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff();
+  return compute_skin_volume(surface) > 1e-6 * std::pow(extent.maxCoeff(), 3);
+}
+
+}  // namespace
+
+std::string describe(const CageReport& r) {
+  std::ostringstream text;
+  text.precision(4);
+  text << r.num_tets << " tets, cells of " << 1e3 * r.cell_size << " mm";
+  if (r.volume_ratio > 0.0) text << ", volume " << r.volume_ratio << " of the surface's";
+  text << "; boundary off the surface by " << 1e3 * r.median_distance << " mm in the median, "
+       << 1e3 * r.max_distance << " mm at most, surface off the boundary by " << 1e3 * r.max_skin_distance
+       << " mm at most; " << r.enclosed_vertices << " of its " << r.num_vertices
+       << " vertices inside; dihedral angles " << r.min_dihedral_degrees << " to " << r.max_dihedral_degrees
+       << " degrees";
+  return text.str();
+}
+
 Cage make_cage(const mesh::TriangleMesh& surface, const CageOptions& options, const std::string& name) {
   require_usable_input(surface, options, name);
-  const mesh::TriangleMesh skin = with_all_vertices(surface);
-  TriangleTree tree(skin);
-  Field offset = Field::Constant(skin.num_vertices(), kBaseOffset);  // in cube edges
-  double cell_size = guess_cell_size(skin, options.target_tets);
-  std::vector<int> bad;
-  int num_tets = 0;
-  for (int round = 0; round < kRounds; ++round) {
-    tree.set_radius(offset * cell_size);
-    const shapes::ImplicitSurface thick =
-        make_thick_surface(tree, skin.vertices, offset.maxCoeff() * cell_size, cell_size);
-    require_room(thick, cell_size, name);
-    mesh::TetMesh mesh = shapes::stuff_isosurface(thick, cell_size);
-    num_tets = mesh.num_tets();
-    const double ratio = static_cast<double>(std::max(num_tets, 1)) / options.target_tets;
-    const double count_error = std::abs(ratio - 1.0);
-    bad = find_bad_vertices(skin, mesh);
-    const double wanted = round < kRounds / 2 ? 0.5 * kCountTolerance : kCountTolerance;
-    if (bad.empty() && count_error <= wanted)
-      return finish(std::move(mesh), cell_size, offset, skin.num_vertices());
-    for (const int v : bad) offset(v) += kOffsetStep;
-    if (offset.maxCoeff() > kLargestOffset) break;
-    if (count_error > (bad.empty() ? wanted : 0.8 * kCountTolerance))
-      cell_size *= std::clamp(std::cbrt(ratio), 0.8, 1.5);
-  }
-  give_up(name, options, bad.size(), num_tets);
+  CageOptions used = options;
+  if (!winds_round_something(surface)) used.fit = Fit::enclose;
+  return CageSearch(surface, used, name).run();
 }
 
 }  // namespace argil::embed

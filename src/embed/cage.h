@@ -6,27 +6,43 @@
 
 namespace argil::embed {
 
+/// How a body follows the surface that it is made from.
+enum class Fit {
+  surface,  ///< its boundary lies on the surface; what is thinner than a cell is thickened
+  enclose,  ///< all of the surface's vertices are in it: the paper's cage
+};
+
 struct CageOptions {
   int target_tets = 10000;  ///< wanted number of tets; reached within 15 %
+  Fit fit = Fit::enclose;
 };
 
 struct CageReport {
   int num_tets = 0;
-  double cell_size = 0.0;             ///< [m] edge of the background lattice
-  double offset = 0.0;                ///< [m] distance from the skin at which most of the boundary lies
-  double max_offset = 0.0;            ///< [m] the same at places thinner or sharper than the lattice resolves
+  double cell_size = 0.0;        ///< [m] edge of the background lattice
+  double median_distance = 0.0;  ///< [m] of the boundary's vertices from the surface
+  double max_distance = 0.0;     ///< [m] the largest of these
+  double max_skin_distance =
+      0.0;                    ///< [m] of the surface's vertices from the boundary: what is lost, or covered
+  double volume_ratio = 0.0;  ///< body over what the surface encloses; 0 where it is not closed
   double min_dihedral_degrees = 0.0;  ///< worst of all tets
   double max_dihedral_degrees = 0.0;
-  int enclosed_vertices = 0;  ///< all of the surface's, or the cage is not returned
+  int num_vertices = 0;       ///< of the surface
+  int enclosed_vertices = 0;  ///< of them
 };
+
+/// In words, lengths in millimetres.
+std::string describe(const CageReport& report);
 
 struct Cage {
   mesh::TetMesh mesh;
   CageReport report;
 };
 
-/// Tetrahedral cage that encloses every vertex of `surface`, which may have holes, non-manifold edges or
-/// degenerate faces. Same surface and options, same bits. `name` is used in errors.
+/// Tetrahedral body of a surface, which may have holes, non-manifold edges or degenerate faces. Fitted to it,
+/// its volume is that of a closed surface, and no vertex of the surface is farther outside than half a cell;
+/// a surface that winds round nothing is enclosed. Same surface and options, same bits. `name` is used in
+/// errors.
 Cage make_cage(const mesh::TriangleMesh& surface, const CageOptions& options, const std::string& name);
 
 }  // namespace argil::embed

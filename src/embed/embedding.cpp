@@ -34,8 +34,9 @@ namespace {
 
 }  // namespace
 
-Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const std::string& file) {
-  const TetLocator locator(cage);
+Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const std::string& file,
+                         double most_beyond) {
+  const NearTetLocator locator(cage);
   Embedding embedding;
   embedding.tet.resize(static_cast<std::size_t>(points.cols()));
   embedding.weights.resize(4, points.cols());
@@ -44,7 +45,7 @@ Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const 
     if (!points.col(v).allFinite())
       throw InputError(file, "vertex " + std::to_string(v) + " (counted from 0)",
                        "a coordinate is not a finite number", "repair the surface file");
-    const TetLocator::Place place = locator.find(points.col(v));
+    const TetLocator::Place place = locator.find(points.col(v), most_beyond);
     embedding.tet[static_cast<std::size_t>(v)] = place.tet;
     embedding.weights.col(v) = place.weights;
     if (place.tet < 0) outside.push_back(v);

@@ -9,14 +9,19 @@ namespace argil::embed {
 
 /// Where each embedded point lies in the cage.
 struct Embedding {
-  std::vector<int> tet;      ///< containing cage tet of each point
-  Eigen::Matrix4Xd weights;  ///< barycentric weights in it, sum 1, in [0, 1] up to round-off
+  std::vector<int> tet;  ///< containing cage tet of each point
+  Eigen::Matrix4Xd
+      weights;  ///< barycentric weights in it, sum 1; of a point inside in [0, 1] up to round-off
   int num_points() const { return static_cast<int>(tet.size()); }
 };
 
 /// Finds the containing tet of every point (on a shared face: the lowest tet). Throws InputError naming
-/// `file`, the first outside points and their distance when the cage does not enclose all of them.
-Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const std::string& file);
+/// `file`, the first outside points and their distance when the cage does not enclose all of them. Those that
+/// are nearer to the boundary than `most_beyond` longest edges of the tet below it are carried by that tet.
+Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const std::string& file,
+                         double most_beyond = 0.0);
+/// Of a body that is fitted to the points' surface.
+inline constexpr double kMostBeyondFitted = 2.0;
 
 /// Positions of the embedded points for cage nodes `x`: Σ Nᵢ(w) xᵢ. `nodes`: 4×m (N = w) or 10×m (quadratic)
 /// node numbers of the cage's tets. `out` is resized once.

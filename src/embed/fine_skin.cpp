@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@
 namespace argil::embed {
 namespace {
 
+constexpr double kOutside = 1e-6;     // weight of a vertex outside, beyond rounding
 constexpr double kMostBeyond = 0.25;  // of a tet's height, by which a point may lie outside of it
 
 /// Mean edge of every tet [m].
@@ -41,6 +43,7 @@ class Splitter {
       m_x.push_back(skin.vertices.col(v));
       m_weights.push_back(embedding.weights.col(v));
     }
+    if (embedding.weights.minCoeff() < -kOutside) m_near.emplace(cage);
     m_halvings.resize(m_x.size(), 0);
     double longest = m_shortest;
     for (const auto& v : skin.triangles.colwise())
@@ -103,7 +106,8 @@ class Splitter {
     const auto [found, is_new] = m_middle.try_emplace(std::minmax(a, b), kNone);
     if (!is_new) return found->second;
     const Vec3 place = 0.5 * (x(a) + x(b));
-    const TetLocator::Place in = m_locator.find_near(place, kMostBeyond);
+    TetLocator::Place in = m_locator.find_near(place, kMostBeyond);
+    if (in.tet < 0 && m_near) in = m_near->find(place, kMostBeyondFitted);
     if (in.tet < 0) return kNone;
     if (!(length > std::min({m_longest(tet(a)), m_longest(tet(b)), m_longest(in.tet)}))) return kNone;
     found->second = static_cast<int>(m_x.size());
@@ -128,7 +132,8 @@ class Splitter {
   }
 
   TetLocator m_locator;
-  Field m_longest;  // edge of a triangle, by the tet beneath [m]
+  std::optional<NearTetLocator> m_near;  // where some of the skin's vertices are outside
+  Field m_longest;                       // edge of a triangle, by the tet beneath [m]
   double m_shortest;
   std::vector<Vec3> m_x;
   // Of each vertex, how many times edges were halved to come to it. An edge that has to stay as it is would

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "base/check.h"
 
@@ -106,6 +107,28 @@ TetLocator::Place TetLocator::find_near(const Vec3& x, double beyond) const {
     near = {t, weights};
   }
   return near;
+}
+
+NearTetLocator::NearTetLocator(const mesh::TetMesh& mesh, const mesh::Topology& topology)
+    : m_inside(mesh),
+      m_vertices(mesh.vertices),
+      m_tets(mesh.tets),
+      m_boundary_tet(topology.boundary_tet),
+      m_boundary({mesh.vertices, topology.boundary}) {}
+
+TetLocator::Place NearTetLocator::find(const Vec3& x, double most_beyond) const {
+  const TetLocator::Place inside = m_inside.find(x);
+  if (inside.tet >= 0) return inside;
+  const TriangleTree::Nearest nearest = m_boundary.find_nearest(x, std::numeric_limits<double>::infinity());
+  if (nearest.triangle < 0) return {};
+  const int tet = m_boundary_tet[static_cast<std::size_t>(nearest.triangle)];
+  std::array<Vec3, 4> corner;
+  for (std::size_t i = 0; i < 4; ++i) corner[i] = m_vertices.col(m_tets(static_cast<Eigen::Index>(i), tet));
+  double longest = 0.0;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j) longest = std::max(longest, (corner[j] - corner[i]).norm());
+  if (!(nearest.distance <= most_beyond * longest)) return {};
+  return {tet, compute_barycentric_weights(corner[0], corner[1], corner[2], corner[3], x)};
 }
 
 }  // namespace argil::embed

@@ -3,7 +3,9 @@
 #include <array>
 #include <vector>
 
+#include "embed/triangle_tree.h"
 #include "mesh/tet_mesh.h"
+#include "mesh/topology.h"
 
 namespace argil::embed {
 
@@ -37,6 +39,24 @@ class TetLocator {
   std::array<int, 3> m_counts = {1, 1, 1};
   std::vector<int> m_begin;  // per box: where its tets begin
   std::vector<int> m_list;   // tets, increasing in each box
+};
+
+/// The same, and of points outside the tet below the nearest place of the boundary.
+class NearTetLocator {
+ public:
+  explicit NearTetLocator(const mesh::TetMesh& mesh) : NearTetLocator(mesh, mesh::make_topology(mesh)) {}
+  /// −1: farther outside than `most_beyond` times the longest edge of that tet. Weights of a point outside
+  /// are negative or above 1.
+  TetLocator::Place find(const Vec3& x, double most_beyond) const;
+
+ private:
+  NearTetLocator(const mesh::TetMesh& mesh, const mesh::Topology& topology);
+
+  TetLocator m_inside;
+  Points m_vertices;
+  Tets m_tets;
+  std::vector<int> m_boundary_tet;
+  TriangleTree m_boundary;
 };
 
 /// Barycentric weights of x in the tet a, b, c, d; they sum to 1 and are negative beyond a face.

@@ -111,7 +111,7 @@ void TriangleTree::look_near(const Vec3& x, bool is_thick, const double& smalles
   const auto at_leaf = [&](int index) {
     for (const int t : m_tree.triangles_of(m_tree.node(index))) {
       const Eigen::Vector3i corners = m_surface.triangles.col(t);
-      at_triangle(corners,
+      at_triangle(t,
                   find_closest_point(m_surface.vertices.col(corners(0)), m_surface.vertices.col(corners(1)),
                                      m_surface.vertices.col(corners(2)), x));
     }
@@ -122,7 +122,8 @@ void TriangleTree::look_near(const Vec3& x, bool is_thick, const double& smalles
 
 double TriangleTree::compute_distance(const Vec3& x, double limit) const {
   double smallest = limit;
-  look_near(x, true, smallest, [&](const Eigen::Vector3i& corners, const ClosestPoint& closest) {
+  look_near(x, true, smallest, [&](int t, const ClosestPoint& closest) {
+    const auto corners = m_surface.triangles.col(t);
     const Vec3 radius(m_radius(corners(0)), m_radius(corners(1)), m_radius(corners(2)));
     smallest = std::min(smallest, (x - closest.point).norm() - closest.weights.dot(radius));
     if (radius.maxCoeff() == radius.minCoeff()) return;
@@ -135,9 +136,9 @@ double TriangleTree::compute_distance(const Vec3& x, double limit) const {
 TriangleTree::Nearest TriangleTree::find_nearest(const Vec3& x, double limit) const {
   Nearest nearest;
   nearest.distance = limit;
-  look_near(x, false, nearest.distance, [&](const Eigen::Vector3i&, const ClosestPoint& closest) {
+  look_near(x, false, nearest.distance, [&](int t, const ClosestPoint& closest) {
     const double distance = (x - closest.point).norm();
-    if (distance < nearest.distance) nearest = {distance, closest.point};
+    if (distance < nearest.distance) nearest = {distance, closest.point, t};
   });
   return nearest;
 }

@@ -33,6 +33,7 @@ class TriangleTree {
   struct Nearest {
     double distance = 0.0;  ///< [m]
     Vec3 point = Vec3::Zero();
+    int triangle = -1;
   };
   /// The point of the surface, not thickened, that is nearest to x; `limit` and no point where it is farther.
   Nearest find_nearest(const Vec3& x, double limit) const;
@@ -51,7 +52,7 @@ class TriangleTree {
   };
   using Tree = mesh::BoxTree<Group>;
 
-  /// Calls at_triangle(corners, closest point) for triangles that may be nearer to x than `smallest`.
+  /// Calls at_triangle(number, closest point) for triangles that may be nearer to x than `smallest`.
   template <class AtTriangle>
   void look_near(const Vec3& x, bool is_thick, const double& smallest, AtTriangle at_triangle) const;
   void summarise(Tree::Node& node, std::span<const int> triangles) const;

@@ -10,7 +10,7 @@ namespace argil::mesh {
 namespace {
 
 constexpr double kTetsPerCube = 12.0;
-constexpr double kSoundAngle = 15.0;  // [degrees] that a new vertex on the boundary may take it to
+constexpr double kSoundAngle = 18.0;  // [degrees] that a new vertex on the boundary may take it to
 
 struct Edge {
   double length2 = -1.0;  // [m²]

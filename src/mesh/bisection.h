@@ -29,7 +29,7 @@ using BoundaryPoint = std::function<Vec3(const Vec3& a, const Vec3& b)>;
 /// edge are halved together, and first those of them that have a longer one [Rivara1984]. Edges of one length
 /// are taken by number. Tets of a cubic lattice, split round the cubes' centres or body-centred, get parts of
 /// three shapes only, with dihedral angles from 45 to 120 degrees. Stops above `most_tets`. New vertices of
-/// the boundary go to `boundary_point`, if one is given; where a dihedral angle would fall below 15
+/// the boundary go to `boundary_point`, if one is given; where a dihedral angle would fall below 18
 /// degrees and below that of flat halves, only a part of the way or none.
 BisectedMesh bisect(const TetMesh& mesh, const SizeField& wanted_size, int most_tets,
                     const BoundaryPoint& boundary_point = {});

@@ -24,7 +24,8 @@ SurfaceFrames::SurfaceFrames(const ResultReader& reader, bool wants_cage)
   mesh::TetMesh cage;
   cage.vertices = first.position;
   cage.tets = header.tets;
-  const embed::Embedding embedding = embed::make_embedding(cage, first.skin_position, reader.file());
+  const embed::Embedding embedding =
+      embed::make_embedding(cage, first.skin_position, reader.file(), embed::kMostBeyondFitted);
   m_skin_tets = embedding.tet;
   m_rest_position = first.skin_position;  // to the last bit where the run began at rest
   if (first.position != header.rest_position)

@@ -69,14 +69,6 @@ void take_fields(const Scenario& s, sim::Body& body) {
   if (!s.body.pore_axis_field.empty()) body.pore_axis = take_axes(s, body.mesh);
 }
 
-std::string describe_cage(const embed::CageReport& report) {
-  std::ostringstream text;
-  text << "cage: " << report.num_tets << " tets, boundary " << report.offset * 1e3
-       << " mm off the skin, dihedral angles " << report.min_dihedral_degrees << " to "
-       << report.max_dihedral_degrees << " degrees";
-  return text.str();
-}
-
 /// What `make` refuses came from the scenario's `pointer`: say so.
 template <class Make>
 auto from_scenario(const Scenario& s, const char* pointer, const Make& make) {
@@ -103,8 +95,8 @@ void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
     case BodyKind::shape:
       if (s.body.skin_triangles > 0) body.skin = shapes::make_shape_skin(s.body.shape, s.body.skin_triangles);
       if (body.skin.num_triangles() > 0) {
-        embed::Cage cage = embed::make_cage(body.skin, {num_tets}, s.file);
-        scene.notes.push_back(describe_cage(cage.report));
+        embed::Cage cage = embed::make_cage(body.skin, {num_tets, s.body.fit}, s.file);
+        scene.notes.push_back("cage: " + embed::describe(cage.report));
         body.mesh = std::move(cage.mesh);
       } else {
         body.mesh =
@@ -116,8 +108,8 @@ void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
     case BodyKind::surface:
       body.skin = mesh_files::read_triangle_mesh(s.body.file, s.body.scale);
       if (s.body.cage_file.empty()) {
-        embed::Cage cage = embed::make_cage(body.skin, {num_tets}, s.body.file);
-        scene.notes.push_back(describe_cage(cage.report));
+        embed::Cage cage = embed::make_cage(body.skin, {num_tets, s.body.fit}, s.body.file);
+        scene.notes.push_back("cage: " + embed::describe(cage.report));
         body.mesh = std::move(cage.mesh);
       } else {
         body.mesh = mesh_files::read_tet_mesh(s.body.cage_file);
@@ -152,6 +144,19 @@ void require_vertices(const Scenario& s, const std::string& pointer, const std::
     if (v >= num_vertices)
       throw InputError(s.file, pointer, std::to_string(v) + " is no vertex of the mesh",
                        "give numbers from 0 to " + std::to_string(num_vertices - 1));
+}
+
+/// What of the skin is outside a fitted body is carried by the tets below it.
+void embed_skin(const Scenario& s, Scene& scene) {
+  sim::Body& body = scene.body;
+  const bool is_fitted = s.body.fit == embed::Fit::surface;
+  body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, name_origin(s),
+                                              is_fitted ? embed::kMostBeyondFitted : 0.0);
+  if (!is_fitted) return;
+  std::ostringstream text;
+  text << "skin: carried with weights " << body.skin_embedding.weights.minCoeff() << " to "
+       << body.skin_embedding.weights.maxCoeff() << " of the cells' vertices";
+  scene.notes.push_back(text.str());
 }
 
 void fix_and_load(const Scenario& s, const Halvings& halvings, sim::Body& body) {
@@ -304,8 +309,7 @@ Scene build_scene(const Scenario& s, const std::vector<sim::TouchedPlace>* place
   mesh::sort_tets(body.mesh);
   take_fields(s, body);
   body.topology = mesh::make_topology(body.mesh);
-  if (body.skin.num_triangles() > 0)
-    body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, name_origin(s));
+  if (body.skin.num_triangles() > 0) embed_skin(s, scene);
   check_medium(s, scene);
   check_diffusion(s, body);
   fix_and_load(s, halvings, body);

@@ -150,6 +150,14 @@ mesh::BisectedMesh halve(const Whole& whole, CellSizes& sizes, int target_tets) 
   return std::move(search.best);
 }
 
+/// Of the boundary of a fitted body; where it was thickened, the skin is too far.
+Vec3 find_on_skin(const embed::TriangleTree& skin, const Vec3& a, const Vec3& b) {
+  constexpr double kNear = 0.25;  // of the edge's length
+  const Vec3 middle = 0.5 * (a + b);
+  const embed::TriangleTree::Nearest nearest = skin.find_nearest(middle, kNear * (b - a).norm());
+  return nearest.triangle >= 0 ? nearest.point : middle;
+}
+
 std::string describe(const CellSizes& sizes, int before, int after) {
   std::ostringstream text;
   text << "cells: " << before << " tets become " << after;
@@ -208,8 +216,11 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
   if (sizes.places.empty() && sizes.regions.empty()) return std::nullopt;
   const bool has_target = s.body.kind != BodyKind::mesh && s.body.cage_file.empty();
   Whole whole{body.mesh, {}};
+  const embed::TriangleTree skin(body.skin);
   if (s.body.kind == BodyKind::shape && !has_skin)
     whole.boundary_point = shapes::make_boundary_point(s.body.shape);
+  else if (has_skin && s.body.fit == embed::Fit::surface)
+    whole.boundary_point = [&skin](const Vec3& a, const Vec3& b) { return find_on_skin(skin, a, b); };
   mesh::BisectedMesh bisected = halve(whole, sizes, has_target ? s.body.target_tets : 0);
   notes.push_back(describe(sizes, body.mesh.num_tets(), bisected.mesh.num_tets()));
   body.mesh = std::move(bisected.mesh);

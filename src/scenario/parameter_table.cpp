@@ -120,6 +120,11 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
   b.integer("/body/shape/skin_triangles", body.skin_triangles, between(0, 5e6),
             "Skin with at least so many triangles; 0: none.")
       .applies = only(BodyKind::shape);
+  const auto fit_words = std::vector<std::pair<embed::Fit, std::string>>{{embed::Fit::surface, "surface"},
+                                                                         {embed::Fit::enclose, "enclose"}};
+  b.choice<embed::Fit>("/body/shape/fit", body.fit, fit_words,
+                       "Of a shape with a skin: the cells' boundary lies on it, or encloses it (the paper).")
+      .applies = only(BodyKind::shape);
   b.number("/body/shape/sliver", body.sliver, {0.0, 1.0, true, false}, "",
            "Height of one tet near the top as a share of what it was, to see what a bad tet does; 1: none.")
       .applies = only(BodyKind::shape);
@@ -129,6 +134,9 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
   b.number("/body/surface/scale", body.scale, size_range(), "", "Metres per unit of the file.").applies =
       only(BodyKind::surface);
   b.path("/body/surface/cage", body.cage_file, folder, "Cage made before by `argil cage`; empty: made now.")
+      .applies = only(BodyKind::surface);
+  b.choice<embed::Fit>("/body/surface/fit", body.fit, fit_words,
+                       "The cells' boundary lies on the surface, or encloses it (the paper).")
       .applies = only(BodyKind::surface);
   b.integer("/body/surface/target_tets", body.target_tets, between(100, 5e6),
             "Wanted number of tets of a cage made now.")

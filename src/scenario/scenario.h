@@ -5,6 +5,7 @@
 
 #include "device/hand_model.h"
 #include "device/trace.h"
+#include "embed/cage.h"
 #include "shapes/shapes.h"
 #include "sim/params.h"
 #include "solid/loads.h"
@@ -50,15 +51,16 @@ struct CellSpec {
 /// Where the body comes from. Exactly one kind is given.
 struct BodySpec {
   BodyKind kind = BodyKind::shape;
-  std::string file;              ///< mesh, surface
-  std::string cage_file;         ///< surface: a cage made before; empty: made now
-  double scale = 1.0;            ///< file's unit in metres
-  shapes::Shape shape;           ///< shape
-  int target_tets = 10000;       ///< shape; surface without a cage file
-  int skin_triangles = 20000;    ///< shape: at least so many; 0: no skin
-  double sliver = 1.0;           ///< shape: height of one tet over what it was [–]; 1: as it was
-  std::string saturation_field;  ///< mesh: cell data with the initial saturation; empty: uniform
-  std::string modulus_field;     ///< mesh: cell data with Young's modulus [Pa]; empty: the material's
+  std::string file;                      ///< mesh, surface
+  std::string cage_file;                 ///< surface: a cage made before; empty: made now
+  double scale = 1.0;                    ///< file's unit in metres
+  shapes::Shape shape;                   ///< shape
+  int target_tets = 10000;               ///< shape; surface without a cage file
+  embed::Fit fit = embed::Fit::enclose;  ///< surface, shape with a skin
+  int skin_triangles = 20000;            ///< shape: at least so many; 0: no skin
+  double sliver = 1.0;                   ///< shape: height of one tet over what it was [–]; 1: as it was
+  std::string saturation_field;          ///< mesh: cell data with the initial saturation; empty: uniform
+  std::string modulus_field;             ///< mesh: cell data with Young's modulus [Pa]; empty: the material's
   std::string
       pore_axis_field;  ///< mesh: cell data NAME_x, NAME_y, NAME_z along aligned pores; empty: one axis
   std::vector<solid::Support> fixed;

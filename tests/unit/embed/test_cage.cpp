@@ -108,8 +108,8 @@ TEST(MakeCage, HugsASphereSmoothlyWhereAVoxelStaircaseTurnsByNinetyDegrees) {
   double farthest = 0.0;
   for (int v = 0; v < cage.mesh.num_vertices(); ++v)
     farthest = std::max(farthest, (cage.mesh.vertices.col(v) - Vec3(0, 0, 0.5)).norm() - 0.5);
-  EXPECT_NEAR(farthest, cage.report.offset, 0.02 * cage.report.cell_size);
-  EXPECT_LT(cage.report.offset, 0.2 * cage.report.cell_size);
+  EXPECT_NEAR(farthest, cage.report.max_distance, 0.02 * cage.report.cell_size);
+  EXPECT_LT(cage.report.max_distance, 0.2 * cage.report.cell_size);
 }
 
 TEST(MakeCage, KeepsTheCreaturesInOnePiece) {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "contact/tool_solid.h"
+#include "embed/triangle_tree.h"
 #include "scenario/build.h"
 #include "scenario/cell_sizes.h"
 #include "support/scene_files.h"
@@ -107,6 +108,25 @@ TEST_F(GradedCells, AreSmallInARegion) {
     EXPECT_LE(find_size(scene.body, t), 0.0008);
   }
   EXPECT_GT(num_within, 100);
+}
+
+TEST_F(GradedCells, OfAFittedBodyHaveTheirBoundaryOnTheSkin) {
+  const scenario::Scene scene =
+      build({"/body/cells/kind=graded", "/body/shape/fit=surface", "/body/shape/skin_triangles=5000",
+             "/body/shape/target_tets=6000", "/contact/law=pressure"});
+  const sim::TouchedPlace& place = scene.body.touched_places.at(0);
+  const embed::TriangleTree skin(scene.body.skin);
+  int num_on = 0;
+  int num_all = 0;
+  for (const int v : scene.body.topology.boundary.reshaped()) {
+    const Vec3 x = scene.body.mesh.vertices.col(v);
+    if ((x - place.position).norm() > 2.0 * place.radius) continue;
+    ++num_all;
+    if (skin.find_nearest(x, 1.0).distance < 1e-9) ++num_on;
+  }
+  EXPECT_GT(num_all, 100);
+  EXPECT_GT(num_on, 0.8 * num_all);  // the first vertices lie where the volume is right
+  EXPECT_GT(scene.body.skin_embedding.weights.minCoeff(), -2.0);
 }
 
 class GradedFile : public GradedCells {
