@@ -132,8 +132,9 @@ Halvings make_cells(const Scenario& s, const std::vector<sim::TouchedPlace>* pla
   make_mesh(s, count_first_tets(s.body), scene);
   std::optional<Halvings> halvings = grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes);
   if (halvings) return *std::move(halvings);
+  const std::string reason = scene.notes.back();
   scene.notes = notes;
-  scene.notes.push_back("cells: even, as the motion does not reach the body at rest");
+  scene.notes.push_back(reason);
   make_mesh(s, s.body.target_tets, scene);
   return {};
 }

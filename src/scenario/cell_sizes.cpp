@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/error.h"
 #include "embed/triangle_tree.h"
 #include "mesh/order.h"
 #include "mesh/topology.h"
@@ -15,6 +16,7 @@
 namespace argil::scenario {
 namespace {
 
+constexpr double kStep = 0.002;         // of a ball between two looks, over its radius
 constexpr double kPlaceSpacing = 0.25;  // of touched places, over their radius
 constexpr double kGrowth = 0.9;         // of the size in h₀, per distance in contact radii
 constexpr double kCellsPerRadius = 2.0;
@@ -62,10 +64,13 @@ std::vector<sim::TouchedPlace> find_touched_places(const Scenario& s, const devi
   std::vector<sim::TouchedPlace> places;
   for (const contact::InnerBall& ball : tool.inner_balls()) {
     const std::size_t first = places.size();
+    Vec3 last = Vec3::Constant(std::numeric_limits<double>::infinity());  // looked at
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
       if (trace.time[i] < begin || trace.time[i] > end) continue;
       const device::DeviceSample& sample = trace.samples[i];
       const Vec3 centre = sample.position + sample.orientation * ball.centre;
+      if ((centre - last).norm() < kStep * ball.radius) continue;
+      last = centre;
       const bool is_inside = tree.compute_winding_number(centre) > 0.5;
       const double reach = is_inside ? std::numeric_limits<double>::infinity() : ball.radius;
       const embed::TriangleTree::Nearest nearest = tree.find_nearest(centre, reach);
@@ -213,8 +218,15 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
     const mesh::TriangleMesh boundary{body.mesh.vertices, mesh::make_topology(body.mesh).boundary};
     sizes.places = find_touched_places(s, trace, tool, has_skin ? body.skin : boundary);
   }
-  if (sizes.places.empty() && sizes.regions.empty()) return std::nullopt;
-  const bool has_target = s.body.kind != BodyKind::mesh && s.body.cage_file.empty();
+  if (sizes.places.empty() && sizes.regions.empty()) {
+    notes.push_back("cells: even, as the motion does not reach the body at rest");
+    return std::nullopt;
+  }
+  const bool has_target = s.body.kind != BodyKind::mesh && s.body.cage_file.empty() && !(sizes.near > 0.0);
+  if (has_target && !sizes.places.empty() && body.mesh.num_tets() >= s.body.target_tets) {
+    notes.push_back("cells: even, as " + std::to_string(s.body.target_tets) + " tets leave none to halve");
+    return std::nullopt;
+  }
   Whole whole{body.mesh, {}};
   const embed::TriangleTree skin(body.skin);
   if (s.body.kind == BodyKind::shape && !has_skin)
@@ -222,6 +234,9 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
   else if (has_skin && s.body.fit == embed::Fit::surface)
     whole.boundary_point = [&skin](const Vec3& a, const Vec3& b) { return find_on_skin(skin, a, b); };
   mesh::BisectedMesh bisected = halve(whole, sizes, has_target ? s.body.target_tets : 0);
+  if (bisected.mesh.num_tets() > kMostTets)
+    throw InputError(s.file, "/body/cells", "asks for cells that make more than 5 million tets",
+                     "give a larger near_tool_m or size_m, or a larger growth");
   notes.push_back(describe(sizes, body.mesh.num_tets(), bisected.mesh.num_tets()));
   body.mesh = std::move(bisected.mesh);
   body.touched_places = std::move(sizes.places);

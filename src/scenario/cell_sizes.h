@@ -50,7 +50,7 @@ struct Halvings {
 /// that argil makes gets about as many tets as wanted; in a mesh file's, so that two cells lie along the
 /// largest radius of a touched place. Sizes grow as an elastic body's error wants it: as h₀ (1 + 0.6 r/a) at
 /// a distance r from a patch of radius a.
-/// None where neither motion nor regions say where.
+/// None, and the reason in `notes`, where neither motion nor regions say where, or no tets are left to halve.
 std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,

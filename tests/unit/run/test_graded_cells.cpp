@@ -97,6 +97,24 @@ TEST_F(GradedCells, AreEvenWhereTheMotionDoesNotReach) {
   EXPECT_EQ(scene.notes.back(), "cells: even, as the motion does not reach the body at rest");
 }
 
+TEST_F(GradedCells, AreEvenWhereFewTetsAreWanted) {
+  const scenario::Scene scene = build({"/body/cells/kind=graded", "/body/shape/target_tets=300"});
+  const scenario::Scene even = build({"/body/cells/kind=even", "/body/shape/target_tets=300"});
+  EXPECT_EQ(scene.body.mesh.tets, even.body.mesh.tets);
+  EXPECT_EQ(scene.notes.back(), "cells: even, as 300 tets leave none to halve");
+}
+
+TEST_F(GradedCells, AreRefusedWhereTheyAreTooMany) {
+  try {
+    build({"/body/cells/kind=graded", "/body/cells/near_tool_m=1e-6"});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("scenario.json: /body/cells: asks for cells that make more"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(GradedCells, AreSmallInARegion) {
   const scenario::Scene scene =
       build({"/body/cells/kind=graded", "/body/cells/near_tool_m=0.004",
