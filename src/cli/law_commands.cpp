@@ -15,6 +15,7 @@
 #include "mesh_files/readers.h"
 #include "run/files.h"
 #include "run/run.h"
+#include "scenario/cell_sizes.h"
 #include "scenario/probe.h"
 
 namespace argil::cli {
@@ -28,6 +29,8 @@ struct Options {
   double separation = 0.0;
   embed::CageOptions cage;
   std::string fit = "enclose";
+  std::string motion;
+  double near_size = 0.0;  // [m]
   double scale = 1.0;
 };
 
@@ -38,11 +41,17 @@ int make_cage_file(const Options& o) {
   run::check_cage_name(surface, output);
   embed::CageOptions options = o.cage;
   options.fit = o.fit == "surface" ? embed::Fit::surface : embed::Fit::enclose;
-  const embed::Cage cage =
-      embed::make_cage(mesh_files::read_triangle_mesh(surface, o.scale), options, surface);
-  mesh_files::write_gmsh(cage.mesh, output);
+  const mesh::TriangleMesh skin = mesh_files::read_triangle_mesh(surface, o.scale);
+  embed::Cage cage = embed::make_cage(skin, options, surface);
   std::printf("%s: %d vertices, %s\n", output.c_str(), cage.mesh.num_vertices(),
               embed::describe(cage.report).c_str());
+  if (!o.motion.empty()) {
+    run::require_input_file(o.motion);
+    cage.mesh = scenario::grade_cage(cage, options.fit, skin, device::read_trace(o.motion, {}), o.near_size);
+    std::printf("near %s: %d vertices, %d tets\n", o.motion.c_str(), cage.mesh.num_vertices(),
+                cage.mesh.num_tets());
+  }
+  mesh_files::write_gmsh(cage.mesh, output);
   return ExitCode::kDone;
 }
 
@@ -89,6 +98,11 @@ void add_law_commands(CLI::App& app, int& code) {
   cage->add_option("--tets", o->cage.target_tets, "wanted number of tets")->check(CLI::Range(100, 5000000));
   cage->add_option("--fit", o->fit, "surface: the boundary lies on it; enclose: it is all inside")
       ->check(CLI::IsMember({"surface", "enclose"}));
+  CLI::Option* near = cage->add_option("--near", o->motion, "trace: cells are small where it goes");
+  CLI::Option* size = cage->add_option("--near-size", o->near_size, "their size there, in metres")
+                          ->check(finite_number(false));
+  near->needs(size);
+  size->needs(near);
   cage->add_option("--scale", o->scale, "metres per unit of the file")->check(finite_number(false));
   cage->callback([o, &code] { code = make_cage_file(*o); });
 }

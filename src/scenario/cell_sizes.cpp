@@ -184,6 +184,29 @@ int count_first_tets(const BodySpec& body) {
   return std::min(target, std::max(fewest, target / 6));
 }
 
+mesh::TetMesh grade_cage(const embed::Cage& cage, embed::Fit fit, const mesh::TriangleMesh& surface,
+                         const device::Trace& trace, double near) {
+  constexpr double kFarthest = 10.0;
+  constexpr double kGrowthOfCage = 0.3;
+  const embed::TriangleTree skin(surface);
+  CellSizes sizes{near, kGrowthOfCage, {}, {}};
+  for (const device::DeviceSample& sample : trace.samples) {
+    const embed::TriangleTree::Nearest nearest = skin.find_nearest(sample.position, kFarthest * near);
+    if (nearest.triangle >= 0) add_place({nearest.point, near}, 0, sizes.places);
+  }
+  if (sizes.places.empty())
+    throw InputError(trace.file, "",
+                     "never comes nearer to the surface than ten cells of " + std::to_string(near) + " m",
+                     "give a motion in the surface's frame and unit, or larger cells");
+  Whole whole{cage.mesh, {}};
+  if (fit == embed::Fit::surface)
+    whole.boundary_point = [&skin](const Vec3& a, const Vec3& b) { return find_on_skin(skin, a, b); };
+  mesh::TetMesh mesh = bisect(whole, sizes, kMostTets).mesh;
+  if (mesh.num_tets() > kMostTets)
+    throw InputError("", "--near-size", "makes more than 5 million tets", "give larger cells");
+  return mesh;
+}
+
 void Halvings::renumber(std::vector<int>& nodes) const {
   if (number.empty()) return;
   for (int& v : nodes) v = number[static_cast<std::size_t>(v)];

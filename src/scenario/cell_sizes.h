@@ -35,6 +35,12 @@ struct CellSizes {
 /// Tets to begin with, before cells are graded: where that is asked for, less than are wanted in the end.
 int count_first_tets(const BodySpec& body);
 
+/// Halves the tets of a surface's body near the places of a motion, as a file has them, to the size `near`
+/// [m]. Places farther from the surface than ten times that do not count. Throws InputError when none is
+/// left.
+mesh::TetMesh grade_cage(const embed::Cage& cage, embed::Fit fit, const mesh::TriangleMesh& surface,
+                         const device::Trace& trace, double near);
+
 /// What became of the vertices of a body whose cells were graded.
 struct Halvings {
   std::vector<std::array<int, 2>> ends;  ///< of each halved edge: vertices, or others halved before

@@ -147,6 +147,28 @@ TEST_F(GradedCells, OfAFittedBodyHaveTheirBoundaryOnTheSkin) {
   EXPECT_GT(scene.body.skin_embedding.weights.minCoeff(), -2.0);
 }
 
+TEST(GradedCage, IsFineNearAMotionAndRefusesOneThatIsFar) {
+  const mesh::TriangleMesh ball = shapes::make_shape_skin({shapes::ShapeKind::sphere, 0.04}, 2000);
+  const embed::Cage cage = embed::make_cage(ball, {1000, embed::Fit::surface}, "ball");
+  device::Trace trace;
+  for (int k = 0; k <= 20; ++k) {
+    trace.time.push_back(0.001 * k);
+    trace.samples.push_back({.position = Vec3(0.0005 * k, 0.0, 0.045)});
+  }
+  const mesh::TetMesh fine = scenario::grade_cage(cage, embed::Fit::surface, ball, trace, 0.001);
+  const Field volume = mesh::compute_volumes(fine.vertices, fine.tets);
+  int num_near = 0;
+  for (int t = 0; t < fine.num_tets(); ++t) {
+    const Vec3 centre = fine.vertices(Eigen::all, fine.tets.col(t)).rowwise().mean();
+    if ((centre - Vec3(0.004, 0.0, 0.0395)).norm() > 0.002) continue;
+    EXPECT_LE(mesh::compute_cell_size(volume(t)), 0.002);
+    ++num_near;
+  }
+  EXPECT_GT(num_near, 50);
+  for (device::DeviceSample& sample : trace.samples) sample.position(2) = 1.0;
+  EXPECT_THROW(scenario::grade_cage(cage, embed::Fit::surface, ball, trace, 0.001), InputError);
+}
+
 class GradedFile : public GradedCells {
  protected:
   mesh::TetMesh ball = shapes::make_shape_mesh({shapes::ShapeKind::sphere, 0.04}, 600);
