@@ -69,30 +69,8 @@ ARGIL_INLINE void BoundingTree::find(Test is_met, const Points& x_t0, const Poin
   fit_passed();
 }
 
-/// Where they are called from: Clang makes versions only of what the caller sees so declared, GCC only where
-/// the function is defined.
-struct BoundingTree::Versions {
-  ARGIL_EVERY_PROCESSOR static void find_overlaps(BoundingTree& tree, const mesh::Box& query,
-                                                  const Points& x_t0, const Points& x_t1,
-                                                  std::vector<int>& triangles);
-  ARGIL_EVERY_PROCESSOR static void find_near(BoundingTree& tree, const Vec3& p, double squared_reach,
-                                              const Points& x_t0, const Points& x_t1,
-                                              std::vector<int>& triangles);
-};
-
-void BoundingTree::find_overlaps(const mesh::Box& query, const Points& x_t0, const Points& x_t1,
-                                 std::vector<int>& triangles) {
-  Versions::find_overlaps(*this, query, x_t0, x_t1, triangles);
-}
-
-void BoundingTree::find_near(const Vec3& p, double squared_reach, const Points& x_t0, const Points& x_t1,
-                             std::vector<int>& triangles) {
-  Versions::find_near(*this, p, squared_reach, x_t0, x_t1, triangles);
-}
-
-ARGIL_EVERY_PROCESSOR void BoundingTree::Versions::find_overlaps(BoundingTree& tree, const mesh::Box& query,
-                                                                 const Points& x_t0, const Points& x_t1,
-                                                                 std::vector<int>& triangles) {
+ARGIL_EVERY_PROCESSOR void BoundingTree::find_overlaps(const mesh::Box& query, const Points& x_t0,
+                                                       const Points& x_t1, std::vector<int>& triangles) {
   const Quad low = {query.low(0), query.low(1), query.low(2), 0.0};
   const Quad high = {query.high(0), query.high(1), query.high(2), 0.0};
   const auto overlaps = [&](const mesh::Box& box, double margin) __attribute__((always_inline)) {
@@ -103,13 +81,11 @@ ARGIL_EVERY_PROCESSOR void BoundingTree::Versions::find_overlaps(BoundingTree& t
     const Quad both = under < over ? under : over;
     return (both[0] >= 0.0) & (both[1] >= 0.0) & (both[2] >= 0.0);
   };
-  tree.find(overlaps, x_t0, x_t1, triangles);
+  find(overlaps, x_t0, x_t1, triangles);
 }
 
-ARGIL_EVERY_PROCESSOR void BoundingTree::Versions::find_near(BoundingTree& tree, const Vec3& p,
-                                                             double squared_reach, const Points& x_t0,
-                                                             const Points& x_t1,
-                                                             std::vector<int>& triangles) {
+ARGIL_EVERY_PROCESSOR void BoundingTree::find_near(const Vec3& p, double squared_reach, const Points& x_t0,
+                                                   const Points& x_t1, std::vector<int>& triangles) {
   triangles.clear();
   const Quad at = {p(0), p(1), p(2), 0.0};
   const auto is_near = [&](const mesh::Box& box, double margin) __attribute__((always_inline)) {
@@ -121,7 +97,7 @@ ARGIL_EVERY_PROCESSOR void BoundingTree::Versions::find_near(BoundingTree& tree,
     const Quad d = beside > 0.0 ? beside : Quad{};
     return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= squared_reach;
   };
-  tree.find(is_near, x_t0, x_t1, triangles);
+  find(is_near, x_t0, x_t1, triangles);
 }
 
 /// Children were passed after their parents.

@@ -79,7 +79,6 @@ class BoundingTree {
   void fit_leaf(Node& node, const Points& x_t0, const Points& x_t1);
   void fit_inner(Node& node);
   void fit_passed();
-  struct Versions;  // of the two searches, for each kind of processor
   template <class Test>
   void find(Test is_met, const Points& x_t0, const Points& x_t1, std::vector<int>& triangles);
 
