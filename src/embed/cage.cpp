@@ -129,16 +129,15 @@ std::vector<int> find_bad_vertices(const mesh::TriangleMesh& skin, const mesh::T
     std::iota(all.begin(), all.end(), 0);
     return all;
   }
-  const NearTetLocator locator(cage);
-  const TriangleTree boundary({cage.vertices, mesh::make_topology(cage).boundary});
+  const TetLocator locator(cage);
+  const BoundaryTets boundary(cage);
   const std::vector<int> part = label_parts(cage);
   std::vector<int> where(static_cast<std::size_t>(skin.num_vertices()), -1);
   std::vector<int> bad;
   for (int v = 0; v < skin.num_vertices(); ++v) {
     const Vec3 x = skin.vertices.col(v);
-    int tet = locator.find(x, 0.0).tet;
-    if (tet < 0 && boundary.compute_distance(x, most_outside) < most_outside)
-      tet = locator.find(x, kMostBeyondFitted).tet;
+    int tet = locator.find(x).tet;
+    if (tet < 0 && most_outside > 0.0) tet = boundary.find(x, kMostBeyondFitted, most_outside).tet;
     if (tet < 0)
       bad.push_back(v);
     else
@@ -205,20 +204,19 @@ Cage finish(mesh::TetMesh mesh, double cell_size, const mesh::TriangleMesh& surf
 }
 
 // Lattice on which body and thickened skin together take about the wanted number of tets: the root h of
-// N h³ = 12 (V + A h/2), with the volume V and the area A that the triangles enclose and have.
+// N h³ = 12 (V + c A h), with the volume V and the area A that the triangles enclose and have. `covered`, c:
+// of a cell's size, what lies over the skin.
 double guess_cell_size(const mesh::TriangleMesh& skin, int target_tets, double covered) {
   const Vec3 lower = skin.vertices.rowwise().minCoeff();
   const Vec3 extent = skin.vertices.rowwise().maxCoeff() - lower;
-  double volume = 0.0;
   double area = 0.0;
-  for (int t = 0; t < skin.num_triangles(); ++t) {
-    const Vec3 a = skin.vertices.col(skin.triangles(0, t)) - lower;
-    const Vec3 b = skin.vertices.col(skin.triangles(1, t)) - lower;
-    const Vec3 c = skin.vertices.col(skin.triangles(2, t)) - lower;
-    volume += a.dot(b.cross(c)) / 6.0;
+  for (const auto& t : skin.triangles.colwise()) {
+    const Vec3 a = skin.vertices.col(t(0)) - lower;
+    const Vec3 b = skin.vertices.col(t(1)) - lower;
+    const Vec3 c = skin.vertices.col(t(2)) - lower;
     area += 0.5 * (b - a).cross(c - a).norm();
   }
-  volume = std::min(std::abs(volume), extent.prod());
+  const double volume = std::min(compute_skin_volume(skin), extent.prod());
   double high = extent.maxCoeff();
   double low = 0.0;
   constexpr int kHalvings = 40;
@@ -237,10 +235,6 @@ void require_room(const shapes::ImplicitSurface& thick, double cell_size, const 
                      "the surface is so thin in its box that the lattice needs more than 1e8 cubes",
                      "ask for fewer tets or cut the surface into parts");
 }
-
-}  // namespace
-
-namespace {
 
 /// A lattice and how far the skin is thickened, by which a body gets the wanted number of tets and holds the
 /// skin.

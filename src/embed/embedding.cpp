@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <sstream>
 
 #include "base/check.h"
@@ -36,7 +38,8 @@ namespace {
 
 Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const std::string& file,
                          double most_beyond) {
-  const NearTetLocator locator(cage);
+  const TetLocator locator(cage);
+  std::optional<BoundaryTets> boundary;  // made for the first point outside
   Embedding embedding;
   embedding.tet.resize(static_cast<std::size_t>(points.cols()));
   embedding.weights.resize(4, points.cols());
@@ -45,7 +48,11 @@ Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const 
     if (!points.col(v).allFinite())
       throw InputError(file, "vertex " + std::to_string(v) + " (counted from 0)",
                        "a coordinate is not a finite number", "repair the surface file");
-    const TetLocator::Place place = locator.find(points.col(v), most_beyond);
+    TetLocator::Place place = locator.find(points.col(v));
+    if (place.tet < 0 && most_beyond > 0.0) {
+      if (!boundary) boundary.emplace(cage);
+      place = boundary->find(points.col(v), most_beyond, std::numeric_limits<double>::infinity());
+    }
     embedding.tet[static_cast<std::size_t>(v)] = place.tet;
     embedding.weights.col(v) = place.weights;
     if (place.tet < 0) outside.push_back(v);

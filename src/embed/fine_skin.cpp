@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -43,7 +44,7 @@ class Splitter {
       m_x.push_back(skin.vertices.col(v));
       m_weights.push_back(embedding.weights.col(v));
     }
-    if (embedding.weights.minCoeff() < -kOutside) m_near.emplace(cage);
+    if (embedding.weights.minCoeff() < -kOutside) m_boundary.emplace(cage);
     m_halvings.resize(m_x.size(), 0);
     double longest = m_shortest;
     for (const auto& v : skin.triangles.colwise())
@@ -107,7 +108,8 @@ class Splitter {
     if (!is_new) return found->second;
     const Vec3 place = 0.5 * (x(a) + x(b));
     TetLocator::Place in = m_locator.find_near(place, kMostBeyond);
-    if (in.tet < 0 && m_near) in = m_near->find(place, kMostBeyondFitted);
+    if (in.tet < 0 && m_boundary)
+      in = m_boundary->find(place, kMostBeyondFitted, std::numeric_limits<double>::infinity());
     if (in.tet < 0) return kNone;
     if (!(length > std::min({m_longest(tet(a)), m_longest(tet(b)), m_longest(in.tet)}))) return kNone;
     found->second = static_cast<int>(m_x.size());
@@ -132,8 +134,8 @@ class Splitter {
   }
 
   TetLocator m_locator;
-  std::optional<NearTetLocator> m_near;  // where some of the skin's vertices are outside
-  Field m_longest;                       // edge of a triangle, by the tet beneath [m]
+  std::optional<BoundaryTets> m_boundary;  // where some of the skin's vertices are outside
+  Field m_longest;                         // edge of a triangle, by the tet beneath [m]
   double m_shortest;
   std::vector<Vec3> m_x;
   // Of each vertex, how many times edges were halved to come to it. An edge that has to stay as it is would

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "base/check.h"
 
@@ -109,17 +108,14 @@ TetLocator::Place TetLocator::find_near(const Vec3& x, double beyond) const {
   return near;
 }
 
-NearTetLocator::NearTetLocator(const mesh::TetMesh& mesh, const mesh::Topology& topology)
-    : m_inside(mesh),
-      m_vertices(mesh.vertices),
+BoundaryTets::BoundaryTets(const mesh::TetMesh& mesh, const mesh::Topology& topology)
+    : m_vertices(mesh.vertices),
       m_tets(mesh.tets),
       m_boundary_tet(topology.boundary_tet),
       m_boundary({mesh.vertices, topology.boundary}) {}
 
-TetLocator::Place NearTetLocator::find(const Vec3& x, double most_beyond) const {
-  const TetLocator::Place inside = m_inside.find(x);
-  if (inside.tet >= 0) return inside;
-  const TriangleTree::Nearest nearest = m_boundary.find_nearest(x, std::numeric_limits<double>::infinity());
+TetLocator::Place BoundaryTets::find(const Vec3& x, double most_beyond, double farthest) const {
+  const TriangleTree::Nearest nearest = m_boundary.find_nearest(x, farthest);
   if (nearest.triangle < 0) return {};
   const int tet = m_boundary_tet[static_cast<std::size_t>(nearest.triangle)];
   std::array<Vec3, 4> corner;

@@ -41,18 +41,17 @@ class TetLocator {
   std::vector<int> m_list;   // tets, increasing in each box
 };
 
-/// The same, and of points outside the tet below the nearest place of the boundary.
-class NearTetLocator {
+/// Finds for points outside a mesh the tet below the nearest place of the boundary.
+class BoundaryTets {
  public:
-  explicit NearTetLocator(const mesh::TetMesh& mesh) : NearTetLocator(mesh, mesh::make_topology(mesh)) {}
-  /// −1: farther outside than `most_beyond` times the longest edge of that tet. Weights of a point outside
-  /// are negative or above 1.
-  TetLocator::Place find(const Vec3& x, double most_beyond) const;
+  explicit BoundaryTets(const mesh::TetMesh& mesh) : BoundaryTets(mesh, mesh::make_topology(mesh)) {}
+  /// −1: farther than `farthest` [m], or than `most_beyond` times the longest edge of that tet. Weights are
+  /// negative or above 1.
+  TetLocator::Place find(const Vec3& x, double most_beyond, double farthest) const;
 
  private:
-  NearTetLocator(const mesh::TetMesh& mesh, const mesh::Topology& topology);
+  BoundaryTets(const mesh::TetMesh& mesh, const mesh::Topology& topology);
 
-  TetLocator m_inside;
   Points m_vertices;
   Tets m_tets;
   std::vector<int> m_boundary_tet;

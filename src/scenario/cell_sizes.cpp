@@ -20,6 +20,7 @@ constexpr double kStep = 0.002;         // of a ball between two looks, over its
 constexpr double kPlaceSpacing = 0.25;  // of touched places, over their radius
 constexpr double kGrowth = 0.9;         // of the size in h₀, per distance in contact radii
 constexpr double kCellsPerRadius = 2.0;
+constexpr double kPlainGrowth = 0.3;  // of the size per distance, where no radius of contact is known
 constexpr double kMostTets = 5'000'000;
 
 /// Adds a place to those of one ball, or makes the last one deeper.
@@ -57,8 +58,7 @@ mesh::BisectedMesh bisect(const Whole& whole, const CellSizes& sizes, double mos
 
 std::vector<sim::TouchedPlace> find_touched_places(const Scenario& s, const device::Trace& trace,
                                                    const contact::ToolSolid& tool,
-                                                   const mesh::TriangleMesh& surface) {
-  const embed::TriangleTree tree(surface);
+                                                   const embed::TriangleTree& surface) {
   const double begin = trace.time.front() + s.trace.start;
   const double end = s.trace.duration > 0.0 ? begin + s.trace.duration : trace.time.back();
   std::vector<sim::TouchedPlace> places;
@@ -71,9 +71,9 @@ std::vector<sim::TouchedPlace> find_touched_places(const Scenario& s, const devi
       const Vec3 centre = sample.position + sample.orientation * ball.centre;
       if ((centre - last).norm() < kStep * ball.radius) continue;
       last = centre;
-      const bool is_inside = tree.compute_winding_number(centre) > 0.5;
+      const bool is_inside = surface.compute_winding_number(centre) > 0.5;
       const double reach = is_inside ? std::numeric_limits<double>::infinity() : ball.radius;
-      const embed::TriangleTree::Nearest nearest = tree.find_nearest(centre, reach);
+      const embed::TriangleTree::Nearest nearest = surface.find_nearest(centre, reach);
       if (!is_inside && !(nearest.distance < reach)) continue;
       const double depth = ball.radius + (is_inside ? nearest.distance : -nearest.distance);
       add_place({nearest.point, std::sqrt(ball.radius * std::min(depth, ball.radius))}, first, places);
@@ -120,8 +120,7 @@ struct Search {
 /// `target_tets` 0: no number is wanted. Completes the sizes.
 mesh::BisectedMesh halve(const Whole& whole, CellSizes& sizes, int target_tets) {
   if (sizes.places.empty()) {
-    constexpr double kGrowthOfRegions = 0.3;
-    if (!(sizes.growth > 0.0)) sizes.growth = kGrowthOfRegions;
+    if (!(sizes.growth > 0.0)) sizes.growth = kPlainGrowth;
     return bisect(whole, sizes, kMostTets);
   }
   const double radius = find_largest_radius(sizes.places);
@@ -176,7 +175,7 @@ std::string describe(const CellSizes& sizes, int before, int after) {
 
 int count_first_tets(const BodySpec& body) {
   const int target = body.target_tets;
-  if (body.cells.kind == CellKind::even || body.cells.near_tool > 0.0) return target;
+  if (body.cells.near_tool > 0.0) return target;
   // Limbs want so many; other shapes stand for themselves with fewer.
   const bool has_limbs = body.kind == BodyKind::surface || body.shape.kind == shapes::ShapeKind::dinosaur ||
                          body.shape.kind == shapes::ShapeKind::figure;
@@ -187,9 +186,8 @@ int count_first_tets(const BodySpec& body) {
 mesh::TetMesh grade_cage(const embed::Cage& cage, embed::Fit fit, const mesh::TriangleMesh& surface,
                          const device::Trace& trace, double near) {
   constexpr double kFarthest = 10.0;
-  constexpr double kGrowthOfCage = 0.3;
   const embed::TriangleTree skin(surface);
-  CellSizes sizes{near, kGrowthOfCage, {}, {}};
+  CellSizes sizes{near, kPlainGrowth, {}, {}};
   for (const device::DeviceSample& sample : trace.samples) {
     const embed::TriangleTree::Nearest nearest = skin.find_nearest(sample.position, kFarthest * near);
     if (nearest.triangle >= 0) add_place({nearest.point, near}, 0, sizes.places);
@@ -232,14 +230,15 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
                                     std::vector<std::string>& notes) {
   const bool has_skin = body.skin.num_triangles() > 0;
+  const embed::TriangleTree surface(
+      has_skin ? body.skin : mesh::TriangleMesh{body.mesh.vertices, mesh::make_topology(body.mesh).boundary});
   CellSizes sizes{s.body.cells.near_tool, s.body.cells.growth, {}, s.body.cells.regions};
   if (touched_places) {
     sizes.places = *touched_places;
   } else if (!trace.samples.empty()) {
     const std::optional<contact::RoundTool>& round = s.params.contact.round_tool;
     const contact::ToolSolid tool = round ? contact::ToolSolid(*round) : contact::ToolSolid(tool_surface);
-    const mesh::TriangleMesh boundary{body.mesh.vertices, mesh::make_topology(body.mesh).boundary};
-    sizes.places = find_touched_places(s, trace, tool, has_skin ? body.skin : boundary);
+    sizes.places = find_touched_places(s, trace, tool, surface);
   }
   if (sizes.places.empty() && sizes.regions.empty()) {
     notes.push_back("cells: even, as the motion does not reach the body at rest");
@@ -251,11 +250,10 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
     return std::nullopt;
   }
   Whole whole{body.mesh, {}};
-  const embed::TriangleTree skin(body.skin);
   if (s.body.kind == BodyKind::shape && !has_skin)
     whole.boundary_point = shapes::make_boundary_point(s.body.shape);
   else if (has_skin && s.body.fit == embed::Fit::surface)
-    whole.boundary_point = [&skin](const Vec3& a, const Vec3& b) { return find_on_skin(skin, a, b); };
+    whole.boundary_point = [&surface](const Vec3& a, const Vec3& b) { return find_on_skin(surface, a, b); };
   mesh::BisectedMesh bisected = halve(whole, sizes, has_target ? s.body.target_tets : 0);
   if (bisected.mesh.num_tets() > kMostTets)
     throw InputError(s.file, "/body/cells", "asks for cells that make more than 5 million tets",

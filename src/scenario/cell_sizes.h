@@ -7,6 +7,7 @@
 
 #include "contact/tool_solid.h"
 #include "device/trace.h"
+#include "embed/triangle_tree.h"
 #include "mesh/bisection.h"
 #include "scenario/scenario.h"
 #include "sim/state.h"
@@ -17,7 +18,7 @@ namespace argil::scenario {
 /// radius from the next; in order of time for each of the balls that stand for the tool.
 std::vector<sim::TouchedPlace> find_touched_places(const Scenario& s, const device::Trace& trace,
                                                    const contact::ToolSolid& tool,
-                                                   const mesh::TriangleMesh& surface);
+                                                   const embed::TriangleTree& surface);
 
 inline constexpr double kReach = 1.5;
 
@@ -32,7 +33,7 @@ struct CellSizes {
   double find(const Vec3& x) const;
 };
 
-/// Tets to begin with, before cells are graded: where that is asked for, less than are wanted in the end.
+/// Tets to begin with, before cells are graded: less than are wanted in the end, where that is left open.
 int count_first_tets(const BodySpec& body);
 
 /// Halves the tets of a surface's body near the places of a motion, as a file has them, to the size `near`
@@ -54,9 +55,10 @@ struct Halvings {
 /// Halves a body's tets as /body/cells asks for, by the motion of the tool or by `touched_places`, where they
 /// are given, and says so in `notes`. What the scenario leaves open of the sizes is chosen so that a body
 /// that argil makes gets about as many tets as wanted; in a mesh file's, so that two cells lie along the
-/// largest radius of a touched place. Sizes grow as an elastic body's error wants it: as h₀ (1 + 0.6 r/a) at
-/// a distance r from a patch of radius a.
-/// None, and the reason in `notes`, where neither motion nor regions say where, or no tets are left to halve.
+/// largest radius of a touched place. Where stresses fall as 1/r², sizes that grow as r^{6/5} make the error
+/// of linear tets least; here they are h₀ up to 1.5 a from the middle of a patch of radius a, and then grow
+/// by 0.9 h₀/a of the distance. None, and the reason in `notes`, where neither motion nor regions say where,
+/// or no tets are left to halve.
 std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
