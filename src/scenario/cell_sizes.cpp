@@ -225,21 +225,83 @@ void Halvings::renumber_with_middles(std::vector<int>& nodes) const {
   renumber(nodes);
 }
 
+namespace {
+
+/// The surface that is touched, as it is before any step.
+embed::TriangleTree make_touched_tree(const sim::Body& body) {
+  if (body.skin.num_triangles() > 0) return embed::TriangleTree(body.skin);
+  return embed::TriangleTree({body.mesh.vertices, mesh::make_topology(body.mesh).boundary});
+}
+
+std::vector<sim::TouchedPlace> find_places(const Scenario& s, const device::Trace& trace,
+                                           const mesh::TriangleMesh& tool_surface,
+                                           const embed::TriangleTree& surface) {
+  if (trace.samples.empty()) return {};
+  const std::optional<contact::RoundTool>& round = s.params.contact.round_tool;
+  return find_touched_places(s, trace, round ? contact::ToolSolid(*round) : contact::ToolSolid(tool_surface),
+                             surface);
+}
+
+/// Mean size of the tets around the vertex that is nearest to x.
+double find_cell_size(const mesh::TetMesh& mesh, const Vec3& x) {
+  Eigen::Index nearest = 0;
+  (mesh.vertices.colwise() - x).colwise().squaredNorm().minCoeff(&nearest);
+  double sum = 0.0;
+  int count = 0;
+  for (Eigen::Index t = 0; t < mesh.tets.cols(); ++t)
+    if ((mesh.tets.col(t).array() == static_cast<int>(nearest)).any()) {
+      sum += mesh::compute_cell_size(mesh::compute_volumes(mesh.vertices, mesh.tets.col(t))(0));
+      ++count;
+    }
+  return sum / count;
+}
+
+std::string propose_smaller_cells(const Scenario& s, double radius) {
+  if (s.body.cells.kind == CellKind::even) return "set /body/cells/kind to graded";
+  std::ostringstream text;
+  text.precision(2);
+  text << "set /body/cells/near_tool_m to " << radius / 4.0 << ", or a larger target_tets";
+  return text.str();
+}
+
+}  // namespace
+
+std::string describe_contact_cells(const Scenario& s, const device::Trace& trace,
+                                   const mesh::TriangleMesh& tool_surface, const sim::Body& body) {
+  constexpr double kEnough = 2.0, kOfLinearTets = 0.5, kOfQuadraticTets = 0.06;
+  const std::vector<sim::TouchedPlace> places = find_places(s, trace, tool_surface, make_touched_tree(body));
+  double fewest = std::numeric_limits<double>::infinity();
+  double radius = 0.0;
+  for (const sim::TouchedPlace& place : places) {
+    if (place.radius < 0.5 * find_largest_radius(places)) continue;
+    const double cells = place.radius / find_cell_size(body.mesh, place.position);
+    if (!(cells < fewest)) continue;
+    fewest = cells;
+    radius = place.radius;
+  }
+  if (!(radius > 0.0)) return "";
+  const double scale = s.params.solid.element == solid::ElementKind::p2 ? kOfQuadraticTets : kOfLinearTets;
+  const double error = scale * (fewest < 1.0 ? 1.0 / fewest : std::pow(fewest, -1.5));
+  std::ostringstream text;
+  text.precision(2);
+  text << "cells: " << fewest << " along the radius of contact, " << 1e3 * radius
+       << " mm: an elastic force comes out some ";
+  if (error < 1.0)
+    text << 100.0 * error << " % too large";
+  else
+    text << 1.0 + error << " times as large as it is";
+  if (fewest < kEnough) text << "; " << propose_smaller_cells(s, radius);
+  return text.str();
+}
+
 std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
                                     std::vector<std::string>& notes) {
   const bool has_skin = body.skin.num_triangles() > 0;
-  const embed::TriangleTree surface(
-      has_skin ? body.skin : mesh::TriangleMesh{body.mesh.vertices, mesh::make_topology(body.mesh).boundary});
+  const embed::TriangleTree surface = make_touched_tree(body);
   CellSizes sizes{s.body.cells.near_tool, s.body.cells.growth, {}, s.body.cells.regions};
-  if (touched_places) {
-    sizes.places = *touched_places;
-  } else if (!trace.samples.empty()) {
-    const std::optional<contact::RoundTool>& round = s.params.contact.round_tool;
-    const contact::ToolSolid tool = round ? contact::ToolSolid(*round) : contact::ToolSolid(tool_surface);
-    sizes.places = find_touched_places(s, trace, tool, surface);
-  }
+  sizes.places = touched_places ? *touched_places : find_places(s, trace, tool_surface, surface);
   if (sizes.places.empty() && sizes.regions.empty()) {
     notes.push_back("cells: even, as the motion does not reach the body at rest");
     return std::nullopt;

@@ -64,4 +64,12 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
                                     std::vector<std::string>& notes);
 
+/// How many cells lie along the radius of contact, where they are fewest of the places that the motion
+/// presses at least half as wide as at its widest; what error that makes of an elastic force, and what mends
+/// it. Of linear tets spheres, cones and punches have 18, 6 and 2 % too much at 2, 4 and 8 cells, ½ c^(−3/2)
+/// (results/contact); below one cell a face of the size h bears as E h, where Hertz's patch bears as E a.
+/// Empty where the motion does not meet the body at rest.
+std::string describe_contact_cells(const Scenario& s, const device::Trace& trace,
+                                   const mesh::TriangleMesh& tool_surface, const sim::Body& body);
+
 }  // namespace argil::scenario

@@ -39,6 +39,12 @@ Vec3 find_centre(const sim::Body& body, int tet) {
   return body.mesh.vertices(Eigen::all, body.mesh.tets.col(tet)).rowwise().mean();
 }
 
+const std::string* find_note(const scenario::Scene& scene, const std::string& words) {
+  for (const std::string& note : scene.notes)
+    if (note.find(words) != std::string::npos) return &note;
+  return nullptr;
+}
+
 TEST_F(GradedCells, ArePlacedAtTheDeepestContactWithHertzsRadius) {
   const scenario::Scene scene = build({"/body/cells/kind=graded", "/body/cells/near_tool_m=0.0004"});
   // A ball of 6 mm whose middle goes to 44 mm above the floor, 1.2 mm beside the axis, meets one of 20 mm:
@@ -72,6 +78,24 @@ TEST_F(GradedCells, AreAsManyAsWanted) {
   }
 }
 
+TEST_F(GradedCells, AreCountedAlongTheRadiusOfContactWithTheErrorThatTheyMake) {
+  const std::string words = "along the radius of contact, ";
+  const scenario::Scene coarse = build({"/body/shape/target_tets=300"});
+  const std::string* note = find_note(coarse, words);
+  ASSERT_TRUE(note);
+  EXPECT_NE(note->find("set /body/cells/kind to graded"), std::string::npos) << *note;
+  const scenario::Scene fine = build({"/body/cells/kind=graded", "/body/cells/near_tool_m=0.0004"});
+  note = find_note(fine, words);
+  ASSERT_TRUE(note);
+  EXPECT_EQ(note->find("set "), std::string::npos) << *note;
+  // 0.4 mm are asked for at most, so that more cells than a/0.4 mm lie there: below ½ c^(−3/2).
+  const double cells = std::stod(note->substr(note->find("cells: ") + 7));
+  EXPECT_GE(cells, 0.95 * fine.body.touched_places[0].radius / 0.0004);
+  const double percent = std::stod(note->substr(note->find("some ") + 5));
+  EXPECT_NEAR(percent, 50.0 * std::pow(cells, -1.5), 0.1 * percent);
+  EXPECT_FALSE(find_note(build({}, 0.0475), words));  // never touched
+}
+
 TEST_F(GradedCells, AreTheSameTwice) {
   const scenario::Scene one = build({"/body/cells/kind=graded"});
   const scenario::Scene other = build({"/body/cells/kind=graded"});
@@ -101,7 +125,7 @@ TEST_F(GradedCells, AreEvenWhereFewTetsAreWanted) {
   const scenario::Scene scene = build({"/body/cells/kind=graded", "/body/shape/target_tets=300"});
   const scenario::Scene even = build({"/body/cells/kind=even", "/body/shape/target_tets=300"});
   EXPECT_EQ(scene.body.mesh.tets, even.body.mesh.tets);
-  EXPECT_EQ(scene.notes.back(), "cells: even, as 300 tets leave none to halve");
+  EXPECT_TRUE(find_note(scene, "cells: even, as 300 tets leave none to halve"));
 }
 
 TEST_F(GradedCells, AreRefusedWhereTheyAreTooMany) {
