@@ -81,8 +81,9 @@ enum class StrainNorm { frobenius, voigt6 };
 struct Plasticity {
   bool enabled = true;
   double yield = 0.0;        ///< elastic strain norm at which flow starts [–]
+  double strength = 0.0;     ///< c_u, undrained shear strength of dry clay [Pa]; 0: by `yield`
   double creep_per_s = 0.0;  ///< c [1/s]
-  double max = 0.0;          ///< cap on the plastic strain norm [–]
+  double max = 0.0;          ///< cap on the plastic strain norm [–]; 0: none
   bool deviatoric = true;    ///< flow keeps the volume
   FlowForm form = FlowForm::rate;
   StrainNorm norm = StrainNorm::frobenius;

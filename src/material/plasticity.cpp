@@ -23,22 +23,6 @@ Vec6 deviator(Vec6 e) {
   return e;
 }
 
-/// Share of the elastic strain that flows in a step.
-double compute_flow(const Plasticity& law, double step_s, double elastic_norm, double yield) {
-  const double to_yield = 1.0 - yield / elastic_norm;
-  switch (law.form) {
-    case FlowForm::rate:
-      return -std::expm1(-law.creep_per_s * step_s);
-    case FlowForm::rate_to_yield:
-      return std::min(-std::expm1(-law.creep_per_s * step_s), to_yield);
-    case FlowForm::literal:
-      return law.creep_per_s * step_s;
-    case FlowForm::j2:
-      break;
-  }
-  return to_yield;
-}
-
 /// Share f ≤ `flow` at which ‖before + f q‖ reaches `max`: 0 when it lies there already.
 double shorten_to_cap(const Vec6& before, const Vec6& q, double max, double flow) {
   const double a = q.squaredNorm();
@@ -49,6 +33,29 @@ double shorten_to_cap(const Vec6& before, const Vec6& q, double max, double flow
 }
 
 }  // namespace
+
+FlowRule make_flow_rule(const Plasticity& law, double step_s) {
+  switch (law.form) {
+    case FlowForm::rate:
+      return {-std::expm1(-law.creep_per_s * step_s), false};
+    case FlowForm::rate_to_yield:
+      return {-std::expm1(-law.creep_per_s * step_s), true};
+    case FlowForm::literal:
+      return {law.creep_per_s * step_s, false};
+    case FlowForm::j2:
+      break;
+  }
+  return {1.0, true};
+}
+
+double FlowRule::find_share(double norm, double yield) const {
+  return stops_at_yield ? std::min(most, 1.0 - yield / norm) : most;
+}
+
+double compute_yield_strain(const Plasticity& law, const Elastic& dry) {
+  const double shear_modulus = dry.youngs_modulus / (2.0 * (1.0 + dry.poissons_ratio));
+  return law.strength > 0.0 ? law.strength / (kSqrt2 * shear_modulus) : law.yield;
+}
 
 Vec6 compute_plastic_strain(const Vec6& strain, const Vec6& plastic_strain, const FlowPoint& point,
                             const Plasticity& law, double step_s) {
@@ -61,10 +68,10 @@ Vec6 compute_plastic_strain(const Vec6& strain, const Vec6& plastic_strain, cons
     elastic = deviator(elastic);
   const double elastic_norm = compute_norm(elastic, is_j2 ? StrainNorm::frobenius : law.norm);
   if (!(elastic_norm > point.yield)) return plastic_strain;
-  const double flow = compute_flow(law, step_s, elastic_norm, point.yield);
+  const double flow = make_flow_rule(law, step_s).find_share(elastic_norm, point.yield);
   Vec6 after = plastic_strain + flow * elastic;
   const double norm = compute_norm(after, law.norm);
-  if (!(norm > law.max)) return after;
+  if (!(law.max > 0.0 && norm > law.max)) return after;
   if (is_driven) return plastic_strain + shorten_to_cap(plastic_strain, elastic, law.max, flow) * elastic;
   return after * (law.max / norm);
 }

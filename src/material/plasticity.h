@@ -13,9 +13,22 @@ struct FlowPoint {
                                 ///< it elasticity that is not isotropic and linear loses energy
 };
 
+/// Norm of the elastic strain deviator at which dry clay flows [–]: given, or that of its undrained shear
+/// strength c_u in pure shear, where ‖dev ε_e‖ = c_u/(√2 G) (von Mises, σ_y = √3 c_u in tension).
+double compute_yield_strain(const Plasticity& law, const Elastic& dry);
+
+/// How much of the elastic strain flows in a step: `most` of it, or, where that is less and `stops_at_yield`,
+/// what is beyond the yield.
+struct FlowRule {
+  double most = 1.0;  ///< [–]
+  bool stops_at_yield = true;
+  double find_share(double norm, double yield) const;
+};
+FlowRule make_flow_rule(const Plasticity& law, double step_s);
+
 /// Plastic strain (Mandel) after a step of `step_s` seconds at held total strain [Mueller2004; rate forms and
 /// j2: ours]. With ε_e = ε − ε_p, or its deviator when `deviatoric`, so that the volume neither flows nor
-/// counts for yielding: if ‖ε_e‖ > yield, ε_p += f ε_e, then ‖ε_p‖ ≤ max by scaling.
+/// counts for yielding: if ‖ε_e‖ > yield, ε_p += f ε_e, then ‖ε_p‖ ≤ max, where it is not 0, by scaling.
 ///   rate           f = 1 − e^{−c h}: independent of how the time is cut while ‖ε_e‖ stays above yield; the
 ///   last
 ///                  step goes past it, to first order in h

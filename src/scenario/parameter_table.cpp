@@ -227,9 +227,16 @@ void bind_material(Binder& b, sim::Params& p) {
   b.boolean("/material/plasticity/enabled", y.enabled, "Plastic flow.");
   b.number("/material/plasticity/yield", y.yield, not_negative(), "",
            "Elastic strain norm at which flow starts.");
+  b.number("/material/plasticity/strength_Pa", y.strength, not_negative(), "Pa",
+           "c_u, undrained shear strength of dry clay (von Mises; √3 c_u in tension), in the place of yield; "
+           "0: by "
+           "yield. Water lowers it as it does modulus times yield strain. It makes /dynamics/model hencky "
+           "and form "
+           "j2 where they are not given.");
   b.number("/material/plasticity/creep_per_s", y.creep_per_s, not_negative(), "1/s",
            "Rate at which the elastic strain flows away.");
-  b.number("/material/plasticity/max", y.max, not_negative(), "", "Largest plastic strain norm.");
+  b.number("/material/plasticity/max", y.max, not_negative(), "",
+           "Largest plastic strain norm; 0: none. The small-strain laws turn inside out near 1.2.");
   b.boolean("/material/plasticity/deviatoric", y.deviatoric,
             "Flow keeps the volume, and only the deviator yields.");
   b.choice<material::FlowForm>("/material/plasticity/form", y.form,

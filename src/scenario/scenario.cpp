@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "material/moisture.h"
+#include "material/plasticity.h"
 #include "scenario/medium_check.h"
 #include "scenario/parameter_table.h"
 #include "scenario/setting.h"
@@ -51,6 +52,15 @@ void choose_body(Scenario& s, const Json& document) {
 }
 
 /// Which keys are asked for depends on the mode, so it is read first.
+/// Clay whose strength is a stress flows by von Mises's law at large strain, where nothing else is asked for.
+void choose_flow(Scenario& s, const Json& document) {
+  const Json::json_pointer place("/material/plasticity/strength_Pa");
+  if (!document.contains(place) || !document[place].is_number() || !(document[place].get<double>() > 0.0))
+    return;
+  s.params.plasticity.form = material::FlowForm::j2;
+  s.params.solid.model = solid::StrainModel::hencky;
+}
+
 void choose_mode(Scenario& s, const Json& document) {
   const Json dynamics = document.value("dynamics", Json::object());
   if (dynamics.is_object() && dynamics.value("mode", Json()) == "static") s.mode = Mode::equilibrium;
@@ -136,10 +146,11 @@ void check_contact(Scenario& s) {
     throw InputError(s.file, "/contact/friction", "of the pressure law is found in an implicit step",
                      "set /dynamics/implicit_contact to true, or set /contact/law to pairs");
   const material::Plasticity& flow = s.params.plasticity;
-  if (c.grip_strength > 0.0 || !flow.enabled || !(flow.yield > 0.0)) return;
+  if (c.grip_strength > 0.0 || !flow.enabled) return;
   const double shear_modulus =
       s.params.elastic.youngs_modulus / (2.0 * (1.0 + s.params.elastic.poissons_ratio));
-  c.grip_strength = 8.0 * std::numbers::sqrt2 * shear_modulus * flow.yield;
+  c.grip_strength =
+      8.0 * std::numbers::sqrt2 * shear_modulus * material::compute_yield_strain(flow, s.params.elastic);
 }
 
 void check_tables(const Scenario& s) {
@@ -277,18 +288,36 @@ void check_regions(const Scenario& s) {
     require_normal(s, s.body.loads.pressure[i].region, "/body/loads/pressure/" + std::to_string(i));
 }
 
-/// A law of which no plastic flow is known takes none; an equilibrium is elastic in any case.
+/// Flow of a law of large strain keeps the volume, and is measured by the deviator's norm.
 void check_flow_of_model(const Scenario& s) {
   const solid::ElasticLaw& law = find_law(s.params.solid.model);
-  if (law.plastic_split == solid::PlasticSplit::none && s.mode == Mode::dynamic)
-    throw InputError(s.file, "/material/plasticity/enabled",
-                     std::string("true, but ") + law.name + " is an elastic law without plastic flow",
-                     "set it to false, or /dynamics/model to neo_hookean or corotational");
+  if (law.plastic_split != solid::PlasticSplit::logarithmic || s.mode != Mode::dynamic) return;
+  const material::Plasticity& flow = s.params.plasticity;
+  if (!flow.deviatoric || flow.norm != material::StrainNorm::frobenius)
+    throw InputError(s.file, "/material/plasticity",
+                     std::string("flow of ") + law.name + " keeps the volume, in the Frobenius norm",
+                     "set deviatoric to true and norm to \"frobenius\"");
+  if (flow.max > 0.0)
+    throw InputError(s.file, "/material/plasticity/max",
+                     Json(flow.max).dump() + ", but flow of " + law.name + " has no cap",
+                     "leave it out, or give 0");
+}
+
+/// Strength is one number, a stress or a strain.
+void check_strength(const Scenario& s) {
+  const material::Plasticity& law = s.params.plasticity;
+  if (!(law.strength > 0.0)) return;
+  const std::string place = "/material/plasticity/strength_Pa";
+  if (law.yield > 0.0) throw InputError(s.file, place, "is given, and yield too", "leave one of them out");
+  if (s.params.moisture.law == material::MoistureLaw::table)
+    throw InputError(s.file, place, "is given, but /material/moisture/table_yield says when clay flows",
+                     "leave it out, or take another moisture law");
 }
 
 void check_plasticity(Scenario& s) {
   const material::Plasticity& law = s.params.plasticity;
   if (!law.enabled) return;
+  check_strength(s);
   check_flow_of_model(s);
   const std::string place = "/material/plasticity/form";
   if (law.form == material::FlowForm::j2 && !(law.deviatoric && law.norm == material::StrainNorm::frobenius))
@@ -306,9 +335,9 @@ void check_plasticity(Scenario& s) {
   // F_p = 1 + ε_p must stay a stretch: no eigenvalue of ε_p may reach −1.
   const double most = law.norm == material::StrainNorm::frobenius ? 1.0 : std::sqrt(0.5);
   const solid::ElasticLaw& elastic = find_law(s.params.solid.model);
-  if (elastic.plastic_split == solid::PlasticSplit::multiplicative && !(law.max < most))
+  if (elastic.plastic_split == solid::PlasticSplit::multiplicative && !(law.max > 0.0 && law.max < most))
     throw InputError(s.file, "/material/plasticity/max",
-                     Json(law.max).dump() + " is outside [0, " + Json(most).dump() + ") for " + elastic.name +
+                     Json(law.max).dump() + " is outside (0, " + Json(most).dump() + ") for " + elastic.name +
                          ", whose plastic stretch would lose a dimension",
                      "lower it, or use corotational");
 }
@@ -332,7 +361,7 @@ void check_combinations(Scenario& s) {
                      "give a sharper tip");
   const sim::Params& p = s.params;
   if (s.mode == Mode::equilibrium) {
-    if (p.plasticity.enabled && p.plasticity.yield > 0.0)
+    if (p.plasticity.enabled && (p.plasticity.yield > 0.0 || p.plasticity.strength > 0.0))
       s.warnings.push_back(s.file +
                            ": /material/plasticity: static mode is elastic; plastic flow is left out");
     return;
@@ -364,6 +393,7 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
   s.file = file;
   choose_body(s, document);
   choose_mode(s, document);
+  choose_flow(s, document);
   read_parameters(make_parameter_table(s, file), document, file, "");
   leave_out_pairs(s, document);
   check_combinations(s);

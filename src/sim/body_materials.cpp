@@ -15,7 +15,8 @@ BodyMaterials::BodyMaterials(const Body& body, const Params& params, const water
       m_water(water),
       m_solid(solid),
       m_region(region),
-      m_moisture(params.elastic, params.plasticity.yield, params.moisture, params.water.porosity),
+      m_moisture(params.elastic, material::compute_yield_strain(params.plasticity, params.elastic),
+                 params.moisture, params.water.porosity),
       m_saturation_used(water.saturation()),
       m_needs_shape_stiffness(params.plasticity.enabled && params.plasticity.deviatoric) {
   m_changed.reserve(static_cast<std::size_t>(body.mesh.num_tets()));
@@ -31,7 +32,11 @@ void BodyMaterials::set(int tet, double S) {
   const bool has_own_modulus = m_body.youngs_modulus.size() > 0;
   const double E = has_own_modulus ? m_body.youngs_modulus(tet) : m_params.elastic.youngs_modulus;
   const material::MoistState moist = has_own_modulus ? m_moisture.at(S, E) : m_moisture.at(S);
-  solid::set_material(m_solid, m_region, tet, {moist.lambda, moist.mu, moist.yield});
+  // A strength is alike in tets of any modulus; a yield strain is alike too, and stronger where it is
+  // stiffer.
+  const double share =
+      has_own_modulus && m_params.plasticity.strength > 0.0 ? m_params.elastic.youngs_modulus / E : 1.0;
+  solid::set_material(m_solid, m_region, tet, {moist.lambda, moist.mu, share * moist.yield});
   if (m_params.water.swelling > 0.0) solid::set_swelling(m_solid, tet, 1.0 + m_params.water.swelling * S);
   if (m_params.water.adds_mass) solid::set_water_mass(m_solid, tet, m_water.capacity(tet) * S);
   if (m_moisture.is_isotropic()) return;

@@ -5,6 +5,7 @@
 
 #include "material/plasticity.h"
 #include "sim/body_side.h"
+#include "solid/material_changes.h"
 #include "solid/move.h"
 #include "solid/step_solver.h"
 
@@ -133,6 +134,7 @@ StepStatus BodySide::update_kinematics() {
 void BodySide::flow() {
   const StageScope scope(m_observer, Stage::plasticity);
   m_state.plastic_dissipation += m_flow.apply(m_state.solid.plastic_strain);
+  solid::note_flow(m_solid, m_flow.is_flowing());
   m_region.put_to_sleep(m_state.solid, m_flow.is_flowing());
 }
 

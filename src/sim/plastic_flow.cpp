@@ -5,12 +5,14 @@
 
 #include "base/lanes.h"
 #include "material/plasticity.h"
+#include "solid/hencky_lanes.h"
 
 namespace argil::sim {
 
 PlasticFlow::PlasticFlow(const Params& params, const solid::Body& solid, const solid::ActiveRegion& region)
     : m_params(params), m_solid(solid), m_region(region) {
-  m_has_additive_split = find_law(params.solid.model).plastic_split == solid::PlasticSplit::additive;
+  m_split = find_law(params.solid.model).plastic_split;
+  m_rule = material::make_flow_rule(params.plasticity, params.rates.step_seconds());
   m_is_flowing.resize(static_cast<std::size_t>(solid.model.elements.num_points() / kLanes + 1), 0);
 }
 
@@ -25,7 +27,8 @@ double PlasticFlow::apply(TensorField& plastic_strain) {
 
 /// By the stress, not the strain?
 bool PlasticFlow::is_driven() const {
-  return m_params.plasticity.deviatoric && (!m_solid.materials.is_isotropic() || !m_has_additive_split);
+  return m_split != solid::PlasticSplit::logarithmic && m_params.plasticity.deviatoric &&
+         (!m_solid.materials.is_isotropic() || m_split == solid::PlasticSplit::multiplicative);
 }
 
 /// Does any run of points that moves?
@@ -38,6 +41,7 @@ bool PlasticFlow::is_flowing_anywhere() const {
 
 /// Of at most kLanes points, which are not looked at one by one where none of them flows.
 double PlasticFlow::apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain) {
+  if (m_split == solid::PlasticSplit::logarithmic) return flow_by_law(begin, end, plastic_strain);
   unsigned flowing =
       is_driven() ? (1U << (end - begin)) - 1U
                   : material::find_flowing(m_solid.kinematics.strain().data(), plastic_strain.data(),
@@ -46,6 +50,24 @@ double PlasticFlow::apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, Te
   double dissipated = 0.0;
   for (; flowing != 0; flowing &= flowing - 1)
     dissipated += apply_to_point(static_cast<int>(begin) + std::countr_zero(flowing), plastic_strain);
+  return dissipated;
+}
+
+/// Of a law that lets them flow itself. Shape alone is released: μ V of the squares.
+double PlasticFlow::flow_by_law(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain) {
+  double released[kLanes];
+  unsigned flowed = find_law(m_params.solid.model)
+                        .flow({m_solid.kinematics.strain().data(), plastic_strain.data(),
+                               m_solid.materials.yield().data(), m_rule.most, m_rule.stops_at_yield},
+                              begin, end, released);
+  m_is_flowing[static_cast<std::size_t>(begin / kLanes)] = flowed != 0;
+  double dissipated = 0.0;
+  for (; flowed != 0; flowed &= flowed - 1) {
+    const int lane = std::countr_zero(flowed);
+    const int point = static_cast<int>(begin) + lane;
+    dissipated += m_solid.materials.of(m_solid.model.elements.tet_of_point(point)).mu *
+                  m_solid.materials.weight()(point) * released[lane];
+  }
   return dissipated;
 }
 
@@ -60,7 +82,7 @@ double PlasticFlow::apply_to_point(int point, TensorField& plastic_strain) const
   const solid::Strained body = m_solid.strained();
   const double energy = solid::compute_elastic_energy(body, point, before);
   double released = energy - solid::compute_elastic_energy(body, point, after);
-  for (int k = 0; !m_has_additive_split && released < 0.0 && k < kHalvings; ++k) {
+  for (int k = 0; m_split == solid::PlasticSplit::multiplicative && released < 0.0 && k < kHalvings; ++k) {
     after = k + 1 < kHalvings ? Vec6(0.5 * (before + after)) : before;
     released = energy - solid::compute_elastic_energy(body, point, after);
   }

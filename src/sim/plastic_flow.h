@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "material/plasticity.h"
 #include "sim/params.h"
 #include "sim/state.h"
 
@@ -28,6 +29,7 @@ class PlasticFlow {
  private:
   bool is_flowing_anywhere() const;
   bool is_driven() const;
+  double flow_by_law(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain);
   double apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain);
   double apply_to_point(int point, TensorField& plastic_strain) const;
   Vec6 compute_flow(int point, const Vec6& before) const;
@@ -35,7 +37,8 @@ class PlasticFlow {
   const Params& m_params;
   const solid::Body& m_solid;
   const solid::ActiveRegion& m_region;
-  bool m_has_additive_split;
+  solid::PlasticSplit m_split;
+  material::FlowRule m_rule;
   bool m_is_anywhere = false, m_was_anywhere = false;
   std::vector<char> m_is_flowing;
 };

@@ -13,7 +13,8 @@ Body::Body(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vecto
       materials(model),
       committed(make_rest_state(model)),
       trial(committed),
-      kinematics(model.elements, params.model, has_lagging_frames(model), threads),
+      kinematics(model.elements, params.model, has_lagging_frames(model), model.keeps_tet_stiffness(),
+                 threads),
       system(model, materials),
       energies(model.elements) {
   const Eigen::Index num_nodes = model.elements.num_nodes();

@@ -31,8 +31,9 @@ double compute_elastic_energy(const Strained& body, Field& change) {
   if (has_plain_tets(body.model, body.materials) && !nodal) {
     const ForceArrays tets = make_force_arrays(body, nullptr);
     const std::ptrdiff_t count = body.model.elements.num_tets();
+    const auto compute = find_law(body.law()).lanes.energy;
     return ordered_sum((count + kLanes - 1) / kLanes, [&](std::ptrdiff_t batch) {
-      return compute_energy(tets, batch * kLanes, std::min((batch + 1) * kLanes, count));
+      return compute(tets, batch * kLanes, std::min((batch + 1) * kLanes, count));
     });
   }
   const double own = ordered_sum(body.model.elements.num_points(), [&](std::ptrdiff_t p) {
@@ -70,7 +71,7 @@ StrainSummary summarise(const Strained& body, EnergySums& sums, Field& change) {
       if (*at != 0) {
         const std::ptrdiff_t first = batch * kLanes;
         const std::ptrdiff_t last = std::min(first + kLanes, num_tets);
-        sums.batch_energy(batch) = compute_energy(tets, first, last);
+        sums.batch_energy(batch) = find_law(body.law()).lanes.energy(tets, first, last);
         sums.batch_plastic_strain(batch) = find_largest(first, last);
         *at = 0;
       }

@@ -52,7 +52,7 @@ void assemble_forces(const Strained& body, const Part& part, Forces& forces) {
   if (has_plain_tets(body.model, body.materials)) {
     const ForceArrays tets = make_force_arrays(body, forces.corner.data());
     part.batches.each(elements.num_tets(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      compute_corner_forces(tets, begin, end);
+      find_law(body.law()).lanes.forces(tets, begin, end);
     });
   } else if (elements.nodes_per_tet == 4) {
     set_corner_forces<4>(body, forces.corner);

@@ -75,7 +75,11 @@ linear::SolveReport solve_for_left(Body& body, const Part& part, const StepLoads
 double find_frame_tolerance(const Body& body) {
   constexpr double kLargest = 0.01;
   if (body.prediction.is_static || !has_lagging_frames(body.model)) return 0.0;
-  return std::min(kLargest, std::max(body.model.params.solver.tolerance, body.history.frame_lag.slack));
+  // A deformation that lags leaves a share of what the step adds, a rotation one of all that damping holds.
+  constexpr double kOfDeformation = 10.0;
+  const double tolerance = body.model.params.solver.tolerance;
+  if (body.model.keeps_tet_stiffness()) return std::min(kLargest, kOfDeformation * tolerance);
+  return std::min(kLargest, std::max(tolerance, body.history.frame_lag.slack));
 }
 
 bool has_lagging_frames(const Model& model) {
@@ -85,7 +89,8 @@ bool has_lagging_frames(const Model& model) {
 }
 
 bool may_lag_further(const Body& body) {
-  return has_plain_tets(body.model, body.materials) && find_frame_tolerance(body) > 0.0;
+  return has_plain_tets(body.model, body.materials) && find_law(body.model.params.model).is_quadratic &&
+         find_frame_tolerance(body) > 0.0;
 }
 
 void make_room_for_lag(Body& body) {

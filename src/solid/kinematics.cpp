@@ -24,11 +24,12 @@ double find_least(const Numbers& numbers) {
 
 }  // namespace
 
-Kinematics::Kinematics(const Elements& elements, StrainModel model, bool has_lag, int threads)
-    : m_model(model), m_threads(threads) {
+Kinematics::Kinematics(const Elements& elements, StrainModel model, bool has_lag, bool has_deformed_frames,
+                       int threads)
+    : m_model(model), m_threads(threads), m_has_deformed_frames(has_deformed_frames) {
   const Eigen::Index num_points = elements.num_points();
   const bool is_linear_tet = elements.nodes_per_tet == 4;
-  if (!is_linear_tet || !find_law(model).is_quadratic) m_deformation.resize(3, 3 * num_points);
+  if (!is_linear_tet || !find_law(model).lanes.forces) m_deformation.resize(3, 3 * num_points);
   m_rotation.resize(3, 3 * num_points);
   m_strain.setZero(6, num_points);
   m_volume_ratio.setOnes(num_points);
@@ -62,14 +63,15 @@ void Kinematics::set_tets(const Elements& elements, const Eigen::Matrix3Xd& grad
                        find_law(m_model).is_linear,
                        keeps_deformation() ? m_deformation.data() : nullptr,
                        m_rotation.data(),
-                       how.keeps_frames ? nullptr : m_turned_gradient.data(),
+                       how.keeps_frames || m_has_deformed_frames ? nullptr : m_turned_gradient.data(),
                        m_frame.data(),
                        how.frame_tolerance,
                        m_strain.data(),
                        m_volume_ratio.data(),
                        how.is_turned.data(),
                        has_lag() ? &m_changed_frames : nullptr,
-                       m_committed_frame.data()};
+                       m_committed_frame.data(),
+                       m_has_deformed_frames && !how.keeps_frames};
   const auto set = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     compute_motions(tets, begin, end);
     m_batch_volume_ratio(begin / kLanes) = find_least(m_volume_ratio.segment(begin, end - begin));
@@ -128,6 +130,7 @@ void Kinematics::roll_back(const Eigen::Matrix3Xd& gradient) {
     const auto t = static_cast<Eigen::Index>(tet);
     const Mat3 Q = m_committed_frame.middleCols<3>(3 * t);
     m_frame.middleCols<3>(3 * t) = Q;
+    if (m_has_deformed_frames) continue;
     for (Eigen::Index i = 4 * t; i < 4 * (t + 1); ++i)  // in the order of operations of compute_motions
       m_turned_gradient.col(i) =
           (Q.col(0) * gradient(0, i) + Q.col(1) * gradient(1, i)) + Q.col(2) * gradient(2, i);
@@ -153,7 +156,7 @@ int Kinematics::find_worst_point() const {
 
 void Kinematics::serialize_frames(Archive& archive) {
   archive.array("solid/frame", m_frame);
-  archive.array("solid/turned_gradient", m_turned_gradient);
+  if (!m_has_deformed_frames) archive.array("solid/turned_gradient", m_turned_gradient);
 }
 
 }  // namespace argil::solid

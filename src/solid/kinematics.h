@@ -11,17 +11,20 @@
 namespace argil::solid {
 
 /// How the points of a body have been strained and turned: F, R, ε and det F of each at the positions of the
-/// last update. The matrix of kept rotations sees its tets in frames Q that may lag behind R.
+/// last update. The matrix sees its tets in frames Q that may lag behind R; of a law whose stiffness changes
+/// with the strain, behind F.
 class Kinematics {
  public:
-  /// `has_lag`: frames may lag, so that what they were at the last commit is known.
-  Kinematics(const Elements& elements, StrainModel model, bool has_lag, int threads);
+  /// `has_lag`: frames may lag, so that what they were at the last commit is known. `has_deformed_frames`:
+  /// they are F, not R.
+  Kinematics(const Elements& elements, StrainModel model, bool has_lag, bool has_deformed_frames,
+             int threads);
 
   /// Which tets an update looks at, and what it does with their frames.
   struct Update {
-    const OrderedRuns& batches;    ///< runs of kLanes tets that may have moved
-    bool keeps_frames = false;     ///< Q ∇N stays as it is
-    double frame_tolerance = 0.0;  ///< on ‖R − Q‖, beyond which Q becomes R (4-node tets)
+    const OrderedRuns& batches;  ///< runs of kLanes tets that may have moved
+    bool keeps_frames = false;   ///< Q ∇N stays as it is
+    double frame_tolerance = 0.0;  ///< on ‖R − Q‖ or ‖F − Q‖, beyond which Q becomes R or F (4-node tets)
     std::vector<char>& is_turned;  ///< set to 1 for tets whose Q changed
     std::vector<char>& is_moved;   ///< set to 1 for runs of kLanes tets that were looked at
   };
@@ -33,7 +36,8 @@ class Kinematics {
   PointMotion at(int point) const;
   const Eigen::Matrix3Xd& rotation() const { return m_rotation; }  ///< R, 3 columns a point
   const TensorField& strain() const { return m_strain; }           ///< ε (Mandel) of each point
-  /// Q ∇N: as many columns a point as it has nodes.
+  const Eigen::Matrix3Xd& frame() const { return m_frame; }        ///< Q of 4-node tets, 3 columns a tet
+  /// Q ∇N: as many columns a point as it has nodes; not where Q is F.
   const Eigen::Matrix3Xd& turned_gradient() const { return m_turned_gradient; }
   /// Least det F; NaN where one is not finite.
   double min_volume_ratio() const { return m_min_volume_ratio; }
@@ -58,6 +62,7 @@ class Kinematics {
 
   StrainModel m_model;
   int m_threads;
+  bool m_has_deformed_frames;
   Eigen::Matrix3Xd m_deformation;  // F, 3 columns a point, where strain does not say all of it
   Eigen::Matrix3Xd m_rotation;
   TensorField m_strain;

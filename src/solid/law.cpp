@@ -44,6 +44,8 @@ Mat9 compute_tangent(StrainModel model, const PointMotion& motion, const Vec6& p
   return find_law(model).tangent(motion, plastic_strain, e);
 }
 
+namespace {
+
 Mat9 make_positive(const Mat9& A) {
   // A small multiple of the identity lets semi-definite matrices, which are fine, pass the quick test.
   const Mat9 shifted = A + 1e-9 * A.diagonal().cwiseAbs().maxCoeff() * Mat9::Identity();
@@ -51,6 +53,15 @@ Mat9 make_positive(const Mat9& A) {
   const Eigen::SelfAdjointEigenSolver<Mat9> modes(A);
   return modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() *
          modes.eigenvectors().transpose();
+}
+
+}  // namespace
+
+Mat9 compute_positive_tangent(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
+                              const Elasticity& e) {
+  const ElasticLaw& law = find_law(model);
+  if (law.positive_tangent) return law.positive_tangent(motion, plastic_strain, e);
+  return make_positive(law.tangent(motion, plastic_strain, e));
 }
 
 Vec6 compute_flow_drive(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,

@@ -8,6 +8,10 @@
 
 namespace argil::solid {
 
+struct FlowArrays;
+struct ForceArrays;
+struct TangentArrays;
+
 using Mat9 = Eigen::Matrix<double, 9, 9>;  ///< dP = A dF with both matrices read column by column
 
 /// Elastic constants at a point: Lamé's, or a full stiffness in the turned frame.
@@ -29,7 +33,7 @@ struct PointMotion {
 enum class PlasticSplit {
   additive,        ///< ε_e = ε − ε_p
   multiplicative,  ///< Fₑ = F F_p⁻¹ with F_p = 1 + ε_p, scaled; no eigenvalue of ε_p may reach −1
-  none,            ///< the law has no plastic flow: ε_p = 0, and no flow_drive
+  logarithmic,     ///< F = Fₑ F_p, ε_p = ½ ln F_pᵀF_p; `flow` in the place of flow_drive
 };
 
 /// An elastic law at a point: its traits, by which the body chooses how to work with it, and its functions.
@@ -46,9 +50,8 @@ struct ElasticLaw {
 
   /// The strain is linear in the displacement: R = 1, the stiffness never turns, inversion means nothing.
   bool is_linear;
-  /// W = ½ ε_e:C:ε_e in the strain ε of the frame R. ε and R say all of the motion then, 4-node tets go eight
-  /// at a time (tet_lanes.h), and the matrix of a one-step solve keeps its rotation. Any other law keeps F
-  /// and takes ∂P/∂F.
+  /// W = ½ ε_e:C:ε_e in the strain ε of the frame R: the matrix of a one-step solve keeps its rotation. Any
+  /// other law takes ∂P/∂F.
   bool is_quadratic;
   bool takes_full_stiffness;  ///< C (6×6) may take the place of λ and μ
   bool bears_inversion;  ///< W is finite where det F ≤ 0; else it is infinite there, P and ∂P/∂F are NaN
@@ -62,6 +65,19 @@ struct ElasticLaw {
                      double shape_stiffness);
   double (*volume_change)(const PointMotion& motion, const Vec6& plastic_strain);
   Mat3 (*volume_gradient)(const PointMotion& motion, const Vec6& plastic_strain);
+  /// Of a logarithmic split: flow of points begin … end−1, at most kLanes of them; bit p − begin is set where
+  /// p flowed. released: ‖dev ε_e‖² that each loses. Else null.
+  unsigned (*flow)(const FlowArrays& points, std::ptrdiff_t begin, std::ptrdiff_t end, double* released);
+  /// ∂P/∂F without its negative modes, where the law knows a way; else null.
+  Function<Mat9> positive_tangent;
+
+  /// Of isotropic 4-node tets begin … end−1, which go eight at a time: forces, energy, and the stiffness of a
+  /// law that is not quadratic. All null: point by point.
+  struct Lanes {
+    void (*forces)(const ForceArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
+    double (*energy)(const ForceArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
+    void (*stiffness)(const TangentArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
+  } lanes;
 };
 
 extern const ElasticLaw kCorotationalLaw, kLinearLaw, kNeoHookeanLaw, kHenckyLaw;
@@ -105,7 +121,8 @@ Mat9 compute_tangent(StrainModel model, const PointMotion& motion, const Vec6& p
                      const Elasticity& e);
 
 /// The same with its negative modes set to zero, so that a step's matrix is positive [Teran2005].
-Mat9 make_positive(const Mat9& tangent);
+Mat9 compute_positive_tangent(StrainModel model, const PointMotion& motion, const Vec6& plastic_strain,
+                              const Elasticity& e);
 
 /// What drives plastic flow that keeps the volume: −dev ∂W/∂ε_p over 2μ* [–], along which flow loses energy;
 /// dev ε_e in an isotropic quadratic law. shape_stiffness: 2μ* [Pa].

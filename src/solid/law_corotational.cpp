@@ -5,6 +5,7 @@
 
 #include "solid/law_quadratic.h"
 #include "solid/polar.h"
+#include "solid/tet_lanes.h"
 
 namespace argil::solid {
 namespace {
@@ -80,6 +81,9 @@ constexpr ElasticLaw kCorotationalLaw{
     .flow_drive = compute_quadratic_drive,
     .volume_change = compute_trace,
     .volume_gradient = compute_trace_gradient,
+    .flow = nullptr,
+    .positive_tangent = nullptr,
+    .lanes = {compute_corner_forces, compute_energy, nullptr},
 };
 
 }  // namespace argil::solid

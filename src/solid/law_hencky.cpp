@@ -1,36 +1,55 @@
-// Hencky's law of large strain, elastic and isotropic [Hencky1928; Simo1998]: with the logarithmic strain
-// ε = ln U of F = R U,
+// Hencky's law of large strain, isotropic [Hencky1928; Simo1998]: F = Fₑ F_p, with the elastic strain ε = ½
+// ln FₑFₑᵀ
 //   W = μ‖dev ε‖² + ½K (tr ε)²,  Kirchhoff stress τ = 2μ dev ε + K tr ε 1,  P = τ F⁻ᵀ,  K = λ + ⅔μ
-// In the principal stretches sᵢ of U = N diag(sᵢ) Nᵀ: εᵢ = ln sᵢ and P = R N diag(τᵢ/sᵢ) Nᵀ.
-// Where det F ≤ 0 there is no such strain: W is infinite, P and ∂P/∂F are NaN. The law has no plastic flow.
+// The plastic strain is E_p = ½ ln F_pᵀF_p, without trace, so that det F_p = 1. Flow takes a part of dev ε
+// away at held F, and ε keeps its directions: radial return [Simo1998]. Where det F ≤ 0 there is no such
+// strain: W is infinite, P and ∂P/∂F are NaN.
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
-#include "base/check.h"
+#include "solid/hencky_lanes.h"
+#include "solid/hencky_point.h"
 #include "solid/law.h"
 #include "solid/polar.h"
 
 namespace argil::solid {
 namespace {
 
-/// U = N diag(1 + excess) Nᵀ. The excess sᵢ − 1 keeps the digits of small strains.
-struct PrincipalStrain {
-  Vec3 excess;
-  Mat3 N;
-  Vec3 logarithm;  ///< εᵢ = ln sᵢ, ascending
+using Tensor = std::array<double, 6>;  // 11 22 33 23 13 12
 
-  bool is_inverted() const { return !(excess(0) > -1.0); }
+Tensor make_tensor(const Vec6& mandel) {
+  constexpr double s = 1.0 / kSqrt2;
+  return {mandel(0), mandel(1), mandel(2), s * mandel(3), s * mandel(4), s * mandel(5)};
+}
+
+Mat3 make_matrix(const Real33<double>& a) {
+  return Eigen::Map<const Mat3>(a.m);
+}
+
+struct HenckyPoint {
+  ElasticStretch<double> stretch;
+  Vec3 logarithm;
+  Mat3 N;
+  Vec6 strain;  ///< S − 1 of F = R S
+  bool is_inverted;
+
+  Mat3 inverse_stretch() const { return (Mat3::Identity() + from_mandel(strain)).inverse(); }  ///< S⁻¹
 };
 
-PrincipalStrain find_principal_strain(const PointMotion& m, const Vec6& plastic_strain) {
-  ARGIL_ASSERT((plastic_strain.array() == 0.0).all());
-  const Eigen::SelfAdjointEigenSolver<Mat3> modes(from_mandel(compute_strain(m.F, m.R)));
-  PrincipalStrain strain{modes.eigenvalues(), modes.eigenvectors(), Vec3::Zero()};
-  for (int i = 0; i < 3; ++i) strain.logarithm(i) = std::log1p(strain.excess(i));
-  return strain;
+HenckyPoint find_point(const PointMotion& m, const Vec6& plastic_strain) {
+  HenckyPoint point;
+  point.strain = compute_strain(m.F, m.R);
+  point.is_inverted = !(m.F.determinant() > 0.0);
+  const Tensor strain = make_tensor(point.strain);
+  const Tensor plastic = make_tensor(plastic_strain);
+  find_elastic_stretch(strain.data(), plastic_strain.isZero(0.0) ? nullptr : plastic.data(), point.stretch);
+  point.logarithm = Eigen::Map<const Vec3>(point.stretch.logarithm);
+  point.N = make_matrix(point.stretch.N);
+  return point;
 }
 
 /// τᵢ = 2μ εᵢ + λ tr ε, and what the mean volume change around adds [Pa].
@@ -40,79 +59,64 @@ Vec3 compute_kirchhoff_stress(const Vec3& logarithm, const Elasticity& e) {
 }
 
 double compute_hencky_energy(const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e) {
-  const PrincipalStrain strain = find_principal_strain(m, plastic_strain);
-  if (strain.is_inverted()) return std::numeric_limits<double>::infinity();
-  const double trace = strain.logarithm.sum();
-  const double bulk = e.lambda + 2.0 / 3.0 * e.mu;
-  const Vec3 deviator = strain.logarithm - Vec3::Constant(trace / 3.0);
-  return e.mu * deviator.squaredNorm() + 0.5 * bulk * trace * trace;
+  const HenckyPoint point = find_point(m, plastic_strain);
+  if (point.is_inverted) return std::numeric_limits<double>::infinity();
+  const double trace = point.stretch.trace;
+  return e.mu * point.logarithm.squaredNorm() + 0.5 * e.lambda * trace * trace;
 }
 
+/// P = R τ S⁻¹.
 Mat3 compute_hencky_piola(const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e) {
-  const PrincipalStrain strain = find_principal_strain(m, plastic_strain);
-  if (strain.is_inverted()) return Mat3::Constant(std::numeric_limits<double>::quiet_NaN());
-  const Vec3 stress =
-      compute_kirchhoff_stress(strain.logarithm, e).cwiseQuotient(Vec3::Ones() + strain.excess);
-  return m.R * strain.N * stress.asDiagonal() * strain.N.transpose();
+  const HenckyPoint point = find_point(m, plastic_strain);
+  if (point.is_inverted) return Mat3::Constant(std::numeric_limits<double>::quiet_NaN());
+  const Vec3 tau = compute_kirchhoff_stress(point.logarithm, e);
+  return m.R * point.N * tau.asDiagonal() * point.N.transpose() * point.inverse_stretch();
 }
 
-/// (ln a − ln b)/(a − b) of two stretches with a − b = `difference`; 1/b where they are equal. log1p(y)/y is
-/// exact to rounding for every y ≠ 0, so that stretches need not be told apart.
-double compute_slope_of_logarithm(double difference, double b) {
-  const double y = difference / b;
-  return (y == 0.0 ? 1.0 : std::log1p(y) / y) / b;
-}
-
-/// ∂P/∂F between the principal directions, where P = diag(Tᵢ) with Tᵢ = τᵢ/sᵢ, and F = diag(sᵢ).
-struct PrincipalTangent {
-  Mat3 normal;  ///< ∂Tᵢ/∂sⱼ
-  Mat3 shear;   ///< (Tᵢ − Tⱼ)/(sᵢ − sⱼ): of a change of shape in the plane i, j
-  Mat3 spin;    ///< (Tᵢ + Tⱼ)/(sᵢ + sⱼ): of a rotation in the plane i, j
-
-  /// dP of dF. Off the diagonal, the symmetric part of dF changes the shape and the other one turns the body.
-  Mat3 apply(const Mat3& dF) const {
-    Mat3 dP = 0.5 * (shear.cwiseProduct(dF + dF.transpose()) + spin.cwiseProduct(dF - dF.transpose()));
-    dP.diagonal() = normal * dF.diagonal();
-    return dP;
+/// dP Fᵀ of l = dF F⁻¹, both in the directions of b.
+Mat3 apply(const PrincipalTangent<double>& tangent, double lambda, const Mat3& l) {
+  Mat3 change = Mat3::Zero();
+  for (int i = 0; i < 3; ++i) change(i, i) = lambda * l.trace() + tangent.normal[i] * l(i, i);
+  for (int k = 0; k < 3; ++k) {
+    const int i = kPlanes[k][0], j = kPlanes[k][1];
+    change(i, j) = tangent.own[k] * l(i, j) + tangent.coupling[k] * l(j, i);
+    change(j, i) = tangent.next[k] * l(j, i) + tangent.coupling[k] * l(i, j);
   }
-};
-
-/// With m = ½(sᵢ + sⱼ): (Tᵢ − Tⱼ)/(sᵢ − sⱼ) = (2μ m (εᵢ − εⱼ)/(sᵢ − sⱼ) − ½(τᵢ + τⱼ))/(sᵢ sⱼ), which has no
-/// difference of nearly equal numbers.
-PrincipalTangent compute_principal_tangent(const PrincipalStrain& strain, const Elasticity& e) {
-  const Vec3 s = Vec3::Ones() + strain.excess;
-  const Vec3 tau = compute_kirchhoff_stress(strain.logarithm, e);
-  PrincipalTangent tangent{Mat3::Zero(), Mat3::Zero(), Mat3::Zero()};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j <= i; ++j) {
-      const double product = s(i) * s(j);
-      tangent.normal(i, j) = tangent.normal(j, i) = e.lambda / product;
-      const double slope = compute_slope_of_logarithm(strain.excess(i) - strain.excess(j), s(j));
-      tangent.shear(i, j) = tangent.shear(j, i) =
-          (e.mu * (s(i) + s(j)) * slope - 0.5 * (tau(i) + tau(j))) / product;
-      tangent.spin(i, j) = tangent.spin(j, i) = (tau(i) / s(i) + tau(j) / s(j)) / (s(i) + s(j));
-    }
-  for (int i = 0; i < 3; ++i) tangent.normal(i, i) += (2.0 * e.mu - tau(i)) / (s(i) * s(i));
-  return tangent;
+  return change;
 }
 
-Mat9 compute_hencky_tangent(const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e) {
-  const PrincipalStrain strain = find_principal_strain(m, plastic_strain);
-  if (strain.is_inverted()) return Mat9::Constant(std::numeric_limits<double>::quiet_NaN());
-  const PrincipalTangent tangent = compute_principal_tangent(strain, e);
-  const Mat3 turned = m.R * strain.N;
+Mat9 compute_tangent(const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e,
+                     bool is_positive) {
+  const HenckyPoint point = find_point(m, plastic_strain);
+  if (point.is_inverted) return Mat9::Constant(std::numeric_limits<double>::quiet_NaN());
+  const Vec3 tau = compute_kirchhoff_stress(point.logarithm, e);
+  PrincipalTangent<double> tangent;
+  set_principal_tangent(point.stretch, e.mu, tau.data(), tangent);
+  if (is_positive) make_positive(e.mu, tangent);
+  const Mat3 directions = m.R * point.N;
+  // F⁻¹ and F⁻ᵀ between the directions of b and the axes at rest.
+  const Mat3 inverse = point.inverse_stretch() * point.N;
   Mat9 A;
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row) {
-      const Mat3 dF = turned.row(row).transpose() * strain.N.row(column);
-      A.col(3 * column + row) = (turned * tangent.apply(dF) * strain.N.transpose()).reshaped();
+      const Mat3 l = directions.row(row).transpose() * inverse.row(column);
+      A.col(3 * column + row) = (directions * apply(tangent, e.lambda, l) * inverse.transpose()).reshaped();
     }
   return 0.5 * (A + A.transpose());  // which it is but for rounding
 }
 
+Mat9 compute_hencky_tangent(const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e) {
+  return compute_tangent(m, plastic_strain, e, false);
+}
+
+/// In the directions of b the tangent falls into planes.
+Mat9 compute_positive_hencky_tangent(const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e) {
+  return compute_tangent(m, plastic_strain, e, true);
+}
+
 /// θ = tr ε = ln det F, so that a uniform θ has the energy ½K θ² of the law; ∂θ/∂F = F⁻ᵀ.
 double compute_hencky_volume_change(const PointMotion& m, const Vec6& plastic_strain) {
-  return find_principal_strain(m, plastic_strain).logarithm.sum();
+  return find_point(m, plastic_strain).stretch.trace;
 }
 
 Mat3 compute_hencky_volume_gradient(const PointMotion& m, const Vec6& /*plastic_strain*/) {
@@ -123,7 +127,7 @@ Mat3 compute_hencky_volume_gradient(const PointMotion& m, const Vec6& /*plastic_
 
 constexpr ElasticLaw kHenckyLaw{
     .name = "hencky",
-    .about = "large strain, linear in the logarithmic strain, without plastic flow",
+    .about = "large strain, linear in the logarithmic strain, with flow that keeps the volume",
     .summary = "strain: large (logarithmic, Hencky)",
     .is_simplified = false,
     .is_linear = false,
@@ -131,13 +135,16 @@ constexpr ElasticLaw kHenckyLaw{
     .takes_full_stiffness = false,
     .bears_inversion = false,
     .has_cancelling_energy = false,
-    .plastic_split = PlasticSplit::none,
+    .plastic_split = PlasticSplit::logarithmic,
     .energy_density = compute_hencky_energy,
     .piola = compute_hencky_piola,
     .tangent = compute_hencky_tangent,
     .flow_drive = nullptr,
     .volume_change = compute_hencky_volume_change,
     .volume_gradient = compute_hencky_volume_gradient,
+    .flow = flow_by_hencky,
+    .positive_tangent = compute_positive_hencky_tangent,
+    .lanes = {compute_hencky_forces, compute_hencky_energy, compute_hencky_stiffness},
 };
 
 }  // namespace argil::solid

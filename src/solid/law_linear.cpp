@@ -2,6 +2,7 @@
 
 #include "solid/law_quadratic.h"
 #include "solid/polar.h"
+#include "solid/tet_lanes.h"
 
 namespace argil::solid {
 namespace {
@@ -44,6 +45,9 @@ constexpr ElasticLaw kLinearLaw{
     .flow_drive = compute_quadratic_drive,
     .volume_change = compute_trace,
     .volume_gradient = compute_trace_gradient,
+    .flow = nullptr,
+    .positive_tangent = nullptr,
+    .lanes = {compute_corner_forces, compute_energy, nullptr},
 };
 
 }  // namespace argil::solid

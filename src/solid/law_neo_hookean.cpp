@@ -113,6 +113,9 @@ constexpr ElasticLaw kNeoHookeanLaw{
     .flow_drive = compute_neo_hookean_drive,
     .volume_change = compute_neo_hookean_volume_change,
     .volume_gradient = compute_neo_hookean_volume_gradient,
+    .flow = nullptr,
+    .positive_tangent = nullptr,
+    .lanes = {},
 };
 
 }  // namespace argil::solid

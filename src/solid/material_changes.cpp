@@ -1,5 +1,7 @@
 #include "solid/material_changes.h"
 
+#include <algorithm>
+
 #include "solid/active_region.h"
 
 namespace argil::solid {
@@ -20,6 +22,17 @@ void set_swelling(Body& body, int tet, double volume_ratio) {
   body.materials.set_swelling(tet, volume_ratio);
   body.kinematics.drop_frame(tet);
   body.system.is_tet_changed[static_cast<std::size_t>(tet)] = 1;
+}
+
+void note_flow(Body& body, const std::vector<char>& is_flowing) {
+  if (!body.model.keeps_tet_stiffness()) return;
+  const auto num_tets = static_cast<std::size_t>(body.model.elements.num_tets());
+  for (std::size_t run = 0; run < is_flowing.size(); ++run) {
+    if (is_flowing[run] == 0) continue;
+    const std::size_t first = kLanes * run;
+    for (std::size_t t = first; t < std::min(first + kLanes, num_tets); ++t)
+      body.system.is_tet_changed[t] = 1;
+  }
 }
 
 void set_water_mass(Body& body, int tet, double mass) {

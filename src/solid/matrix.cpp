@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "solid/body.h"
 #include "solid/element.h"
+#include "solid/hencky_lanes.h"
 
 namespace argil::solid {
 namespace {
@@ -30,16 +31,48 @@ Mat3 compute_anisotropic_block(const Vec3& gi, const Vec3& gj, const Mat3& R, co
   return R * block * R.transpose();
 }
 
+bool takes_pairs(const Body& body) {
+  return body.model.keeps_tet_stiffness() && !body.prediction.is_static;
+}
+
+/// Stiffness of tets that have changed, which all lie in the part, or of all.
+void set_pairs(Body& body, const Part& part, bool all) {
+  const MatrixShares share = compute_shares(body);
+  System& system = body.system;
+  const TangentArrays tets{body.materials.gradient().data(),
+                           body.kinematics.frame().data(),
+                           body.plastic_strain->data(),
+                           body.materials.weight().data(),
+                           body.materials.own_lambda().data(),
+                           body.materials.mu().data(),
+                           share.exact,
+                           share.kept,
+                           system.pairs.data()};
+  const auto set = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    const auto first = system.is_tet_changed.begin() + begin, last = system.is_tet_changed.begin() + end;
+    if (all || std::find(first, last, char{1}) != last)
+      find_law(body.model.params.model).lanes.stiffness(tets, begin, end);
+  };
+  if (all)
+    OrderedRuns(body.model.threads).each(body.model.elements.num_tets(), set);
+  else
+    part.batches.each(body.model.elements.num_tets(), set);
+}
+
 void assemble_tangents(Body& body) {
-  if (!needs_tangents(body)) return;
+  if (!needs_tangents(body) || takes_pairs(body)) return;
   const Strained strained = body.strained();
   System& system = body.system;
   system.tangent.resize(81, body.model.elements.num_points());
   parallel_for(body.model.elements.num_points(), body.model.threads, [&](std::ptrdiff_t p) {
     const int tet = body.model.elements.tet_of_point(static_cast<int>(p));
-    const Mat9 A = compute_tangent(strained.law(), body.kinematics.at(static_cast<int>(p)),
-                                   strained.plastic_strain.col(p), strained.elasticity(tet));
-    system.tangent.col(p) = (system.is_projected ? make_positive(A) : A).reshaped();
+    const auto compute = system.is_projected ? compute_positive_tangent : compute_tangent;
+    Elasticity e = strained.elasticity(tet);
+    if (!body.is_newton())
+      e.volume_change = 0.0;  // one linearisation leaves out what the nodes' pressure adds
+    system.tangent.col(p) =
+        compute(strained.law(), body.kinematics.at(static_cast<int>(p)), strained.plastic_strain.col(p), e)
+            .reshaped();
   });
 }
 
@@ -92,6 +125,11 @@ void add_point(const Body& body, const MatrixShares& share, const Elasticity& e,
       matrix.block(blocks[j]) += compute_tangent_block(gradient.col(N * p + i), A, gradient.col(N * p + j));
 }
 
+void clear_row(std::size_t row, linear::BlockMatrix& matrix) {
+  const Eigen::Index first = matrix.row_begin[row];
+  matrix.values.middleCols(3 * first, 3 * (matrix.row_begin[row + 1] - first)).setZero();
+}
+
 template <int N>
 void gather_row(Body& body, int row, const MatrixShares& share) {
   const Strained strained = body.strained();
@@ -99,11 +137,7 @@ void gather_row(Body& body, int row, const MatrixShares& share) {
   linear::BlockMatrix& matrix = body.system.matrix;
   const int Q = elements.points_per_tet;
   const auto r = static_cast<std::size_t>(row);
-  const int first = matrix.row_begin[r];
-  matrix.values
-      .middleCols(3 * static_cast<Eigen::Index>(first),
-                  3 * static_cast<Eigen::Index>(matrix.row_begin[r + 1] - first))
-      .setZero();
+  clear_row(r, matrix);
   const auto node = static_cast<std::size_t>(body.model.node_of_row[r]);
   for (int c = elements.node_begin[node]; c < elements.node_begin[node + 1]; ++c) {
     const int corner = elements.node_corners[static_cast<std::size_t>(c)];
@@ -115,6 +149,28 @@ void gather_row(Body& body, int row, const MatrixShares& share) {
   }
 }
 
+/// Of a row that is too long for set_row_of_pairs.
+void gather_pairs(Body& body, int row) {
+  const Elements& elements = body.model.elements;
+  linear::BlockMatrix& matrix = body.system.matrix;
+  const auto r = static_cast<std::size_t>(row);
+  clear_row(r, matrix);
+  const auto node = static_cast<std::size_t>(body.model.node_of_row[r]);
+  for (int c = elements.node_begin[node]; c < elements.node_begin[node + 1]; ++c) {
+    const int corner = elements.node_corners[static_cast<std::size_t>(c)];
+    const int i = corner % 4;
+    for (int j = 0; j < 4; ++j) {
+      if (j == i) continue;
+      const Eigen::Index pair = kPairBlocks * static_cast<Eigen::Index>(corner / 4) + find_pair(i, j);
+      const Mat3 stored = body.system.pairs.col(pair).reshaped(3, 3);
+      const Mat3 block = i < j ? stored : Mat3(stored.transpose());
+      const int place = body.system.block_of_corner_pair[static_cast<std::size_t>(4 * corner + j)];
+      if (place >= 0) matrix.block(place) += block;
+      matrix.block(matrix.diagonal[r]) -= block;
+    }
+  }
+}
+
 /// Gathers the rows that need it: all of them, or, where a matrix of kept rotations stays the same but for a
 /// few tets, the rows of those tets and the rows that contacts were added to.
 void assemble_rows(Body& body, const Part& part) {
@@ -122,8 +178,10 @@ void assemble_rows(Body& body, const Part& part) {
   System& system = body.system;
   linear::BlockMatrix& matrix = system.matrix;
   const MatrixShares share = compute_shares(body);
+  const bool has_pairs = takes_pairs(body);
   const bool keeps_rest = elements.nodes_per_tet == 4 && !system.has_nodal_blocks(body.materials) &&
-                          share == system.stored_shares && share.exact == 0.0;
+                          share == system.stored_shares && (share.exact == 0.0 || has_pairs);
+  if (has_pairs) set_pairs(body, part, !keeps_rest);
   mark_rows(body, part, !keeps_rest);
   system.stored_shares = share;
   const bool is_simple = has_isotropic_tets(body.model, body.materials) && share.exact == 0.0;
@@ -135,6 +193,7 @@ void assemble_rows(Body& body, const Part& part) {
                        elements.node_corners.data(),
                        system.block_of_corner_pair.data(),
                        matrix.values.data()};
+  const PairArrays pair_rows{system.pairs.data(), rows.corners, rows.block_of_pair, rows.values};
   const auto assemble_row = [&](std::ptrdiff_t row) {
     const auto r = static_cast<std::size_t>(row);
     if (!system.is_row_stale[r]) return 0;
@@ -142,7 +201,12 @@ void assemble_rows(Body& body, const Part& part) {
     const auto node = static_cast<std::size_t>(body.model.node_of_row[r]);
     const int begin = matrix.row_begin[r];
     const int num_blocks = matrix.row_begin[r + 1] - begin;
-    if (is_simple && num_blocks <= kLongestRow)
+    if (has_pairs && num_blocks <= kLongestRow)
+      set_row_of_pairs(pair_rows, elements.node_begin[node], elements.node_begin[node + 1], begin,
+                       num_blocks);
+    else if (has_pairs)
+      gather_pairs(body, static_cast<int>(row));
+    else if (is_simple && num_blocks <= kLongestRow)
       set_isotropic_row(rows, elements.node_begin[node], elements.node_begin[node + 1], begin, num_blocks);
     else if (elements.nodes_per_tet == 4)
       gather_row<4>(body, static_cast<int>(row), share);
@@ -173,18 +237,29 @@ void add_nodal_stiffness(Body& body, const Eigen::Matrix3Xd& gradient, double sc
     nodal.add_stiffness(scale, body.system.matrix);
 }
 
-void update_nodal_stiffness(Body& body) {
-  const MatrixShares share = compute_shares(body);
-  add_nodal_stiffness(body, body.kinematics.turned_gradient(), share.kept);
-  if (share.exact == 0.0) return;
-  const Strained strained = body.strained();
+/// What each tet makes of its gradients ∇N at rest.
+template <class Turn>
+const Eigen::Matrix3Xd& turn_gradients(Body& body, Turn turn_of_tet) {
   Eigen::Matrix3Xd& gradient = body.scratch.nodal.gradient;
   gradient.resize(3, body.materials.gradient().cols());
-  for (int t = 0; t < body.model.elements.num_tets(); ++t)
-    gradient.middleCols<4>(4 * static_cast<Eigen::Index>(t)) =
-        strained.volume_gradient(t) *
-        body.materials.gradient().middleCols<4>(4 * static_cast<Eigen::Index>(t));
-  add_nodal_stiffness(body, gradient, share.exact);
+  parallel_for(body.model.elements.num_tets(), body.model.threads, [&](std::ptrdiff_t t) {
+    gradient.middleCols<4>(4 * t) =
+        turn_of_tet(static_cast<int>(t)) * body.materials.gradient().middleCols<4>(4 * t);
+  });
+  return gradient;
+}
+
+void update_nodal_stiffness(Body& body) {
+  const MatrixShares share = compute_shares(body);
+  if (share.kept != 0.0 && takes_pairs(body))
+    add_nodal_stiffness(body, turn_gradients(body, [&](int tet) { return kept_rotation(body, tet); }),
+                        share.kept);
+  else
+    add_nodal_stiffness(body, body.kinematics.turned_gradient(), share.kept);
+  if (share.exact == 0.0) return;
+  const Strained strained = body.strained();
+  add_nodal_stiffness(body, turn_gradients(body, [&](int tet) { return strained.volume_gradient(tet); }),
+                      share.exact);
 }
 
 void add_contacts(Body& body, std::span<const PointStiffness> contacts) {

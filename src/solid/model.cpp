@@ -48,6 +48,11 @@ Model::Model(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
   number_rows(*this);
 }
 
+bool Model::keeps_tet_stiffness() const {
+  return find_law(params.model).lanes.stiffness && params.element != ElementKind::p2 &&
+         params.iteration == Iteration::one && !has_only_diagonal();
+}
+
 Vec3 find_free_part(const Model& model, const Vec3& force, Eigen::Index node) {
   return (model.constraints.support.col(node).array() >= 0).select(Vec3::Zero(), force);
 }

@@ -30,6 +30,9 @@ struct Model {
   std::vector<std::array<int, 2>> placed_components;
 
   int num_free() const { return static_cast<int>(node_of_row.size()); }  ///< rows
+  /// Is the stiffness of each tet kept, from which rows are gathered? Where it changes with the strain, in
+  /// steps with one linearisation.
+  bool keeps_tet_stiffness() const;
   bool has_nodal_volume() const { return params.element == ElementKind::p1_nodal; }
   /// Does the matrix hold its diagonal blocks alone?
   bool has_only_diagonal() const { return params.solver.kind == linear::SolverKind::pcg_matrix_free; }

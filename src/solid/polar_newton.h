@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/lanes.h"
+#include "solid/polar.h"
 
 namespace argil::solid {
 
@@ -79,6 +80,21 @@ ARGIL_INLINE void iterate_rotation(const Real33<Real>& F, Real33<Real>& R, Real&
     active = change >= kSquaredChange ? active : zero;
   }
   found = active != 0.0 ? zero : found;
+}
+
+inline void set_rotation_by_svd(const Real33<Lanes>& F, int lane, Real33<Lanes>& R) {
+  Mat3 from;
+  for (int k = 0; k < 9; ++k) from(k) = F.m[k][lane];
+  const Mat3 rotation = compute_rotation(from);
+  for (int k = 0; k < 9; ++k) R.m[k][lane] = rotation(k);
+}
+
+/// The same of every F: by its singular values where the iteration does not find it.
+ARGIL_INLINE void find_rotation(const Real33<Lanes>& F, Real33<Lanes>& R) {
+  Lanes found;
+  iterate_rotation(F, R, found);
+  for (int lane = 0; lane < kLanes; ++lane)
+    if (found[lane] == 0.0) set_rotation_by_svd(F, lane, R);
 }
 
 }  // namespace argil::solid

@@ -19,7 +19,7 @@ bool has_isotropic_tets(const Model& model, const Materials& materials) {
 }
 
 bool has_plain_tets(const Model& model, const Materials& materials) {
-  return has_isotropic_tets(model, materials) && find_law(model.params.model).is_quadratic;
+  return has_isotropic_tets(model, materials) && find_law(model.params.model).lanes.forces;
 }
 
 ForceArrays make_force_arrays(const Strained& body, double* corner_force) {

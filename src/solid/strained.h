@@ -29,7 +29,7 @@ struct Strained {
 
 /// 4-node tets of an isotropic law: those that go eight at a time.
 bool has_isotropic_tets(const Model& model, const Materials& materials);
-/// And of a law that is quadratic in the strain: whose forces and energies do.
+/// And of a law whose forces and energies do.
 bool has_plain_tets(const Model& model, const Materials& materials);
 
 /// Of such tets, what forces and energies are computed from; corner_force may be null.

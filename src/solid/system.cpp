@@ -4,17 +4,20 @@
 #include <cstdint>
 #include <utility>
 
+#include "solid/tet_lanes.h"
+
 namespace argil::solid {
 namespace {
 
 /// Does the matrix leave out the nodes' stiffness of p1_nodal, to begin with? Its factors take a third of the
-/// memory and no assembly; but a Cholesky factor of the rest alone is no exact one, and Newton's matrix may
-/// need two sets of factors, for elasticity and damping.
+/// memory and no assembly; but a Cholesky factor of the rest alone is no exact one, and the matrix of a
+/// law that is not quadratic needs two sets of factors, for elasticity and damping.
 bool keeps_nodal_factors(const SolidParams& params) {
   using linear::SolverKind;
   const SolverKind kind = params.solver.kind;
   return (kind == SolverKind::pcg || kind == SolverKind::pcg_jacobi) && params.iteration == Iteration::one &&
-         find_law(params.model).is_quadratic;
+         (find_law(params.model).is_quadratic ||
+          (find_law(params.model).lanes.stiffness && params.rayleigh_stiffness == 0.0));
 }
 
 /// Rows that share a block with each row, itself included, increasing.
@@ -75,6 +78,7 @@ System::System(const Model& model, const Materials& materials) {
   make_pattern(model, materials, *this);
   is_tet_changed.resize(static_cast<std::size_t>(model.elements.num_tets()), 1);
   is_row_stale.resize(static_cast<std::size_t>(model.num_free()), 1);
+  if (model.keeps_tet_stiffness()) pairs.setZero(9, kPairBlocks * model.elements.num_tets());
   rhs.setZero(3, model.num_free());
   delta.setZero(3, model.num_free());
   v_base.setZero(3, model.elements.num_nodes());

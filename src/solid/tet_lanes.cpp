@@ -1,7 +1,6 @@
 #include "solid/tet_lanes.h"
 
 #include "base/mandel.h"
-#include "solid/polar.h"
 #include "solid/polar_newton.h"
 
 namespace argil::solid {
@@ -13,13 +12,6 @@ ARGIL_INLINE void turn_gradient(const Real33<Lanes>& a, const Lanes* gradient, L
     const Lanes* g = gradient + 3 * i;
     for (int k = 0; k < 3; ++k) turned[3 * i + k] = a.m[k] * g[0] + a.m[3 + k] * g[1] + a.m[6 + k] * g[2];
   }
-}
-
-void set_rotation_by_svd(const Real33<Lanes>& F, int lane, Real33<Lanes>& R) {
-  Mat3 from;
-  for (int k = 0; k < 9; ++k) from(k) = F.m[k][lane];
-  const Mat3 rotation = compute_rotation(from);
-  for (int k = 0; k < 9; ++k) R.m[k][lane] = rotation(k);
 }
 
 /// Σ uᵢ ⊗ ∇Nᵢ of tets begin … end−1.
@@ -50,6 +42,27 @@ ARGIL_INLINE void set_turned_strain(const Real33<Lanes>& R, const Real33<Lanes>&
   strain[5] = kSqrt2 * (0.5 * (S[1] + S[3]));
 }
 
+/// Tet t, which leaves its frame.
+ARGIL_INLINE void replace_frame(const TetArrays& tets, const Real33<Lanes>& Q, std::ptrdiff_t t,
+                                std::ptrdiff_t lane) {
+  tets.is_turned[t] = 1;
+  if (tets.changed_frames && tets.changed_frames->set(static_cast<std::size_t>(t)))
+    std::copy_n(tets.frame + 9 * t, 9, tets.committed_frame + 9 * t);
+  for (int k = 0; k < 9; ++k) tets.frame[9 * t + k] = Q.m[k][lane];
+}
+
+/// Where F left that of the kept stiffness.
+ARGIL_INLINE void replace_deformations(const TetArrays& tets, const Real33<Lanes>& F, std::ptrdiff_t begin,
+                                       std::ptrdiff_t end) {
+  Lanes frame[9], squares = {};
+  read_lanes<9>(tets.frame, begin, end - 1, frame);
+  for (int k = 0; k < 9; ++k) squares += (F.m[k] - frame[k]) * (F.m[k] - frame[k]);
+  const Lanes is_changed = squares > tets.frame_tolerance * tets.frame_tolerance ? Lanes{} + 1.0 : Lanes{};
+  if (!any(is_changed)) return;
+  for (std::ptrdiff_t t = begin; t < end; ++t)
+    if (is_changed[t - begin] != 0.0) replace_frame(tets, F, t, t - begin);
+}
+
 /// Where R left the frame of the turned gradient: another frame, another gradient.
 ARGIL_INLINE void turn_frames(const TetArrays& tets, const Real33<Lanes>& R, const Lanes* gradient,
                               std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -64,10 +77,7 @@ ARGIL_INLINE void turn_frames(const TetArrays& tets, const Real33<Lanes>& R, con
   for (std::ptrdiff_t t = begin; t < end; ++t) {
     const std::ptrdiff_t lane = t - begin;
     if (is_turned[lane] == 0.0) continue;
-    tets.is_turned[t] = 1;
-    if (tets.changed_frames && tets.changed_frames->set(static_cast<std::size_t>(t)))
-      std::copy_n(tets.frame + 9 * t, 9, tets.committed_frame + 9 * t);
-    for (int k = 0; k < 9; ++k) tets.frame[9 * t + k] = R.m[k][lane];
+    replace_frame(tets, R, t, lane);
     for (int k = 0; k < 12; ++k) tets.turned_gradient[12 * t + k] = turned[k][lane];
   }
 }
@@ -83,10 +93,7 @@ ARGIL_EVERY_PROCESSOR void compute_motions(const TetArrays& tets, std::ptrdiff_t
   if (tets.is_linear) {
     for (int k = 0; k < 9; ++k) R.m[k] = Lanes{} + (k % 4 == 0 ? 1.0 : 0.0);
   } else {
-    Lanes found;
-    iterate_rotation(F, R, found);
-    for (int lane = 0; lane < kLanes; ++lane)
-      if (found[lane] == 0.0) set_rotation_by_svd(F, lane, R);
+    find_rotation(F, R);
   }
 
   Lanes strain[6];
@@ -100,7 +107,10 @@ ARGIL_EVERY_PROCESSOR void compute_motions(const TetArrays& tets, std::ptrdiff_t
   write_lanes<9>(R.m, begin, end, tets.R);
   write_lanes<6>(strain, begin, end, tets.strain);
   write_lanes<1>(&determinant, begin, end, tets.volume_ratio);
-  if (tets.turned_gradient) turn_frames(tets, R, gradient, begin, end);
+  if (tets.keeps_deformation)
+    replace_deformations(tets, F, begin, end);
+  else if (tets.turned_gradient)
+    turn_frames(tets, R, gradient, begin, end);
 }
 
 ARGIL_EVERY_PROCESSOR void compute_strains(const StrainArrays& tets, std::ptrdiff_t begin,
@@ -216,6 +226,22 @@ ARGIL_INLINE void add(const Block& a, Block& sum) {
   sum.last += a.last;
 }
 
+/// The gradients of a tet add up to nothing, and so do the blocks of a row.
+ARGIL_INLINE void set_diagonal(Block* sum, int diagonal, int num_blocks) {
+  Block others = {};
+  for (int k = 0; k <= num_blocks; ++k)
+    if (k != diagonal) add(sum[k], others);
+  sum[diagonal].eight = -others.eight;
+  sum[diagonal].last = -others.last;
+}
+
+ARGIL_INLINE void write_row(const Block* sum, int num_blocks, double* out) {
+  for (int k = 0; k < num_blocks; ++k) {
+    write(sum[k].eight, out + 9 * k);
+    out[9 * k + 8] = sum[k].last;
+  }
+}
+
 /// Asks for what the row of one corner is gathered from, which lies here and there.
 ARGIL_INLINE void prefetch_corner(const RowArrays& rows, int corner) {
   const std::ptrdiff_t tet = corner / 4;
@@ -263,17 +289,40 @@ ARGIL_EVERY_PROCESSOR void set_isotropic_row(const RowArrays& rows, int begin, i
       block.last += last * cj[2] + dot;
     }
   }
-  // The gradients of a tet add up to nothing, and so do the blocks of a row.
-  Block others = {};
-  for (int k = 0; k <= num_blocks; ++k)
-    if (k != diagonal) add(sum[k], others);
-  sum[diagonal].eight = -others.eight;
-  sum[diagonal].last = -others.last;
-  double* out = rows.values + 9 * static_cast<std::ptrdiff_t>(first_block);
-  for (int k = 0; k < num_blocks; ++k) {
-    write(sum[k].eight, out + 9 * k);
-    out[9 * k + 8] = sum[k].last;
+  set_diagonal(sum, diagonal, num_blocks);
+  write_row(sum, num_blocks, rows.values + 9 * static_cast<std::ptrdiff_t>(first_block));
+}
+
+ARGIL_INLINE void read_block(const double* from, Block& block) {
+  read(from, block.eight);
+  block.last = from[8];
+}
+
+ARGIL_INLINE void transpose_block(Block& block) {
+  block.eight = __builtin_shufflevector(block.eight, block.eight, 0, 3, 6, 1, 4, 7, 2, 5);
+}
+
+ARGIL_EVERY_PROCESSOR void set_row_of_pairs(const PairArrays& rows, int begin, int end, int first_block,
+                                            int num_blocks) {
+  Block sum[kLongestRow + 1];  // the last one is of nodes without a row
+  std::fill(sum, sum + num_blocks + 1, Block{});
+  int diagonal = 0;
+  for (int c = begin; c < end; ++c) {
+    const int corner = rows.corners[c];
+    const int i = corner % 4;
+    const double* of_tet = rows.pairs + 9 * kPairBlocks * static_cast<std::ptrdiff_t>(corner / 4);
+    const int* blocks = rows.block_of_pair + 4 * static_cast<std::ptrdiff_t>(corner);
+    diagonal = blocks[i] - first_block;
+    for (int j = 0; j < 4; ++j) {
+      if (j == i) continue;
+      Block pair;
+      read_block(of_tet + 9 * find_pair(i, j), pair);
+      if (j < i) transpose_block(pair);
+      add(pair, sum[blocks[j] < 0 ? num_blocks : blocks[j] - first_block]);
+    }
   }
+  set_diagonal(sum, diagonal, num_blocks);
+  write_row(sum, num_blocks, rows.values + 9 * static_cast<std::ptrdiff_t>(first_block));
 }
 
 ARGIL_EVERY_PROCESSOR void sum_corner_forces(const double* corner_force, const int* corners, int begin,

@@ -26,6 +26,7 @@ struct TetArrays {
   char* is_turned = nullptr;              ///< set to 1 where Q changed
   ChangeMarks* changed_frames = nullptr;  ///< of Q since the last commit; null: not wanted
   double* committed_frame = nullptr;      ///< where these have changed, what Q was before
+  bool keeps_deformation = false;         ///< Q is F, or an earlier one; then no turned gradient is wanted
 };
 
 /// Runs of kLanes tets whose sums and least values are kept together, so that those of a large body are found
@@ -85,6 +86,26 @@ inline constexpr int kLongestRow = 96;
 /// Blocks first_block … first_block + num_blocks − 1 of one row: scale Σ V (λ cᵢ⊗cⱼ + μ cⱼ⊗cᵢ + μ cᵢ·cⱼ 1)
 /// over the corners `begin` … `end` − 1, c the turned gradients.
 void set_isotropic_row(const RowArrays& rows, int begin, int end, int first_block, int num_blocks);
+
+/// Blocks (0,1) (0,2) (0,3) (1,2) (1,3) (2,3) of a tet's stiffness, which say all of it: those of a row add
+/// up to nothing.
+inline constexpr int kPairBlocks = 6;
+/// Where among them that of corners i and j ≠ i stands.
+inline constexpr int find_pair(int i, int j) {
+  constexpr int kPlace[4][4] = {{0, 0, 1, 2}, {0, 0, 3, 4}, {1, 3, 0, 5}, {2, 4, 5, 0}};
+  return kPlace[i][j];
+}
+
+/// What rows of the matrix are gathered from where each tet's stiffness is known.
+struct PairArrays {
+  const double* pairs = nullptr;       ///< kPairBlocks 3×3 a tet
+  const int* corners = nullptr;        ///< as in RowArrays
+  const int* block_of_pair = nullptr;  ///< as in RowArrays
+  double* values = nullptr;            ///< 9 a block
+};
+
+/// The same row of such tets.
+void set_row_of_pairs(const PairArrays& rows, int begin, int end, int first_block, int num_blocks);
 
 /// Sum of the forces on corners `begin` … `end` − 1 of `corners`; each force with a number after it.
 void sum_corner_forces(const double* corner_force, const int* corners, int begin, int end, double* force);

@@ -2,6 +2,8 @@
 // closed forms of uniaxial stress; and which laws of flow a scenario may not ask for.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "output/result_reader.h"
 #include "refusal.h"
 
@@ -71,6 +73,21 @@ TEST_F(PulledBox, OfJ2YieldsAtItsStrengthAndDissipatesTheRest) {
   for (const sim::PhysicsRecord& record : records) {
     EXPECT_GE(record.plastic_dissipation, before);
     before = record.plastic_dissipation;
+  }
+}
+
+TEST_F(PulledBox, OfLargeStrainBearsItsStrengthDrawnOutAndAtHalfItsLength) {
+  // σ_y = √3 c_u on the true area: σ_y²/2E stays stored, σ_y (|ln s| − σ_y/E) is gone, per volume at rest.
+  const double strength = 3e3;
+  const double tension = std::sqrt(3.0) * strength;
+  for (const double stretch : {1.2, 0.5}) {  // drawn out farther it necks
+    const auto records = run(R"("strength_Pa": 3000)", 1,
+                             {"/dynamics/model=hencky", "/body/fixed/3/displacement_m=[0,0," +
+                                                            std::to_string(0.1 * (stretch - 1.0)) + "]"});
+    const double stored = tension * tension / (2.0 * kYoungsModulus) * kVolume;
+    const double gone = tension * (std::abs(std::log(stretch)) - tension / kYoungsModulus) * kVolume;
+    EXPECT_NEAR(records.back().elastic_energy, stored, 0.01 * stored) << stretch;
+    EXPECT_NEAR(records.back().plastic_dissipation, gone, 0.06 * gone) << stretch;  // of the step
   }
 }
 

@@ -90,16 +90,15 @@ TEST_F(ScenarioFile, PressureIsTheLawUnlessAnotherIsNamed) {
 TEST_F(ScenarioFile, LocalExtentIsRefusedWhereAStepNeedsTheWholeBody) {
   const std::string local = "/dynamics/extent=local";
   EXPECT_EQ(load({local}).params.extent, sim::Extent::local);
-  const std::vector<std::vector<std::string>> needs_whole = {
-      {"/dynamics/element=p2"},
-      {"/dynamics/model=neo_hookean"},
-      {"/dynamics/model=hencky", "/material/plasticity/enabled=false"},
-      {"/dynamics/integrator=newmark"},
-      {"/dynamics/iteration=newton"},
-      {"/dynamics/solver/kind=cholesky"},
-      {"/dynamics/solver/tolerance=1e-6"},
-      {"/haptics/between_frames=compliant"},
-      {"/water/swelling=0.02"}};
+  EXPECT_NO_THROW(load({local, "/dynamics/model=hencky", "/material/plasticity/max=0"}));
+  const std::vector<std::vector<std::string>> needs_whole = {{"/dynamics/element=p2"},
+                                                             {"/dynamics/model=neo_hookean"},
+                                                             {"/dynamics/integrator=newmark"},
+                                                             {"/dynamics/iteration=newton"},
+                                                             {"/dynamics/solver/kind=cholesky"},
+                                                             {"/dynamics/solver/tolerance=1e-6"},
+                                                             {"/haptics/between_frames=compliant"},
+                                                             {"/water/swelling=0.02"}};
   for (std::vector<std::string> settings : needs_whole) {
     SCOPED_TRACE(settings.front());
     settings.push_back(local);
@@ -257,19 +256,43 @@ TEST_F(ScenarioFile, PlasticStretchOfNeoHookeanClayMustKeepItsDimensions) {
   ARGIL_EXPECT_THROW_WITH(load(with("1.0", "neo_hookean", "frobenius")), InputError,
                           "/material/plasticity/max");
   EXPECT_NO_THROW(load(with("0.99", "neo_hookean", "frobenius")));
-  ARGIL_EXPECT_THROW_WITH(load(with("0.71", "neo_hookean", "voigt6")), InputError, "outside [0, 0.707");
+  ARGIL_EXPECT_THROW_WITH(load(with("0.71", "neo_hookean", "voigt6")), InputError, "outside (0, 0.707");
   EXPECT_NO_THROW(load(with("5", "corotational", "frobenius")));
 }
 
-TEST_F(ScenarioFile, HenckyClayHasNoPlasticFlow) {
-  const std::string model = "/dynamics/model=hencky";
-  const std::string flows = "/material/plasticity/enabled=true";
-  ARGIL_EXPECT_THROW_WITH(load({model, flows}), InputError, "/material/plasticity/enabled: true");
-  ARGIL_EXPECT_THROW_WITH(load({model, flows}), InputError, "hencky is an elastic law");
-  ARGIL_EXPECT_THROW_WITH(load({model, flows}), InputError, "set it to false");
-  EXPECT_EQ(load({model, "/material/plasticity/enabled=false"}).params.solid.model,
-            solid::StrainModel::hencky);
-  EXPECT_NO_THROW(load({model, flows, "/dynamics/mode=static"}));  // an equilibrium is elastic
+TEST_F(ScenarioFile, HenckyClayFlowsWithoutACapAndKeepsItsVolume) {
+  const auto with = [](const std::string& key, const std::string& value) {
+    return std::vector<std::string>{"/dynamics/model=hencky", "/material/plasticity/enabled=true",
+                                    "/material/plasticity/max=0",
+                                    "/material/plasticity/" + key + "=" + value};
+  };
+  EXPECT_NO_THROW(load(with("deviatoric", "true")));
+  ARGIL_EXPECT_THROW_WITH(load(with("max", "0.5")), InputError, "/material/plasticity/max: 0.5");
+  ARGIL_EXPECT_THROW_WITH(load(with("max", "0.5")), InputError, "leave it out");
+  ARGIL_EXPECT_THROW_WITH(load(with("deviatoric", "false")), InputError, "keeps the volume");
+  ARGIL_EXPECT_THROW_WITH(load(with("norm", "voigt6")), InputError, "Frobenius");
+  EXPECT_NO_THROW(load({with("max", "0.5")[0], with("max", "0.5")[3], "/dynamics/mode=static"}));
+}
+
+TEST_F(ScenarioFile, AStrengthInPascalsMakesClayOfLargeStrain) {
+  const std::string strength = "/material/plasticity/strength_Pa=15000";
+  const std::vector<std::string> plain = {"/material/plasticity/enabled=true", "/material/plasticity/yield=0",
+                                          "/material/plasticity/max=0", strength};
+  const Scenario s = load(plain);
+  EXPECT_EQ(s.params.solid.model, solid::StrainModel::hencky);
+  EXPECT_EQ(s.params.plasticity.form, material::FlowForm::j2);
+  const std::vector<std::string> own = {plain[0],
+                                        plain[1],
+                                        plain[2],
+                                        strength,
+                                        "/dynamics/model=corotational",
+                                        "/material/plasticity/form=rate"};
+  EXPECT_EQ(load(own).params.solid.model, solid::StrainModel::corotational);
+  EXPECT_EQ(load(own).params.plasticity.form, material::FlowForm::rate);
+  ARGIL_EXPECT_THROW_WITH(load({plain[0], "/material/plasticity/yield=0.02", plain[2], strength}), InputError,
+                          "/material/plasticity/strength_Pa: is given, and yield too");
+  ARGIL_EXPECT_THROW_WITH(load({plain[0], plain[1], plain[2], "/material/plasticity/strength_Pa=-1"}),
+                          InputError, "/material/plasticity/strength_Pa");
 }
 
 TEST_F(ScenarioFile, HenckyClayStopsWhereATetIsInverted) {

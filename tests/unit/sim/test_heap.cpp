@@ -130,7 +130,7 @@ const Case kCases[] = {
     {"hencky",
      [](Params& p) {
        p.solid.model = solid::StrainModel::hencky;
-       p.plasticity.enabled = false;
+       p.plasticity.max = 0.0;
      }},
     {"p1_nodal", [](Params& p) { p.solid.element = solid::ElementKind::p1_nodal; }},
     {"p1_nodal_bdf2",

@@ -47,7 +47,6 @@ std::vector<GradientCase> make_cases() {
           for (const bool is_swollen : {false, true}) {
             const ElasticLaw& law = find_law(model);
             if (is_anisotropic && (!law.takes_full_stiffness || element == ElementKind::p1_nodal)) continue;
-            if (is_plastic && law.plastic_split == PlasticSplit::none) continue;
             cases.push_back({model, element, is_anisotropic, is_plastic, is_swollen});
           }
   return cases;

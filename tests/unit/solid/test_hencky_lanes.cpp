@@ -1,0 +1,208 @@
+// Hencky's law of eight tets at once against that of a point: small strains and large, with plastic strain
+// and without, in batches that are full and not.
+#include "solid/hencky_lanes.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/mandel.h"
+#include "base/ordered_loops.h"
+#include "base/rng.h"
+#include "solid/element.h"
+
+namespace argil::solid {
+namespace {
+
+constexpr int kTets = 3 * kLanes + 5;
+constexpr StrainModel kHencky = StrainModel::hencky;
+
+/// A turned stretch of about 1 ± size.
+Mat3 make_motion_of(Rng& rng, double size) {
+  const Vec3 turn(rng.uniform(-3.0, 3.0), rng.uniform(-3.0, 3.0), rng.uniform(-3.0, 3.0));
+  Mat3 stretch = Mat3::Identity();
+  for (int k = 0; k < 9; ++k) stretch(k) += rng.uniform(-size, size);
+  return Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() * stretch;
+}
+
+struct Tets {
+  Eigen::Matrix3Xd gradient{3, 4 * kTets}, force{3, 4 * kTets}, F{3, 3 * kTets}, R{3, 3 * kTets};
+  TensorField strain{6, kTets}, plastic{6, kTets};
+  Field weight{kTets}, lambda{kTets}, mu{kTets}, pressure{kTets}, yield{kTets};
+  Eigen::Matrix<double, 9, Eigen::Dynamic> pairs{9, kPairBlocks* kTets};
+
+  Tets() {
+    Rng rng(11);
+    for (int t = 0; t < kTets; ++t) {
+      Mat34 rest;
+      rest << 0, 1, 0.1, 0.2, 0, 0.1, 1.2, 0.3, 0, -0.1, 0.2, 0.9;
+      for (int i = 0; i < 12; ++i) rest(i) += rng.uniform(-0.1, 0.1);
+      const TetGeometry tet = make_tet_geometry(rest);
+      gradient.middleCols<4>(4 * t) = tet.gradient;
+      weight(t) = tet.volume;
+      const double sizes[] = {1e-9, 1e-3, 0.04, 0.35};
+      F.middleCols<3>(3 * t) = make_motion_of(rng, sizes[t % 4]);
+      const PointMotion motion = make_motion(kHencky, F.middleCols<3>(3 * t));
+      R.middleCols<3>(3 * t) = motion.R;
+      strain.col(t) = compute_strain(motion.F, motion.R);
+      for (int k = 0; k < 6; ++k) plastic(k, t) = t % 3 == 0 || t < kLanes ? 0.0 : rng.uniform(-0.4, 0.4);
+      plastic.col(t).head<3>().array() -= plastic.col(t).head<3>().sum() / 3.0;
+      lambda(t) = rng.uniform(1e3, 1e5);
+      mu(t) = rng.uniform(1e3, 1e5);
+      pressure(t) = rng.uniform(-1e3, 1e3);
+      yield(t) = rng.uniform(0.0, 0.3);
+    }
+  }
+  PointMotion motion(int t) const { return make_motion(kHencky, F.middleCols<3>(3 * t)); }
+  Elasticity elasticity(int t) const { return {lambda(t), mu(t)}; }
+  ForceArrays arrays(bool with_pressure) {
+    return {gradient.data(), R.data(),      strain.data(), plastic.data(),
+            weight.data(),   lambda.data(), mu.data(),     with_pressure ? pressure.data() : nullptr,
+            false,           force.data()};
+  }
+};
+
+template <class Body>
+void each_batch(Body body) {
+  OrderedRuns(1).each(kTets, body);
+}
+
+TEST(HenckyLanes, PressAsThePointDoes) {
+  Tets tets;
+  for (const bool with_pressure : {false, true}) {
+    each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      compute_hencky_forces(tets.arrays(with_pressure), begin, end);
+    });
+    for (int t = 0; t < kTets; ++t) {
+      Elasticity e = tets.elasticity(t);
+      if (with_pressure) {
+        e.excess_bulk = tets.pressure(t);
+        e.volume_change = 1.0;
+      }
+      const Mat34 expected = compute_element_force({tets.gradient.middleCols<4>(4 * t), tets.weight(t)},
+                                                   kHencky, tets.motion(t), tets.plastic.col(t), e);
+      EXPECT_LT((tets.force.middleCols<4>(4 * t) - expected).norm(), 1e-12 * expected.norm() + 1e-10) << t;
+    }
+  }
+}
+
+TEST(HenckyLanes, HaveTheEnergyOfThePoint) {
+  Tets tets;
+  for (int t = 0; t < kTets; ++t) {
+    const double expected = tets.weight(t) * compute_energy_density(kHencky, tets.motion(t),
+                                                                    tets.plastic.col(t), tets.elasticity(t));
+    EXPECT_NEAR(compute_hencky_energy(tets.arrays(false), t, t + 1), expected, 1e-12 * expected + 1e-20) << t;
+  }
+}
+
+TEST(HenckyLanes, AreAsStiffAsThePointWithTheRestTurned) {
+  Tets tets;
+  const double exact = 0.7, kept = 0.2;
+  each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    compute_hencky_stiffness({tets.gradient.data(), tets.F.data(), tets.plastic.data(), tets.weight.data(),
+                              tets.lambda.data(), tets.mu.data(), exact, kept, tets.pairs.data()},
+                             begin, end);
+  });
+  for (int t = 0; t < kTets; ++t) {
+    const TetGeometry tet{tets.gradient.middleCols<4>(4 * t), tets.weight(t)};
+    const Elasticity e = tets.elasticity(t);
+    const Mat9 tangent = compute_positive_tangent(kHencky, tets.motion(t), tets.plastic.col(t), e);
+    const Mat12 expected =
+        exact * compute_element_stiffness(tet, tangent) +
+        kept * compute_element_stiffness(tet, tets.motion(t).R, make_isotropic_stiffness(e.lambda, e.mu));
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j) {
+        const Mat3 block = tets.pairs.col(kPairBlocks * t + find_pair(i, j)).reshaped(3, 3);
+        EXPECT_LT((block - expected.block<3, 3>(3 * i, 3 * j)).norm(), 1e-11 * expected.norm()) << t;
+      }
+  }
+}
+
+TEST(HenckyLanes, StiffnessIsNeverNegative) {
+  Tets tets;
+  each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    compute_hencky_stiffness({tets.gradient.data(), tets.F.data(), tets.plastic.data(), tets.weight.data(),
+                              tets.lambda.data(), tets.mu.data(), 1.0, 0.0, tets.pairs.data()},
+                             begin, end);
+  });
+  for (int t = 0; t < kTets; ++t) {
+    Mat12 K = Mat12::Zero();
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) {
+        if (i == j) continue;
+        const Mat3 stored = tets.pairs.col(kPairBlocks * t + find_pair(i, j)).reshaped(3, 3);
+        const Mat3 block = i < j ? stored : Mat3(stored.transpose());
+        K.block<3, 3>(3 * i, 3 * j) = block;
+        K.block<3, 3>(3 * i, 3 * i) -= block;
+      }
+    EXPECT_LT((K - K.transpose()).norm(), 1e-12 * K.norm()) << t;
+    const Eigen::SelfAdjointEigenSolver<Mat12> modes(K);
+    EXPECT_GT(modes.eigenvalues()(0), -1e-11 * modes.eigenvalues()(11)) << t;
+  }
+}
+
+Mat3 find_deviator(const Mat3& a) {
+  return a - a.trace() / 3.0 * Mat3::Identity();
+}
+
+/// ½ ln FₑFₑᵀ in the frame of R, by matrix functions.
+Mat3 find_elastic_strain(const Mat3& stretch, const Vec6& plastic) {
+  const Mat3 metric = (-2.0 * from_mandel(plastic)).exp();
+  return 0.5 * Mat3(stretch * metric * stretch).log();
+}
+
+TEST(HenckyLanes, FlowReturnsToTheYieldAlongTheElasticStrain) {
+  Tets tets;
+  const TensorField before = tets.plastic;
+  int num_flowing = 0;
+  each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    double released[kLanes];
+    const unsigned flowed =
+        flow_by_hencky({tets.strain.data(), tets.plastic.data(), tets.yield.data()}, begin, end, released);
+    for (std::ptrdiff_t t = begin; t < end; ++t) {
+      const Mat3 stretch = Mat3::Identity() + from_mandel(tets.strain.col(t));
+      const Mat3 elastic = find_elastic_strain(stretch, before.col(t));
+      const double norm = find_deviator(elastic).norm();
+      const bool flows = norm > tets.yield(t);
+      EXPECT_EQ((flowed >> (t - begin)) & 1U, flows ? 1U : 0U) << t;
+      num_flowing += flows;
+      if (!flows) {
+        EXPECT_EQ((tets.plastic.col(t) - before.col(t)).norm(), 0.0) << t;
+        continue;
+      }
+      const double share = 1.0 - tets.yield(t) / norm;
+      const Mat3 after = find_elastic_strain(stretch, tets.plastic.col(t));
+      EXPECT_LT((after - (elastic - share * find_deviator(elastic))).norm(), 1e-13) << t;
+      EXPECT_LT(std::abs(tets.plastic.col(t).head<3>().sum()), 1e-15) << t;
+      EXPECT_NEAR(released[t - begin], norm * norm - tets.yield(t) * tets.yield(t), 1e-12 * norm * norm) << t;
+    }
+  });
+  EXPECT_GT(num_flowing, kTets / 4);
+  EXPECT_LT(num_flowing, kTets - kTets / 4);
+}
+
+TEST(HenckyLanes, FlowTakesTheShareThatItIsGiven) {
+  Tets tets;
+  tets.yield.setConstant(1e-3);
+  const TensorField before = tets.plastic;
+  double released[kLanes];
+  each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    flow_by_hencky({tets.strain.data(), tets.plastic.data(), tets.yield.data(), 0.3, false}, begin, end,
+                   released);
+  });
+  for (int t = 0; t < kTets; ++t) {
+    const Mat3 stretch = Mat3::Identity() + from_mandel(tets.strain.col(t));
+    const Mat3 elastic = find_elastic_strain(stretch, before.col(t));
+    if (!(find_deviator(elastic).norm() > 1e-3)) continue;
+    const Mat3 after = find_elastic_strain(stretch, tets.plastic.col(t));
+    EXPECT_LT((after - (elastic - 0.3 * find_deviator(elastic))).norm(), 1e-13) << t;
+  }
+}
+
+}  // namespace
+}  // namespace argil::solid
