@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kStep = 0.002;         // of a ball between two looks, over its radius
 constexpr double kPlaceSpacing = 0.25;  // of touched places, over their radius
-constexpr double kGrowth = 0.9;         // of the size in h₀, per distance in contact radii
+constexpr double kGrowth = 2.4;         // of the size in h₀, per distance in contact radii
 constexpr double kCellsPerRadius = 2.0;
 constexpr double kPlainGrowth = 0.3;  // of the size per distance, where no radius of contact is known
 constexpr double kMostTets = 5'000'000;
@@ -228,8 +228,9 @@ void Halvings::renumber_with_middles(std::vector<int>& nodes) const {
 namespace {
 
 /// The surface that is touched, as it is before any step.
-embed::TriangleTree make_touched_tree(const sim::Body& body) {
-  if (body.skin.num_triangles() > 0) return embed::TriangleTree(body.skin);
+embed::TriangleTree make_touched_tree(const Scenario& s, const sim::Body& body) {
+  if (body.skin.num_triangles() > 0 && s.params.contact_surface != sim::SurfaceKind::cage)
+    return embed::TriangleTree(body.skin);
   return embed::TriangleTree({body.mesh.vertices, mesh::make_topology(body.mesh).boundary});
 }
 
@@ -269,7 +270,8 @@ std::string propose_smaller_cells(const Scenario& s, double radius) {
 std::string describe_contact_cells(const Scenario& s, const device::Trace& trace,
                                    const mesh::TriangleMesh& tool_surface, const sim::Body& body) {
   constexpr double kEnough = 2.0, kOfLinearTets = 0.5, kOfQuadraticTets = 0.06;
-  const std::vector<sim::TouchedPlace> places = find_places(s, trace, tool_surface, make_touched_tree(body));
+  const std::vector<sim::TouchedPlace> places =
+      find_places(s, trace, tool_surface, make_touched_tree(s, body));
   double fewest = std::numeric_limits<double>::infinity();
   double radius = 0.0;
   for (const sim::TouchedPlace& place : places) {
@@ -299,9 +301,9 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
                                     std::vector<std::string>& notes) {
   const bool has_skin = body.skin.num_triangles() > 0;
-  const embed::TriangleTree surface = make_touched_tree(body);
   CellSizes sizes{s.body.cells.near_tool, s.body.cells.growth, {}, s.body.cells.regions};
-  sizes.places = touched_places ? *touched_places : find_places(s, trace, tool_surface, surface);
+  sizes.places =
+      touched_places ? *touched_places : find_places(s, trace, tool_surface, make_touched_tree(s, body));
   if (sizes.places.empty() && sizes.regions.empty()) {
     notes.push_back("cells: even, as the motion does not reach the body at rest");
     return std::nullopt;
@@ -314,8 +316,11 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
   Whole whole{body.mesh, {}};
   if (s.body.kind == BodyKind::shape && !has_skin)
     whole.boundary_point = shapes::make_boundary_point(s.body.shape);
-  else if (has_skin && s.body.fit == embed::Fit::surface)
-    whole.boundary_point = [&surface](const Vec3& a, const Vec3& b) { return find_on_skin(surface, a, b); };
+  std::optional<embed::TriangleTree> skin;
+  if (has_skin && s.body.fit == embed::Fit::surface) {
+    skin.emplace(body.skin);
+    whole.boundary_point = [&skin](const Vec3& a, const Vec3& b) { return find_on_skin(*skin, a, b); };
+  }
   mesh::BisectedMesh bisected = halve(whole, sizes, has_target ? s.body.target_tets : 0);
   if (bisected.mesh.num_tets() > kMostTets)
     throw InputError(s.file, "/body/cells", "asks for cells that make more than 5 million tets",
