@@ -230,7 +230,7 @@ void bind_material(Binder& b, sim::Params& p) {
   b.number("/material/plasticity/strength_Pa", y.strength, not_negative(), "Pa",
            "c_u, undrained shear strength of dry clay (von Mises; √3 c_u in tension), in the place of yield; "
            "0: by yield. Water lowers it as it does modulus times yield strain. It makes /dynamics/model "
-           "hencky, form j2 and /body/cells/kind graded where they are not given.");
+           "hencky, form j2, /body/cells/kind graded and fit surface where they are not given.");
   b.number("/material/plasticity/creep_per_s", y.creep_per_s, not_negative(), "1/s",
            "Rate at which the elastic strain flows away.");
   b.number("/material/plasticity/max", y.max, not_negative(), "",

@@ -52,16 +52,18 @@ void choose_body(Scenario& s, const Json& document) {
 }
 
 /// Which keys are asked for depends on the mode, so it is read first.
-/// Clay whose strength is a stress flows by von Mises's law at large strain, in cells that are small where the tool
-/// comes, where nothing else is asked for. Cells that a file gives stay.
+/// Clay whose strength is a stress flows by von Mises's law at large strain, in a body that is the surface
+/// and whose cells are small where the tool comes, where nothing else is asked for. Cells that a file gives
+/// stay.
 void choose_flow(Scenario& s, const Json& document) {
   const Json::json_pointer place("/material/plasticity/strength_Pa");
   if (!document.contains(place) || !document[place].is_number() || !(document[place].get<double>() > 0.0))
     return;
   s.params.plasticity.form = material::FlowForm::j2;
   s.params.solid.model = solid::StrainModel::hencky;
-  if (s.body.kind != BodyKind::mesh && !document.contains(Json::json_pointer("/body/surface/cage")))
-    s.body.cells.kind = CellKind::graded;
+  if (s.body.kind == BodyKind::mesh || document.contains(Json::json_pointer("/body/surface/cage"))) return;
+  s.body.cells.kind = CellKind::graded;
+  s.body.fit = embed::Fit::surface;
 }
 
 void choose_mode(Scenario& s, const Json& document) {

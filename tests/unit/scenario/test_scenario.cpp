@@ -282,6 +282,7 @@ TEST_F(ScenarioFile, AStrengthInPascalsMakesClayOfLargeStrain) {
   EXPECT_EQ(s.params.solid.model, solid::StrainModel::hencky);
   EXPECT_EQ(s.params.plasticity.form, material::FlowForm::j2);
   EXPECT_EQ(s.body.cells.kind, CellKind::graded);
+  EXPECT_EQ(s.body.fit, embed::Fit::surface);
   EXPECT_EQ(load({}).body.cells.kind, CellKind::even);
   const std::vector<std::string> own = {plain[0],
                                         plain[1],
