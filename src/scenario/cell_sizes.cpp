@@ -19,6 +19,7 @@ namespace {
 constexpr double kStep = 0.002;         // of a ball between two looks, over its radius
 constexpr double kPlaceSpacing = 0.25;  // of touched places, over their radius
 constexpr double kGrowth = 2.4;         // of the size in h₀, per distance in contact radii
+constexpr double kSteepest = 0.8;       // of the size per distance: steeper, halving makes no fewer tets
 constexpr double kCellsPerRadius = 2.0;
 constexpr double kPlainGrowth = 0.3;  // of the size per distance, where no radius of contact is known
 constexpr double kMostTets = 5'000'000;
@@ -127,7 +128,7 @@ mesh::BisectedMesh halve(const Whole& whole, CellSizes& sizes, int target_tets) 
   const auto with_near = [radius, &sizes](double near) {
     CellSizes with = sizes;
     with.near = near;
-    if (!(with.growth > 0.0)) with.growth = kGrowth * near / radius;
+    if (!(with.growth > 0.0)) with.growth = std::min(kSteepest, kGrowth * near / radius);
     return with;
   };
   if (sizes.near > 0.0 || target_tets == 0) {

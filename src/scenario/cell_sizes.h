@@ -57,8 +57,9 @@ struct Halvings {
 /// that argil makes gets about as many tets as wanted; in a mesh file's, so that two cells lie along the
 /// largest radius of a touched place. Where stresses fall as 1/r², sizes that grow as r^{6/5} make the error
 /// of linear tets least; here they are h₀ up to 1.5 a from the middle of a patch of radius a, and then grow
-/// by 2.4 h₀/a of the distance: under clay that flows twice as fast as elastic tips want, which hardly notice. None, and the reason in `notes`, where neither motion nor regions say where,
-/// or no tets are left to halve.
+/// by 2.4 h₀/a of the distance, at most 0.8: under clay that flows twice as fast as elastic tips want, which
+/// hardly notice. None, and the reason in `notes`, where neither motion nor regions say where, or no tets are
+/// left to halve.
 std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
