@@ -340,7 +340,9 @@ void check_plasticity(Scenario& s) {
   // F_p = 1 + ε_p must stay a stretch: no eigenvalue of ε_p may reach −1.
   const double most = law.norm == material::StrainNorm::frobenius ? 1.0 : std::sqrt(0.5);
   const solid::ElasticLaw& elastic = find_law(s.params.solid.model);
-  if (elastic.plastic_split == solid::PlasticSplit::multiplicative && !(law.max > 0.0 && law.max < most))
+  const bool flows = s.mode == Mode::dynamic && (law.form == material::FlowForm::j2 || law.creep_per_s > 0.0);
+  if (elastic.plastic_split == solid::PlasticSplit::multiplicative &&
+      ((flows && !(law.max > 0.0)) || !(law.max < most)))
     throw InputError(s.file, "/material/plasticity/max",
                      Json(law.max).dump() + " is outside (0, " + Json(most).dump() + ") for " + elastic.name +
                          ", whose plastic stretch would lose a dimension",
