@@ -137,6 +137,7 @@ std::string name_result(const scenario::Scenario& s, const RunOptions& options) 
 void print_notes(const scenario::Scene& scene, const RunOptions& options) {
   if (options.quiet) return;
   for (const std::string& note : scene.notes) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
+  if (!scene.contact_cells.empty()) std::fprintf(stderr, "argil: note: %s\n", scene.contact_cells.c_str());
 }
 
 int run(const RunOptions& options) {

@@ -311,8 +311,7 @@ Scene build_scene(const Scenario& s, const std::vector<sim::TouchedPlace>* place
   take_fields(s, body);
   body.topology = mesh::make_topology(body.mesh);
   if (body.skin.num_triangles() > 0) embed_skin(s, scene);
-  const std::string cells = describe_contact_cells(s, scene.trace, scene.tool, body);
-  if (!cells.empty()) scene.notes.push_back(cells);
+  scene.contact_cells = describe_contact_cells(s, scene.trace, scene.tool, body);
   check_medium(s, scene);
   check_diffusion(s, body);
   fix_and_load(s, halvings, body);
