@@ -2,6 +2,7 @@
 
 #include "base/mandel.h"
 #include "solid/hencky_point.h"
+#include "solid/lane_algebra.h"
 
 namespace argil::solid {
 namespace {
@@ -25,49 +26,18 @@ ARGIL_INLINE bool read_plastic(const double* from, std::ptrdiff_t begin, std::pt
 
 /// S⁻¹ of S = 1 + ε, as a 3×3.
 ARGIL_INLINE void set_inverse(const Lanes* strain, Real33<Lanes>& inverse) {
-  const Lanes s0 = strain[0] + 1.0, s1 = strain[1] + 1.0, s2 = strain[2] + 1.0;
-  const Real33<Lanes> S = {{s0, strain[5], strain[4], strain[5], s1, strain[3], strain[4], strain[3], s2}};
+  Real33<Lanes> S;
   Lanes determinant;
+  set_symmetric(strain, S);
+  for (int k = 0; k < 9; k += 4) S.m[k] += 1.0;
   set_cofactor(S, inverse, determinant);
   const Lanes scale = 1.0 / determinant;
   for (int k = 0; k < 9; ++k) inverse.m[k] *= scale;
 }
 
-/// c = ab.
-ARGIL_INLINE void multiply(const Real33<Lanes>& a, const Real33<Lanes>& b, Real33<Lanes>& c) {
-  for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row)
-      c.m[3 * column + row] = a.m[row] * b.m[3 * column] + a.m[3 + row] * b.m[3 * column + 1] +
-                              a.m[6 + row] * b.m[3 * column + 2];
-}
-
-/// c = abᵀ.
-ARGIL_INLINE void multiply_transposed(const Real33<Lanes>& a, const Real33<Lanes>& b, Real33<Lanes>& c) {
-  for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row)
-      c.m[3 * column + row] =
-          a.m[row] * b.m[column] + a.m[3 + row] * b.m[3 + column] + a.m[6 + row] * b.m[6 + column];
-}
-
-/// c = aᵀ v for four columns v.
-ARGIL_INLINE void turn_back(const Real33<Lanes>& a, const Lanes* v, Lanes* turned) {
-  for (int i = 0; i < 4; ++i)
-    for (int k = 0; k < 3; ++k)
-      turned[3 * i + k] =
-          a.m[3 * k] * v[3 * i] + a.m[3 * k + 1] * v[3 * i + 1] + a.m[3 * k + 2] * v[3 * i + 2];
-}
-
 /// S − 1 of F = R S.
 ARGIL_INLINE void set_strain(const Real33<Lanes>& R, const Real33<Lanes>& F, Lanes* strain) {
-  constexpr int kRow[6] = {0, 1, 2, 1, 0, 0}, kColumn[6] = {0, 1, 2, 2, 2, 1};
-  for (int k = 0; k < 6; ++k) {
-    const Lanes* r = R.m + 3 * kRow[k];
-    const Lanes* f = F.m + 3 * kColumn[k];
-    const Lanes* r_other = R.m + 3 * kColumn[k];
-    const Lanes* f_other = F.m + 3 * kRow[k];
-    strain[k] = 0.5 * (r[0] * f[0] + r[1] * f[1] + r[2] * f[2] +
-                       (r_other[0] * f_other[0] + r_other[1] * f_other[1] + r_other[2] * f_other[2]));
-  }
+  set_turned_tensor(R, F, strain);
   for (int k = 0; k < 3; ++k) strain[k] -= 1.0;
 }
 
@@ -142,18 +112,13 @@ ARGIL_EVERY_PROCESSOR void compute_hencky_forces(const ForceArrays& tets, std::p
   Lanes stress[6];
   for (int k = 0; k < 6; ++k) stress[k] = weight * (2.0 * mu) * elastic[k];
   for (int k = 0; k < 3; ++k) stress[k] += pressure;
-  const Real33<Lanes> tau = {
-      {stress[0], stress[5], stress[4], stress[5], stress[1], stress[3], stress[4], stress[3], stress[2]}};
-  Real33<Lanes> inverse, P, piola;
+  Real33<Lanes> tau, inverse, P, piola;
+  set_symmetric(stress, tau);
   set_inverse(strain, inverse);
   multiply(tau, inverse, P);
   multiply(R, P, piola);
   Lanes force[12];
-  for (int i = 0; i < 4; ++i) {
-    const Lanes* g = gradient + 3 * i;
-    for (int k = 0; k < 3; ++k)
-      force[3 * i + k] = piola.m[k] * g[0] + piola.m[3 + k] * g[1] + piola.m[6 + k] * g[2];
-  }
+  turn(piola, gradient, force);
   write_lanes<12>(force, begin, end, tets.corner_force);
 }
 
@@ -208,9 +173,8 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
   Lanes strain_squares[6];
   set_symmetric_product(strain, strain, strain_squares);
   for (int k = 0; k < 6; ++k) metric[k] -= 2.0 * strain[k] + strain_squares[k];
-  const Real33<Lanes> middle = {
-      {metric[0], metric[5], metric[4], metric[5], metric[1], metric[3], metric[4], metric[3], metric[2]}};
-  Real33<Lanes> inverse, half, whole;
+  Real33<Lanes> middle, inverse, half, whole;
+  set_symmetric(metric, middle);
   set_inverse(strain, inverse);
   multiply(inverse, middle, half);
   multiply(half, inverse, whole);
@@ -270,10 +234,7 @@ ARGIL_EVERY_PROCESSOR void compute_hencky_stiffness(const TangentArrays& tets, s
   set_inverse(strain, inverse);
   multiply(R, stretch.N, directions);
   Lanes moved[12], g[12], c[12];
-  for (int i = 0; i < 4; ++i)
-    for (int k = 0; k < 3; ++k)
-      moved[3 * i + k] = inverse.m[k] * gradient[3 * i] + inverse.m[3 + k] * gradient[3 * i + 1] +
-                         inverse.m[6 + k] * gradient[3 * i + 2];
+  turn(inverse, gradient, moved);
   turn_back(stretch.N, moved, g);
   turn_back(stretch.N, gradient, c);
   const PairBlock pair{tangent, exact_lambda, tets.kept != 0.0, kept_lambda, kept_mu};

@@ -1,18 +1,11 @@
 #include "solid/tet_lanes.h"
 
 #include "base/mandel.h"
+#include "solid/lane_algebra.h"
 #include "solid/polar_newton.h"
 
 namespace argil::solid {
 namespace {
-
-/// b = a g for four columns g.
-ARGIL_INLINE void turn_gradient(const Real33<Lanes>& a, const Lanes* gradient, Lanes* turned) {
-  for (int i = 0; i < 4; ++i) {
-    const Lanes* g = gradient + 3 * i;
-    for (int k = 0; k < 3; ++k) turned[3 * i + k] = a.m[k] * g[0] + a.m[3 + k] * g[1] + a.m[6 + k] * g[2];
-  }
-}
 
 /// Σ uᵢ ⊗ ∇Nᵢ of tets begin … end−1.
 ARGIL_INLINE void set_gradient(const double* u, const int* of_tet, const Lanes* gradient,
@@ -31,15 +24,8 @@ ARGIL_INLINE void set_gradient(const double* u, const int* of_tet, const Lanes* 
 
 /// sym(RᵀH), Mandel.
 ARGIL_INLINE void set_turned_strain(const Real33<Lanes>& R, const Real33<Lanes>& H, Lanes* strain) {
-  Lanes S[9];
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      S[3 * i + j] =
-          R.m[3 * i] * H.m[3 * j] + R.m[3 * i + 1] * H.m[3 * j + 1] + R.m[3 * i + 2] * H.m[3 * j + 2];
-  for (int k = 0; k < 3; ++k) strain[k] = S[4 * k];
-  strain[3] = kSqrt2 * (0.5 * (S[5] + S[7]));
-  strain[4] = kSqrt2 * (0.5 * (S[2] + S[6]));
-  strain[5] = kSqrt2 * (0.5 * (S[1] + S[3]));
+  set_turned_tensor(R, H, strain);
+  for (int k = 3; k < 6; ++k) strain[k] = kSqrt2 * strain[k];
 }
 
 /// Tet t, which leaves its frame.
@@ -73,7 +59,7 @@ ARGIL_INLINE void turn_frames(const TetArrays& tets, const Real33<Lanes>& R, con
   const Lanes is_turned = squares > tets.frame_tolerance * tets.frame_tolerance ? Lanes{} + 1.0 : Lanes{};
   if (!any(is_turned)) return;
   Lanes turned[12];
-  turn_gradient(R, gradient, turned);
+  turn(R, gradient, turned);
   for (std::ptrdiff_t t = begin; t < end; ++t) {
     const std::ptrdiff_t lane = t - begin;
     if (is_turned[lane] == 0.0) continue;
@@ -193,7 +179,7 @@ ARGIL_EVERY_PROCESSOR void compute_corner_forces(const ForceArrays& tets, std::p
       piola.m[3 * c + r] =
           weight * (R.m[r] * P.m[3 * c] + R.m[3 + r] * P.m[3 * c + 1] + R.m[6 + r] * P.m[3 * c + 2]);
   Lanes force[12];
-  turn_gradient(piola, gradient, force);
+  turn(piola, gradient, force);
   write_lanes<12>(force, begin, end, tets.corner_force);
 }
 

@@ -11,7 +11,6 @@
 #include "base/ordered_loops.h"
 #include "base/rng.h"
 #include "solid/element.h"
-#include "solid/hencky_lanes.h"
 
 namespace argil::solid {
 namespace {
