@@ -272,11 +272,13 @@ std::string describe_contact_cells(const Scenario& s, const device::Trace& trace
                                    const mesh::TriangleMesh& tool_surface, const sim::Body& body) {
   constexpr double kEnough = 2.0, kOfLinearTets = 0.5, kOfQuadraticTets = 0.06;
   const std::vector<sim::TouchedPlace> places =
-      find_places(s, trace, tool_surface, make_touched_tree(s, body));
+      body.touched_places.empty() ? find_places(s, trace, tool_surface, make_touched_tree(s, body))
+                                  : body.touched_places;
+  const double largest = find_largest_radius(places);
   double fewest = std::numeric_limits<double>::infinity();
   double radius = 0.0;
   for (const sim::TouchedPlace& place : places) {
-    if (place.radius < 0.5 * find_largest_radius(places)) continue;
+    if (place.radius < 0.5 * largest) continue;
     const double cells = place.radius / find_cell_size(body.mesh, place.position);
     if (!(cells < fewest)) continue;
     fewest = cells;

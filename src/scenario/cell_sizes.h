@@ -57,9 +57,9 @@ struct Halvings {
 /// that argil makes gets about as many tets as wanted; in a mesh file's, so that two cells lie along the
 /// largest radius of a touched place. Where stresses fall as 1/r², sizes that grow as r^{6/5} make the error
 /// of linear tets least; here they are h₀ up to 1.5 a from the middle of a patch of radius a, and then grow
-/// by 2.4 h₀/a of the distance, at most 0.8: under clay that flows twice as fast as elastic tips want, which
-/// hardly notice. None, and the reason in `notes`, where neither motion nor regions say where, or no tets are
-/// left to halve.
+/// by 2.4 h₀/a of the distance, at most 0.8. Clay that flows wants them to grow so fast; elastic clay hardly
+/// minds (results/clay, results/contact). None, and the reason in `notes`, where neither motion nor regions
+/// say where, or no tets are left to halve.
 std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
@@ -67,9 +67,10 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
 
 /// How many cells lie along the radius of contact, where they are fewest of the places that the motion
 /// presses at least half as wide as at its widest; what error that makes of an elastic force, and what mends
-/// it. Of linear tets spheres, cones and punches have 18, 6 and 2 % too much at 2, 4 and 8 cells, ½ c^(−3/2)
-/// (results/contact); below one cell a face of the size h bears as E h, where Hertz's patch bears as E a.
-/// Empty where the motion does not meet the body at rest.
+/// it. With linear tets a sphere or cone is felt 18, 6 and 2 % too hard at 2, 4 and 8 cells, ½ c^(−3/2)
+/// (results/contact). Below one cell a face of the size h bears as E h, where Hertz's patch bears as E a.
+/// Those of cells that were graded are the places that they were graded by. Empty where the motion does not
+/// meet the body at rest.
 std::string describe_contact_cells(const Scenario& s, const device::Trace& trace,
                                    const mesh::TriangleMesh& tool_surface, const sim::Body& body);
 
