@@ -15,6 +15,7 @@ Body::Body(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vecto
       trial(committed),
       kinematics(model.elements, params.model, has_lagging_frames(model), model.keeps_tet_stiffness(),
                  threads),
+      elastic(model.has_logarithmic_tets() ? model.elements.num_tets() : 0),
       system(model, materials),
       energies(model.elements) {
   const Eigen::Index num_nodes = model.elements.num_nodes();

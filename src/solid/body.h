@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solid/contacts.h"
+#include "solid/elastic_strains.h"
 #include "solid/energy.h"
 #include "solid/forces.h"
 #include "solid/model.h"
@@ -26,6 +27,7 @@ struct Body {
   SolidState trial;                             ///< its iterate
   const TensorField* plastic_strain = nullptr;  ///< of the step
   Kinematics kinematics;                        ///< at the iterate
+  mutable ElasticStrains elastic;               ///< there, with the step's plastic strain
   Prediction prediction;
   Forces forces;
   ContactActivity contacts;
@@ -44,7 +46,7 @@ struct Body {
   bool has_implicit_contact() const { return model.params.solves_contact() && !prediction.is_static; }
   Strained strained() const { return strained(*plastic_strain); }
   Strained strained(const TensorField& strain) const {
-    return {model, materials, kinematics, strain, forces.volume};
+    return {model, materials, kinematics, strain, forces.volume, elastic.arrays()};
   }
   StepContacts step_contacts(std::span<const PointStiffness> list) const { return {list, committed.x}; }
 };

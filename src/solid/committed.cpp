@@ -30,10 +30,11 @@ void copy_to_committed(Body& body, const Part& part, const SolidState& state,
   });
 }
 
-/// Rows of the matrix and sums of energies are those of another state.
+/// Rows of the matrix, elastic strains and sums of energies are those of another state.
 void mark_all_changed(Body& body) {
   body.system.mark_all_changed();
   std::fill(body.energies.is_batch_new.begin(), body.energies.is_batch_new.end(), char{1});
+  body.elastic.forget_all();
 }
 
 void serialize_solvers(Archive& archive, Body& body) {

@@ -24,6 +24,21 @@ ARGIL_INLINE bool read_plastic(const double* from, std::ptrdiff_t begin, std::pt
   return any(size);
 }
 
+/// Elastic strain ½ ln b of tets, which is found where it is not known.
+ARGIL_INLINE void read_elastic(const double* strain, const double* plastic_strain, const ElasticArrays& found,
+                               std::ptrdiff_t begin, std::ptrdiff_t end, Lanes* elastic) {
+  const std::ptrdiff_t last = end - 1;
+  char* is_known = found.is_known ? found.is_known + begin / kLanes : nullptr;
+  if (is_known && *is_known) return read_lanes<6>(found.strain, begin, last, elastic);
+  Lanes whole[6], plastic[6];
+  read_tensor(strain, begin, last, whole);
+  const bool is_plastic = read_plastic(plastic_strain, begin, last, plastic);
+  find_elastic_strain(whole, is_plastic ? plastic : nullptr, elastic);
+  if (!is_known) return;
+  write_lanes<6>(elastic, begin, end, found.strain);
+  *is_known = 1;
+}
+
 /// S⁻¹ of S = 1 + ε, as a 3×3.
 ARGIL_INLINE void set_inverse(const Lanes* strain, Real33<Lanes>& inverse) {
   Real33<Lanes> S;
@@ -102,9 +117,8 @@ ARGIL_EVERY_PROCESSOR void compute_hencky_forces(const ForceArrays& tets, std::p
   read_lanes<1>(tets.weight, begin, last, &weight);
   read_lanes<9>(tets.R, begin, last, R.m);
   read_lanes<12>(tets.gradient, begin, last, gradient);
-  Lanes plastic[6], elastic[6], pressure = {};
-  const bool is_plastic = read_plastic(tets.plastic_strain, begin, last, plastic);
-  find_elastic_strain(strain, is_plastic ? plastic : nullptr, elastic);
+  Lanes elastic[6], pressure = {};
+  read_elastic(tets.strain, tets.plastic_strain, tets.elastic, begin, end, elastic);
 
   // V R τ S⁻¹ ∇Nᵢ.
   if (tets.pressure) read_lanes<1>(tets.pressure, begin, last, &pressure);
@@ -125,14 +139,12 @@ ARGIL_EVERY_PROCESSOR void compute_hencky_forces(const ForceArrays& tets, std::p
 ARGIL_EVERY_PROCESSOR double compute_hencky_energy(const ForceArrays& tets, std::ptrdiff_t begin,
                                                    std::ptrdiff_t end) {
   const std::ptrdiff_t last = end - 1;
-  Lanes strain[6], lambda, mu, weight;
-  read_tensor(tets.strain, begin, last, strain);
+  Lanes lambda, mu, weight;
   read_lanes<1>(tets.lambda, begin, last, &lambda);
   read_lanes<1>(tets.mu, begin, last, &mu);
   read_lanes<1>(tets.weight, begin, last, &weight);
-  Lanes plastic[6], elastic[6];
-  const bool is_plastic = read_plastic(tets.plastic_strain, begin, last, plastic);
-  find_elastic_strain(strain, is_plastic ? plastic : nullptr, elastic);
+  Lanes elastic[6];
+  read_elastic(tets.strain, tets.plastic_strain, tets.elastic, begin, end, elastic);
   Lanes squares = {};
   for (int k = 0; k < 3; ++k) squares += elastic[k] * elastic[k] + 2.0 * (elastic[k + 3] * elastic[k + 3]);
   const Lanes trace = elastic[0] + elastic[1] + elastic[2];
@@ -147,11 +159,9 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
   const std::ptrdiff_t last = end - 1;
   const Lanes zero = {};
   const Lanes one = zero + 1.0;
-  Lanes strain[6], before[6] = {}, elastic[6], deviator[6], yield, norm;
-  read_tensor(points.strain, begin, last, strain);
+  Lanes elastic[6], deviator[6], yield, norm;
   read_lanes<1>(points.yield, begin, last, &yield);
-  const bool is_plastic = read_plastic(points.plastic_strain, begin, last, before);
-  find_elastic_strain(strain, is_plastic ? before : nullptr, elastic);
+  read_elastic(points.strain, points.plastic_strain, points.elastic, begin, end, elastic);
   const Lanes mean = (elastic[0] + elastic[1] + elastic[2]) / 3.0;
   Lanes squares = {};
   for (int k = 0; k < 6; ++k) deviator[k] = k < 3 ? elastic[k] - mean : elastic[k];
@@ -170,7 +180,8 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
   Lanes left[6], metric[6], plastic[6];
   for (int k = 0; k < 6; ++k) left[k] = 2.0 * (elastic[k] - share * deviator[k]);
   set_exponential(left, metric);
-  Lanes strain_squares[6];
+  Lanes strain[6], strain_squares[6];
+  read_tensor(points.strain, begin, last, strain);
   set_symmetric_product(strain, strain, strain_squares);
   for (int k = 0; k < 6; ++k) metric[k] -= 2.0 * strain[k] + strain_squares[k];
   Real33<Lanes> middle, inverse, half, whole;

@@ -19,6 +19,7 @@ struct FlowArrays {
   const double* yield = nullptr;     ///< ‖dev ε‖ at which a point flows, 1 a point
   double most = 1.0;                 ///< largest share of the deviator that flows
   bool stops_at_yield = true;        ///< no more flows than what is beyond the yield
+  ElasticArrays elastic = {};        ///< before the flow
 };
 
 /// Radial return of points begin … end−1, at most kLanes of them, at held F; bit p − begin is set where p

@@ -25,10 +25,11 @@ void set_swelling(Body& body, int tet, double volume_ratio) {
 }
 
 void note_flow(Body& body, const std::vector<char>& is_flowing) {
-  if (!body.model.keeps_tet_stiffness()) return;
+  if (body.elastic.is_empty()) return;
   const auto num_tets = static_cast<std::size_t>(body.model.elements.num_tets());
   for (std::size_t run = 0; run < is_flowing.size(); ++run) {
     if (is_flowing[run] == 0) continue;
+    body.elastic.forget(static_cast<std::ptrdiff_t>(run));
     const std::size_t first = kLanes * run;
     for (std::size_t t = first; t < std::min(first + kLanes, num_tets); ++t)
       body.system.is_tet_changed[t] = 1;

@@ -53,6 +53,12 @@ bool Model::keeps_tet_stiffness() const {
          params.iteration == Iteration::one && !has_only_diagonal();
 }
 
+bool Model::has_logarithmic_tets() const {
+  const ElasticLaw& law = find_law(params.model);
+  return params.element != ElementKind::p2 && law.lanes.forces &&
+         law.plastic_split == PlasticSplit::logarithmic;
+}
+
 Vec3 find_free_part(const Model& model, const Vec3& force, Eigen::Index node) {
   return (model.constraints.support.col(node).array() >= 0).select(Vec3::Zero(), force);
 }

@@ -13,6 +13,7 @@ StepStatus update_kinematics(Body& body, const Part& part, const Points& x, cons
   kinematics.update(body.model.elements, body.materials.gradient(), x,
                     {part.batches, frames.keeps_frames, frames.tolerance, body.system.is_tet_changed,
                      body.energies.is_batch_new});
+  body.elastic.forget(part.batches);
   const double least = kinematics.min_volume_ratio();
   // Strain of the linear model has no inside to turn out; in statics its solution is what was asked for.
   const bool may_invert = body.prediction.is_static && find_law(params.model).is_linear;

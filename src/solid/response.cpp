@@ -13,6 +13,7 @@ namespace argil::solid {
 void prepare_response(Body& body, const Part& part, const SolidState& state, double step_s) {
   ARGIL_ASSERT(!body.is_explicit());
   body.plastic_strain = &state.plastic_strain;
+  body.elastic.forget_all();
   store_nodal_stiffness(body.model, body.materials, body.system);  // its solves are exact ones
   body.prediction.is_static = false;
   body.prediction.tau = find_tau(body.model, state, step_s);

@@ -33,6 +33,7 @@ StepStatus iterate(Body& body, const Part& whole, const StepLoads& loads, const 
 
 void begin(Body& body, const StepLoads& loads, const SolidState& state) {
   body.plastic_strain = &state.plastic_strain;
+  body.elastic.forget_all();
   body.is_state_changed = true;
   store_nodal_stiffness(body.model, body.materials, body.system);
   if (!body.history.static_solver)

@@ -23,11 +23,17 @@ bool has_plain_tets(const Model& model, const Materials& materials) {
 }
 
 ForceArrays make_force_arrays(const Strained& body, double* corner_force) {
-  return {body.materials.gradient().data(), body.kinematics.rotation().data(),
-          body.kinematics.strain().data(),  body.plastic_strain.data(),
-          body.materials.weight().data(),   body.materials.own_lambda().data(),
-          body.materials.mu().data(),       body.materials.nodal() ? body.volume.pressure.data() : nullptr,
-          find_law(body.law()).is_linear,   corner_force};
+  return {body.materials.gradient().data(),
+          body.kinematics.rotation().data(),
+          body.kinematics.strain().data(),
+          body.plastic_strain.data(),
+          body.materials.weight().data(),
+          body.materials.own_lambda().data(),
+          body.materials.mu().data(),
+          body.materials.nodal() ? body.volume.pressure.data() : nullptr,
+          find_law(body.law()).is_linear,
+          corner_force,
+          body.elastic};
 }
 
 void compute_volume_changes(const Strained& body, Field& change) {

@@ -20,6 +20,7 @@ struct Strained {
   const Kinematics& kinematics;
   const TensorField& plastic_strain;  ///< ε_p of each point
   const VolumeChange& volume;
+  ElasticArrays elastic = {};  ///< as far as they are known
 
   StrainModel law() const { return model.params.model; }
   Elasticity elasticity(int tet) const;

@@ -48,6 +48,12 @@ struct StrainArrays {
 /// sym(RᵀH), H = Σ uᵢ ⊗ ∇Nᵢ, of tets begin … end−1, at most kLanes of them.
 void compute_strains(const StrainArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
 
+/// Elastic strains that a law finds by a logarithm, once until their tets move or flow; null: every time.
+struct ElasticArrays {
+  double* strain = nullptr;  ///< 11 22 33 23 13 12, 6 a tet
+  char* is_known = nullptr;  ///< of each run of kLanes tets; set to 1 where they were found
+};
+
 /// What forces are computed from.
 struct ForceArrays {
   const double* gradient = nullptr;        ///< 12 a tet
@@ -60,6 +66,7 @@ struct ForceArrays {
   const double* pressure = nullptr;        ///< added to the stress, 1 a tet [Pa]; may be null: none
   bool is_linear = false;                  ///< R = 1 has no derivative
   double* corner_force = nullptr;          ///< 12 a tet [N]
+  ElasticArrays elastic = {};
 };
 
 /// fᵢ = V P ∇Nᵢ of the isotropic linear and corotational laws, as compute_piola has them.
