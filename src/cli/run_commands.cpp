@@ -80,8 +80,11 @@ void show(const run::RunOptions& options) {
                run::describe_contact_stiffness(body, s.params.contact).c_str());
 }
 
+/// Reads and builds what a run would.
 int validate(const run::RunOptions& options) {
   const scenario::Scenario s = run::load(options);
+  const scenario::Scene scene = scenario::build_scene(s);
+  if (!scene.contact_cells.empty()) std::fprintf(stderr, "argil: note: %s\n", scene.contact_cells.c_str());
   for (const std::string& warning : s.warnings) std::fprintf(stderr, "argil: warning: %s\n", warning.c_str());
   std::printf("%s: valid\n", s.file.c_str());
   return ExitCode::kDone;

@@ -179,8 +179,8 @@ void describe_timing(std::ostream& out, std::vector<std::pair<std::string, doubl
 void describe_provenance(std::ostream& out, const ResultHeader& header) {
   for (const auto& [name, text] : header.provenance) {
     if (name == "about" || name == "scenario") continue;
-    if (name == "contact") {
-      out << label("contact law") << text << '\n';
+    if (name == "contact" || name == "contact_cells") {
+      out << label(name == "contact" ? "contact law" : "note") << text << '\n';
       continue;
     }
     std::istringstream lines(text);

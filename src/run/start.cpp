@@ -49,6 +49,7 @@ output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulat
                        {"notes", notes}};
   if (std::string text = describe_contact_stiffness(simulation.body_side(), s.params.contact); !text.empty())
     header.provenance.emplace_back("contact", std::move(text));
+  if (!scene.contact_cells.empty()) header.provenance.emplace_back("contact_cells", scene.contact_cells);
   for (const auto& [name, text] : identity.provenance()) header.provenance.emplace_back(name, text);
   return header;
 }

@@ -141,9 +141,10 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
   b.integer("/body/surface/target_tets", body.target_tets, between(100, 5e6),
             "Wanted number of tets of a cage made now.")
       .applies = only(BodyKind::surface);
-  b.choice<CellKind>("/body/cells/kind", body.cells.kind,
-                     {{CellKind::even, "even"}, {CellKind::graded, "graded"}},
-                     "Cells of one size, or smaller ones where the tool's motion meets the body.");
+  b.choice<CellKind>(
+      "/body/cells/kind", body.cells.kind, {{CellKind::even, "even"}, {CellKind::graded, "graded"}},
+      "Cells of one size, or smaller ones where the tool's motion meets the body. Where it is not given: "
+      "even with the pairs' law, in statics, of clay with a yield strain and of cells from a file.");
   const auto is_graded = [&body] { return body.cells.kind == CellKind::graded; };
   b.number("/body/cells/near_tool_m", body.cells.near_tool, not_negative(), "m",
            "graded: size of the cells where the tool comes, the edge of a cube of twelve tets; 0: chosen.")
@@ -229,8 +230,8 @@ void bind_material(Binder& b, sim::Params& p) {
            "Elastic strain norm at which flow starts.");
   b.number("/material/plasticity/strength_Pa", y.strength, not_negative(), "Pa",
            "c_u, undrained shear strength of dry clay (von Mises; √3 c_u in tension), in the place of yield; "
-           "0: by yield. Water lowers it as it does modulus times yield strain. It makes /dynamics/model "
-           "hencky, form j2, /body/cells/kind graded and fit surface where they are not given.");
+           "0: by yield. Water lowers it as it does modulus times yield strain. Where form is "
+           "not given it is j2 then.");
   b.number("/material/plasticity/creep_per_s", y.creep_per_s, not_negative(), "1/s",
            "Rate at which the elastic strain flows away.");
   b.number("/material/plasticity/max", y.max, not_negative(), "",
@@ -378,7 +379,11 @@ void bind_dynamics(Binder& b, Scenario& s) {
   b.choice<Mode>("/dynamics/mode", s.mode, {{Mode::dynamic, "dynamic"}, {Mode::equilibrium, "static"}},
                  "The hand's motion in time, or one equilibrium under /body/loads and /body/fixed, elastic, "
                  "without tool and trace.");
-  b.choice("/dynamics/model", d.model, strain_model_names(), describe_strain_models());
+  b.choice(
+      "/dynamics/model", d.model, strain_model_names(),
+      describe_strain_models() +
+          " Where it is not given: hencky of clay whose strength is in pascals, and of elastic, isotropic "
+          "clay in a body made here.");
   b.choice<solid::ElementKind>(
       "/dynamics/element", d.element,
       {{solid::ElementKind::p1, "p1"},

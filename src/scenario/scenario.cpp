@@ -52,23 +52,37 @@ void choose_body(Scenario& s, const Json& document) {
 }
 
 /// Which keys are asked for depends on the mode, so it is read first.
-/// Clay whose strength is a stress flows by von Mises's law at large strain, in a body that is the surface
-/// and whose cells are small where the tool comes, where nothing else is asked for. Cells that a file gives
-/// stay.
-void choose_flow(Scenario& s, const Json& document) {
-  const Json::json_pointer place("/material/plasticity/strength_Pa");
-  if (!document.contains(place) || !document[place].is_number() || !(document[place].get<double>() > 0.0))
-    return;
-  s.params.plasticity.form = material::FlowForm::j2;
-  s.params.solid.model = solid::StrainModel::hencky;
-  if (s.body.kind == BodyKind::mesh || document.contains(Json::json_pointer("/body/surface/cage"))) return;
-  s.body.cells.kind = CellKind::graded;
-  s.body.fit = embed::Fit::surface;
-}
-
 void choose_mode(Scenario& s, const Json& document) {
   const Json dynamics = document.value("dynamics", Json::object());
   if (dynamics.is_object() && dynamics.value("mode", Json()) == "static") s.mode = Mode::equilibrium;
+}
+
+double find_number(const Json& document, const char* place) {
+  const Json value = document.value(Json::json_pointer(place), Json());
+  return value.is_number() ? value.get<double>() : 0.0;
+}
+
+/// What is taken where nothing else is asked for. A body that is made here is the surface, and its cells are
+/// small where the tool comes; cells that a file gives stay. There strain is large: clay follows Hencky's
+/// law, with von Mises's flow where its strength is a stress. Flow of a strength that is a strain would turn
+/// small cells inside out, and the pairs' law is the paper's.
+void choose_model(Scenario& s, const Json& document) {
+  const bool has_strength = find_number(document, "/material/plasticity/strength_Pa") > 0.0;
+  const bool flows_by_strain =
+      document.value(Json::json_pointer("/material/plasticity/enabled"), Json(true)) != false &&
+      find_number(document, "/material/plasticity/yield") > 0.0;
+  const bool is_aligned =
+      document.value(Json::json_pointer("/material/effective_medium/orientation"), Json()) == "aligned";
+  const bool has_pairs = document.value(Json::json_pointer("/contact/law"), Json()) == "pairs";
+  const bool has_cells =
+      s.body.kind == BodyKind::mesh || document.contains(Json::json_pointer("/body/surface/cage"));
+  if (has_strength) s.params.plasticity.form = material::FlowForm::j2;
+  if (has_strength) s.params.solid.model = solid::StrainModel::hencky;
+  if (has_cells || s.mode != Mode::dynamic || has_pairs) return;
+  s.body.fit = embed::Fit::surface;
+  if (flows_by_strain) return;
+  s.body.cells.kind = CellKind::graded;
+  if (!is_aligned) s.params.solid.model = solid::StrainModel::hencky;
 }
 
 void check_rates(const Scenario& s) {
@@ -400,7 +414,7 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
   s.file = file;
   choose_body(s, document);
   choose_mode(s, document);
-  choose_flow(s, document);
+  choose_model(s, document);
   read_parameters(make_parameter_table(s, file), document, file, "");
   leave_out_pairs(s, document);
   check_combinations(s);

@@ -277,13 +277,12 @@ TEST_F(ScenarioFile, HenckyClayFlowsWithoutACapAndKeepsItsVolume) {
 TEST_F(ScenarioFile, AStrengthInPascalsMakesClayOfLargeStrain) {
   const std::string strength = "/material/plasticity/strength_Pa=15000";
   const std::vector<std::string> plain = {"/material/plasticity/enabled=true", "/material/plasticity/yield=0",
-                                          "/material/plasticity/max=0", strength};
+                                          "/material/plasticity/max=0", strength, "/contact/law=pressure"};
   const Scenario s = load(plain);
   EXPECT_EQ(s.params.solid.model, solid::StrainModel::hencky);
   EXPECT_EQ(s.params.plasticity.form, material::FlowForm::j2);
   EXPECT_EQ(s.body.cells.kind, CellKind::graded);
   EXPECT_EQ(s.body.fit, embed::Fit::surface);
-  EXPECT_EQ(load({}).body.cells.kind, CellKind::even);
   const std::vector<std::string> own = {plain[0],
                                         plain[1],
                                         plain[2],
@@ -296,6 +295,28 @@ TEST_F(ScenarioFile, AStrengthInPascalsMakesClayOfLargeStrain) {
                           "/material/plasticity/strength_Pa: is given, and yield too");
   ARGIL_EXPECT_THROW_WITH(load({plain[0], plain[1], plain[2], "/material/plasticity/strength_Pa=-1"}),
                           InputError, "/material/plasticity/strength_Pa");
+}
+
+TEST_F(ScenarioFile, ABodyMadeHereIsTheSurfaceWithItsCellsWhereTheToolIs) {
+  const std::string elastic = "/material/plasticity/enabled=false", pressure = "/contact/law=pressure";
+  const Scenario s = load({elastic, pressure});
+  EXPECT_EQ(s.params.solid.model, solid::StrainModel::hencky);
+  EXPECT_EQ(s.body.cells.kind, CellKind::graded);
+  EXPECT_EQ(s.body.fit, embed::Fit::surface);
+
+  const std::string yield = "/material/plasticity/yield=0.02";
+  const Scenario by_strain = load({yield, pressure});
+  EXPECT_EQ(by_strain.params.solid.model, solid::StrainModel::corotational);
+  EXPECT_EQ(by_strain.body.cells.kind, CellKind::even);
+  EXPECT_EQ(by_strain.body.fit, embed::Fit::surface);
+
+  const Scenario as_paper = load({elastic, "/contact/law=pairs"});
+  EXPECT_EQ(as_paper.body.cells.kind, CellKind::even);
+  EXPECT_EQ(as_paper.body.fit, embed::Fit::enclose);
+  EXPECT_EQ(as_paper.params.solid.model, solid::StrainModel::corotational);
+  EXPECT_EQ(load({elastic, pressure, "/dynamics/mode=static"}).body.cells.kind, CellKind::even);
+  EXPECT_EQ(load({elastic, pressure, "/material/effective_medium/orientation=aligned"}).params.solid.model,
+            solid::StrainModel::corotational);
 }
 
 TEST_F(ScenarioFile, HenckyClayStopsWhereATetIsInverted) {
