@@ -11,8 +11,9 @@
 namespace argil::contact {
 namespace {
 
-constexpr int kMostLevels = 10;        // of splitting a triangle in four
-constexpr double kLeastRadius = 0.25;  // of that of the covered area
+constexpr int kMostLevels = 10;         // of splitting a triangle in four
+constexpr double kLeastRadius = 0.25;   // of that of the covered area
+constexpr double kFarthestNear = 0.25;  // of the tool's radius
 
 /// Mean over the corners of how near each is to the tool: 1 inside, 0 farther than `band`.
 double compute_share_within(const std::array<double, 3>& distance, double band) {
@@ -45,6 +46,7 @@ PressureContact::PressureContact(const Triangles& surface, int num_vertices, Too
 
 void PressureContact::prepare(const Points& x) {
   m_tree.emplace(x, m_surface);
+  m_motion = 0.0;
 }
 
 void PressureContact::exchange(std::span<StiffnessOfTriangle> list) {
@@ -54,8 +56,10 @@ void PressureContact::exchange(std::span<StiffnessOfTriangle> list) {
   }
 }
 
-/// Of the body, what the ball around the tool comes near.
+/// Of the body, what the ball around the tool comes near; of a body that is solved for, also what it may come
+/// near as it follows the tool: by what both have moved since the last call.
 void PressureContact::find_faces(const Points& x) {
+  m_margin = finds_near() ? std::min(m_way + m_motion, kFarthestNear * m_tool.radius()) : 0.0;
   mesh::Box box;
   for (const Place& place : m_places) {
     const Vec3 centre = place.position + place.turn.transpose() * m_tool.centre();
@@ -65,7 +69,7 @@ void PressureContact::find_faces(const Points& x) {
     box.include(centre + m_passage->retreat * m_passage->inward);
   }
   m_candidates.clear();
-  m_tree->find_overlaps(box.grown(m_tool.radius()), x, x, m_candidates);
+  m_tree->find_overlaps(box.grown(m_tool.radius() + m_margin), x, x, m_candidates);
   std::sort(m_candidates.begin(), m_candidates.end());
   m_faces.clear();
   for (const int number : m_candidates) {
@@ -82,8 +86,16 @@ void PressureContact::find_faces(const Points& x) {
     const double longest = std::sqrt(std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()}));
     face.size = std::max(0.5 * longest, std::sqrt(4.0 / std::numbers::sqrt3 * face.area));
     face.whole = measure_cover(face, kWhole, 0, find_band(face, 0));
-    if (face.whole.area > 0.0 || face.whole.may_touch) m_faces.push_back(face);
+    if (face.whole.area > 0.0 || face.whole.may_touch || is_within_margin(face)) m_faces.push_back(face);
   }
+}
+
+bool PressureContact::is_within_margin(const Face& face) {
+  if (m_margin == 0.0) return false;
+  const Vec3 centre = face.at(centre_of(kWhole));
+  double reach = m_margin;
+  for (const Vec3& corner : face.x) reach = std::max(reach, m_margin + (corner - centre).norm());
+  return find_least_distance(centre, reach).distance < reach;
 }
 
 PressureContact::Cover& PressureContact::Cover::operator+=(const Cover& other) {
@@ -219,10 +231,14 @@ PressureContact::Cover PressureContact::press_pieces(const Face& face, const Pie
   if (level > 0) {
     double reach = 0.0;
     for (const Vec3& corner : piece) reach = std::max(reach, (face.at(corner) - x).norm());
-    if (find_least_distance(x, reach).distance >= reach) return {};
-    Cover sum;
-    for (const Piece& part : quarter(piece)) sum += press_pieces(face, part, level - 1, share, out);
-    return sum;
+    const double distance = find_least_distance(x, reach + m_margin).distance;
+    if (distance >= reach + m_margin) return {};
+    // What the tool may only come near is seen no finer than the patch that it would make there.
+    if (distance < reach || reach > std::sqrt(m_tool.radius() * m_margin) / 6.0) {
+      Cover sum;
+      for (const Piece& part : quarter(piece)) sum += press_pieces(face, part, level - 1, share, out);
+      return sum;
+    }
   }
   const bool yields = m_yielding == Yielding::yes;
   const PointDepth depth = yields ? find_depth(x) : find_held_depth(x, face.normal);
@@ -318,7 +334,8 @@ void PressureContact::hold_shape(Contacts& out) const {
 
 void PressureContact::advance(const Points& x_before, const Points& x, std::optional<double> motion) {
   if (!m_tree) prepare(x_before);
-  m_tree->advance(motion ? *motion : (x - x_before).cwiseAbs().maxCoeff());
+  m_motion = motion ? *motion : (x - x_before).cwiseAbs().maxCoeff();
+  m_tree->advance(m_motion);
 }
 
 void PressureContact::find_contacts(const Points& x, const Pose& pose_t0, const Pose& pose_t1,
@@ -349,8 +366,9 @@ void PressureContact::press(const Points& x, const Pose& pose_t0, const Pose& po
   // they are all that counts.
   const double points_per_radius = yielding == Yielding::yes ? 3.0 : 4.0;
   m_patch_radius = find_patch_radius();
-  if (m_patch_radius == 0.0) return;
-  for (Face& face : m_faces) press_face(face, m_patch_radius / points_per_radius, contacts);
+  const double radius = m_patch_radius > 0.0 ? m_patch_radius : std::sqrt(m_tool.radius() * m_margin);
+  if (radius == 0.0) return;
+  for (Face& face : m_faces) press_face(face, radius / points_per_radius, contacts);
   press_all_corners(x, contacts);
   if (yielding == Yielding::no) hold_shape(contacts);
   for (const Face& face : m_faces) {

@@ -156,6 +156,7 @@ class PressureContact {
                    double stiffness, const Vec3& point, Contacts& out) const;
   void press_all_corners(const Points& x, Contacts& out);
   double stiffness_of(const Face& face) const;
+  bool is_within_margin(const Face& face);
   bool finds_near() const { return m_is_solved_for && m_yielding == Yielding::yes && !m_passage; }
   double find_held_stiffness() const;
   void hold_shape(Contacts& out) const;
@@ -167,6 +168,7 @@ class PressureContact {
   bool m_is_solved_for;
   PenaltyKind m_penalty;
   std::optional<BoundingTree> m_tree;
+  double m_motion = 0.0;  // of the body before the present call, along any axis [m]
   Passage m_passages;
   // Of the present call.
   std::vector<Place> m_places;                 // along the tool's way, the end last
@@ -176,7 +178,8 @@ class PressureContact {
   Mat3 m_turn = Mat3::Identity();              // from the tool's end back to its start
   Yielding m_yielding = Yielding::yes;
   bool m_needs_cover = false;
-  double m_patch_radius = 0.0;  // [m]
+  double m_margin = 0.0;        // how far from the tool points are near it [m]
+  double m_patch_radius = 0.0;  // [m]; 0: nothing is touched
   std::vector<int> m_candidates;
   std::vector<Face> m_faces;  // near the tool's way, by number
   std::vector<Corner> m_corners;

@@ -16,6 +16,7 @@ namespace argil::sim {
 namespace {
 
 using device::ToolMode;
+using test::kBallRadius;
 using test::lead;
 using test::make_pressed_block;
 using test::make_pressure_params;
@@ -261,6 +262,37 @@ INSTANTIATE_TEST_SUITE_P(BetweenFrames, Exchange,
                                                           BetweenFrames::compliant),
                                           testing::Values(1, 7, 14)),
                          name_rate);
+
+/// A tool that goes back leaves the clay farther at once than it presses into it. The clay follows within the
+/// step: it does not spring back through the tool.
+TEST(PressureStiffness, ToolThatGoesBackIsFollowed) {
+  constexpr double kHeight = 0.01, kDeep = 1e-3, kLess = 0.6e-3;
+  constexpr int kTicks = 7;
+  const auto press = [](double depth) {
+    device::DeviceSample sample;
+    sample.position = {0.0106, 0.0098, kHeight + kBallRadius - depth};
+    return sample;
+  };
+  const auto make = [&] {
+    Params params = make_pressure_params(kTicks);
+    params.solid.solver.tolerance = 1e-6;
+    return Simulation(argil::test::make_block_body(10, 10, 5, Vec3(0.02, 0.02, kHeight), 0.0, true),
+                      contact::make_sphere_tool(kBallRadius, 2), params, press(-1e-3));
+  };
+  Simulation straight = make(), simulation = make();
+  lead(straight, press(kLess), 70);
+  const double wanted = lead(straight, press(kLess), 140).back().z();
+  lead(simulation, press(kDeep), 70);
+  const double before = lead(simulation, press(kDeep), 140).back().z();
+  ASSERT_GT(before, 1.2 * wanted);
+  lead(simulation, press(kLess), 1);
+  const std::vector<Vec3> forces = lead(simulation, press(kLess), 140);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    ASSERT_LE(forces[k].z(), before) << k;
+    if (k > kTicks) ASSERT_GT(forces[k].z(), 0.5 * wanted) << k;
+  }
+  EXPECT_NEAR(forces.back().z() / wanted, 1.0, 5e-3);
+}
 
 /// Under a ball whose patch is two cells of 4 mm in radius: κ as the body's stiffness asks for, twice that,
 /// and up to a hundred times, where the middles of faces bear the ball and not the nodes alone.
