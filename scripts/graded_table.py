@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Forces on cells that are small where the tool comes, beside cells of one size: tips of 1 and 3 mm pressed a tenth of their radius into
-an elastic block of 200 mm, over Hertz's closed form; and the peak of scenarios/study_light_press.json over its limit.
+an elastic block of 200 mm, over Hertz's closed form; and peaks over their limits: of scenarios/study_light_press.json, and of the first
+press of scenarios/demo_dino_dry.json on elastic clay.
 
 Usage: graded_table.py ARGIL [-o FILE.csv]      writes results/contact/graded.csv
 """
@@ -19,6 +20,9 @@ EDGE, MODULUS, POISSON = 0.2, 1e5, 0.3  # of the block [m, Pa, –]
 GAP, SECONDS, DOWN = 0.0005, 0.3, 0.25  # way before the touch [m]; of the motion, and of its way down [s]
 LIMIT = 2.065  # of the light press [N], to 0.01, by cells that are made finer and finer
 NUMBERS = (2200, 5000, 10000, 20000)
+DEMONSTRATION = ["/material/plasticity/enabled=false", "/material/clay_kernel/form=off", "/trace/duration_s=0.9",
+                 "/haptics/physics_period_ticks=10"]
+FINEST = (60000, 240000)  # from which its limit is extrapolated: linear tets err as the square root of their number
 
 
 def run(argil, folder, scenario, *settings):
@@ -66,9 +70,10 @@ def main():
             depth = 0.1 * radius
             hertz = 4 / 3 * MODULUS / (1 - POISSON**2) * radius**0.5 * depth**1.5
             scenario = write_tip(folder, radius, depth)
-            for number in NUMBERS:
-                force, tets = run(argil, folder, scenario, "/body/cells/kind=graded", f"/body/shape/target_tets={number}")
-                add(f"tip of {1e3 * radius:g} mm", "graded", tets, f"{force[-1] / hertz:.3f}")
+            for model in ("corotational", "hencky"):
+                for number in NUMBERS:
+                    force, tets = run(argil, folder, scenario, f"/dynamics/model={model}", f"/body/shape/target_tets={number}")
+                    add(f"tip of {1e3 * radius:g} mm, {model}", "graded", tets, f"{force[-1] / hertz:.3f}")
         press = ROOT / "scenarios/study_light_press.json"
         for cells in ("even", "graded"):
             for number in NUMBERS:
@@ -78,6 +83,22 @@ def main():
         force, tets = run(argil, folder, press, "/contact/law=pressure", "/body/cells/kind=graded", "/body/cells/growth=0.1",
                           "/body/shape/target_tets=20000")
         add("light press", "graded, growth 0.1", tets, f"{force.max() / LIMIT:.3f}")
+        press = ROOT / "scenarios/demo_dino_dry.json"
+
+        def peak(cells, number):
+            force, tets = run(argil, folder, press, f"/body/cells/kind={cells}", f"/body/shape/target_tets={number}", *DEMONSTRATION)
+            return force.max(), tets
+
+        finest = [peak("graded", number) for number in FINEST]
+        (coarse, few), (fine, many) = finest
+        limit = fine - (coarse - fine) / ((many / few) ** 0.5 - 1)
+        print(f"demonstration: limit {limit:.3f} N, certain to {fine - limit:.3f} N")
+        for cells, numbers in (("even", (5000, 20000, 80000, 320000)), ("graded", (5000, 10000, 15000))):
+            for number in numbers:
+                force, tets = peak(cells, number)
+                add("demonstration", cells, tets, f"{force / limit:.3f}")
+        for force, tets in finest:
+            add("demonstration", "graded", tets, f"{force / limit:.3f}")
     with open(options.output, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["scene", "cells", "tets", "force_over_limit"])

@@ -165,9 +165,8 @@ def sculpted():
                        ("sculpted_skin.png", "displacement along the outward normal before, under the pull, after"),
                        ("sculpted_force.png", "force on the hand against time"))
             + prose("""**Chosen after looking.** Place and depth of the pull are those of the first try that drew a ridge (one
-                6 mm nearer to the dent met nothing, for the press had taken the clay from under it), and the penalty
-                is one at which the pull does not run away. Only the last try is kept as a motion.""")
-            + tries(("sculpted", 10), ("sculpted_15", 15))
+                6 mm nearer to the dent met nothing, for the press had taken the clay from under it). Only the last try
+                is kept as a motion.""")
             + run_words("sculpted", """At the end the ridge stands {bump_left_m} above the body at rest and the deepest
                 dent is {dent_left_m}."""))
 

@@ -110,7 +110,7 @@ class StandIns(Folder):
     def test_everything_is_made_once_and_its_times_are_written(self):
         done, runs, scripts = self.reproduce()
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertEqual(len(runs), 3 + 2 + 2 + 8 + 4)
+        self.assertEqual(len(runs), 3 + 2 + 1 + 8 + 4)
         self.assertEqual(scripts[-1].split()[0], "paper_page.py")
         self.assertNotIn("on a display", " ".join(scripts[1:]))  # the first is the build
         times = (self.folder / "results/paper/times.csv").read_text().splitlines()
