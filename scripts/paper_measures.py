@@ -87,9 +87,10 @@ def moduli(argil, scene, saturation):
 
 
 def strength(scene, shear, saturation):
-    """Undrained shear strength [Pa] = yield strain · 2G/√2 of the scene's clay when so wet."""
+    """Undrained shear strength [Pa] = yield strain · 2G/√2 of the scene's clay when so wet; dry it is the scene's strength_Pa."""
     material = scene["material"]
-    yielding = material["plasticity"]["yield"] * material["moisture"]["saturated_yield_ratio"] ** saturation
+    dry_shear = material["youngs_modulus_Pa"] / (2.0 * (1.0 + material["poissons_ratio"]))
+    yielding = material["plasticity"]["strength_Pa"] / (np.sqrt(2.0) * dry_shear) * material["moisture"]["saturated_yield_ratio"] ** saturation
     return yielding * 2.0 * shear / np.sqrt(2.0)
 
 

@@ -33,7 +33,6 @@ def scenario(body, trace, mode, tets):
     stiffness = 5 if mode == "pull" else 15  # [N/m] a pair; a pull feeds itself where the contact is not the softer one
     scene["contact"] = {"law": "pairs", "vertex_face_stiffness_N_per_m": stiffness, "edge_edge_stiffness_N_per_m": stiffness}
     scene["tool"]["mode"] = mode
-    del scene["dynamics"]["solver"]  # its default, as other rates are measured with
     scene["haptics"] = {"physics_period_ticks": 1, "water_period_ticks": 1, "frame_period_ticks": 400}
     scene["trace"] = trace
     return scene

@@ -232,6 +232,7 @@ int run_live(const LiveOptions& options) {
   run::check_result_name(s, result);
   if (!options.watch.empty()) check_watch_name(s, options.watch, result);
   scenario::Scene scene = scenario::build_scene(s);
+  scene.contact_cells.clear();  // of a motion that is the hand's
   const auto device = attach(options.device, make_device_options(s, scene.trace));
   const device::ReleaseGuard guard(*device);
   const Tick num_ticks = find_num_ticks(s, options, scene.trace);

@@ -94,6 +94,7 @@ int run_replay(const scenario::Scenario& s, const output::Session& session, cons
   sim::Simulation simulation(std::move(scene.body), tool, session_params(session.head, s.params),
                              session.head.start);
   print_notes(scene, options);
+  scene.contact_cells.clear();  // its session did not know the motion
   const auto num_ticks = static_cast<Tick>(session.ticks.size());
   if (options.dry_run) return print_ready(s, simulation, num_ticks);
   const std::string result = name_result(s, options);
