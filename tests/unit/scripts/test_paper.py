@@ -239,7 +239,7 @@ class Measures(Folder):
         self.assertAlmostEqual(rows["one-dimensional modulus, dry [MPa]"]["argil"], 0.14 * 0.7 / (1.3 * 0.4), places=9)
         self.assertAlmostEqual(rows["water when saturated, of the damp weight [%]"]["argil"], 100 * 400 / 1900)
         self.assertEqual(rows["modulus over strength, plastic limit [–]"]["factor"], 1.0)
-        self.assertAlmostEqual(rows["modulus over strength, plastic limit [–]"]["argil"], 2.6 / (0.02 * 2**0.5))
+        self.assertAlmostEqual(rows["modulus over strength, plastic limit [–]"]["argil"], 1.4e5 / 1500)
 
     def test_the_lag_is_between_the_felt_moment_and_the_last_picture(self):
         felt, now = np.array([1, 10, 14, 29]), np.array([1, 10, 20, 29])
