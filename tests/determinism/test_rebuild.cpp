@@ -119,9 +119,9 @@ TEST_P(Rebuilt, WithoutSolverHistoryGoesOnWithinTheSolversTolerance) {
   const bool is_exact =
       linear::is_direct(params.solid.solver.kind) && params.fidelity.mode == sim::FidelityMode::full;
   constexpr double kTolerance = 1e-3;  // the solver's default, and no golden run has a looser one
-  // Documented of the default. Over flowing clay, pressed in six steps, it is 0.28 %; elsewhere below 0.1 %.
-  constexpr double kEffect = 3e-3;
-  EXPECT_LE(error, is_exact ? 0.0 : kEffect * largest);
+  constexpr double kOfFlow = 3e-3;     // as documented, where a fast tool meets clay that flows
+  const double bound = params.plasticity.strength > 0.0 ? kOfFlow : kTolerance;
+  EXPECT_LE(error, is_exact ? 0.0 : bound * largest);
   ASSERT_LE(params.solid.solver.tolerance, kTolerance);
 }
 
