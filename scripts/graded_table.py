@@ -70,7 +70,7 @@ def main():
             depth = 0.1 * radius
             hertz = 4 / 3 * MODULUS / (1 - POISSON**2) * radius**0.5 * depth**1.5
             scenario = write_tip(folder, radius, depth)
-            for model in ("corotational", "hencky"):
+            for model in ("corotational", "curnier"):
                 for number in NUMBERS:
                     force, tets = run(argil, folder, scenario, f"/dynamics/model={model}", f"/body/shape/target_tets={number}")
                     add(f"tip of {1e3 * radius:g} mm, {model}", "graded", tets, f"{force[-1] / hertz:.3f}")

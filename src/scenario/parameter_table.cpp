@@ -379,11 +379,11 @@ void bind_dynamics(Binder& b, Scenario& s) {
   b.choice<Mode>("/dynamics/mode", s.mode, {{Mode::dynamic, "dynamic"}, {Mode::equilibrium, "static"}},
                  "The hand's motion in time, or one equilibrium under /body/loads and /body/fixed, elastic, "
                  "without tool and trace.");
-  b.choice(
-      "/dynamics/model", d.model, strain_model_names(),
-      describe_strain_models() +
-          " Where it is not given: hencky of clay whose strength is in pascals, and of elastic, isotropic "
-          "clay in a body made here.");
+  b.choice("/dynamics/model", d.model, strain_model_names(),
+           describe_strain_models() +
+               " Where it is not given: hencky of clay whose strength is in pascals, curnier of elastic, "
+               "isotropic "
+               "clay in a body made here.");
   b.choice<solid::ElementKind>(
       "/dynamics/element", d.element,
       {{solid::ElementKind::p1, "p1"},

@@ -242,6 +242,8 @@ Json probe_element(Case& c) {
       !(Eigen::SelfAdjointEigenSolver<Mat3>(from_mandel(plastic)).eigenvalues()(0) > -1.0))
     c.refuse_range("plastic_strain",
                    std::string("strains that leave a stretch, eigenvalues above -1, for ") + law.name);
+  if (law.plastic_split == solid::PlasticSplit::none && !plastic.isZero(0.0))
+    c.refuse_range("plastic_strain", std::string("nothing but zeros for ") + law.name + ", which is elastic");
   const solid::TetGeometry tet = solid::make_tet_geometry(rest);
   if (!(tet.volume > 0.0)) c.refuse_range("rest", "tets of positive volume");
   const solid::PointMotion motion =

@@ -63,14 +63,16 @@ double find_number(const Json& document, const char* place) {
 }
 
 /// What is taken where nothing else is asked for. A body that is made here is the surface, and its cells are
-/// small where the tool comes; cells that a file gives stay. There strain is large: clay follows Hencky's
-/// law, with von Mises's flow where its strength is a stress. Flow of a strength that is a strain would turn
-/// small cells inside out, and the pairs' law is the paper's.
+/// small where the tool comes; cells that a file gives stay. There strain is large: elastic clay follows
+/// Curnier's law, clay that flows Hencky's, with von Mises's flow where its strength is a stress. Flow of a
+/// strength that is a strain would turn small cells inside out, and the pairs' law is the paper's.
 void choose_model(Scenario& s, const Json& document) {
   const bool has_strength = find_number(document, "/material/plasticity/strength_Pa") > 0.0;
-  const bool flows_by_strain =
-      document.value(Json::json_pointer("/material/plasticity/enabled"), Json(true)) != false &&
-      find_number(document, "/material/plasticity/yield") > 0.0;
+  const bool may_flow =
+      document.value(Json::json_pointer("/material/plasticity/enabled"), Json(true)) != false;
+  const bool flows_by_strain = may_flow && find_number(document, "/material/plasticity/yield") > 0.0;
+  const bool flows = has_strength || find_number(document, "/material/plasticity/creep_per_s") > 0.0 ||
+                     document.value(Json::json_pointer("/material/plasticity/form"), Json()) == "j2";
   const bool is_aligned =
       document.value(Json::json_pointer("/material/effective_medium/orientation"), Json()) == "aligned";
   const bool has_pairs = document.value(Json::json_pointer("/contact/law"), Json()) == "pairs";
@@ -82,7 +84,8 @@ void choose_model(Scenario& s, const Json& document) {
   s.body.fit = embed::Fit::surface;
   if (flows_by_strain) return;
   s.body.cells.kind = CellKind::graded;
-  if (!is_aligned) s.params.solid.model = solid::StrainModel::hencky;
+  if (!is_aligned)
+    s.params.solid.model = may_flow && flows ? solid::StrainModel::hencky : solid::StrainModel::curnier;
 }
 
 void check_rates(const Scenario& s) {
@@ -307,9 +310,19 @@ void check_regions(const Scenario& s) {
     require_normal(s, s.body.loads.pressure[i].region, "/body/loads/pressure/" + std::to_string(i));
 }
 
+/// Does any flow rule ever let clay flow?
+bool can_flow(const Scenario& s) {
+  const material::Plasticity& law = s.params.plasticity;
+  return law.enabled && (law.form == material::FlowForm::j2 || law.creep_per_s > 0.0);
+}
+
 /// Flow of a law of large strain keeps the volume, and is measured by the deviator's norm.
 void check_flow_of_model(const Scenario& s) {
   const solid::ElasticLaw& law = find_law(s.params.solid.model);
+  if (law.plastic_split == solid::PlasticSplit::none && s.mode == Mode::dynamic && can_flow(s))
+    throw InputError(s.file, "/dynamics/model",
+                     std::string(law.name) + " is a law of clay that does not flow",
+                     "take hencky, or set /material/plasticity/enabled to false");
   if (law.plastic_split != solid::PlasticSplit::logarithmic || s.mode != Mode::dynamic) return;
   const material::Plasticity& flow = s.params.plasticity;
   if (!flow.deviatoric || flow.norm != material::StrainNorm::frobenius)
@@ -354,7 +367,7 @@ void check_plasticity(Scenario& s) {
   // F_p = 1 + ε_p must stay a stretch: no eigenvalue of ε_p may reach −1.
   const double most = law.norm == material::StrainNorm::frobenius ? 1.0 : std::sqrt(0.5);
   const solid::ElasticLaw& elastic = find_law(s.params.solid.model);
-  const bool flows = s.mode == Mode::dynamic && (law.form == material::FlowForm::j2 || law.creep_per_s > 0.0);
+  const bool flows = s.mode == Mode::dynamic && can_flow(s);
   if (elastic.plastic_split == solid::PlasticSplit::multiplicative &&
       ((flows && !(law.max > 0.0)) || !(law.max < most)))
     throw InputError(s.file, "/material/plasticity/max",

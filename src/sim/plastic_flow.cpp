@@ -17,7 +17,7 @@ PlasticFlow::PlasticFlow(const Params& params, const solid::Body& solid, const s
 }
 
 double PlasticFlow::apply(TensorField& plastic_strain) {
-  if (!m_params.plasticity.enabled) return 0.0;
+  if (!m_params.plasticity.enabled || m_split == solid::PlasticSplit::none) return 0.0;
   const double dissipated = m_region.part().batches.sum(
       m_solid.model.elements.num_points(),
       [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return apply_to_points(begin, end, plastic_strain); });

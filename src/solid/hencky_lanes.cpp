@@ -2,17 +2,10 @@
 
 #include "base/mandel.h"
 #include "solid/hencky_point.h"
-#include "solid/lane_algebra.h"
+#include "solid/pair_blocks.h"
 
 namespace argil::solid {
 namespace {
-
-constexpr double kShear = 1.0 / kSqrt2;  // of a Mandel shear
-
-ARGIL_INLINE void read_tensor(const double* from, std::ptrdiff_t begin, std::ptrdiff_t last, Lanes* tensor) {
-  read_lanes<6>(from, begin, last, tensor);
-  for (int k = 3; k < 6; ++k) tensor[k] *= kShear;
-}
 
 /// E_p of tets; false where none has any.
 ARGIL_INLINE bool read_plastic(const double* from, std::ptrdiff_t begin, std::ptrdiff_t last,
@@ -39,71 +32,6 @@ ARGIL_INLINE void read_elastic(const double* strain, const double* plastic_strai
   *is_known = 1;
 }
 
-/// S⁻¹ of S = 1 + ε, as a 3×3.
-ARGIL_INLINE void set_inverse(const Lanes* strain, Real33<Lanes>& inverse) {
-  Real33<Lanes> S;
-  Lanes determinant;
-  set_symmetric(strain, S);
-  for (int k = 0; k < 9; k += 4) S.m[k] += 1.0;
-  set_cofactor(S, inverse, determinant);
-  const Lanes scale = 1.0 / determinant;
-  for (int k = 0; k < 9; ++k) inverse.m[k] *= scale;
-}
-
-/// S − 1 of F = R S.
-ARGIL_INLINE void set_strain(const Real33<Lanes>& R, const Real33<Lanes>& F, Lanes* strain) {
-  set_turned_tensor(R, F, strain);
-  for (int k = 0; k < 3; ++k) strain[k] -= 1.0;
-}
-
-/// 54 numbers of each of tets begin … end−1.
-ARGIL_INLINE void write_blocks(const Lanes* blocks, std::ptrdiff_t begin, std::ptrdiff_t end, double* to) {
-  constexpr int kCount = 9 * kPairBlocks;
-  double* first = to + kCount * begin;
-  if (end - begin < kLanes) {
-    for (int lane = 0; lane < static_cast<int>(end - begin); ++lane)
-      for (int k = 0; k < kCount; ++k) first[kCount * lane + k] = blocks[k][lane];
-    return;
-  }
-  Lanes eight[8];
-  int k = 0;
-  for (; k + kLanes <= kCount; k += kLanes) {
-    for (int i = 0; i < kLanes; ++i) eight[i] = blocks[k + i];
-    write_rows<kLanes>(eight, kCount, first + k);
-  }
-  for (int i = 0; i < kLanes; ++i) eight[i] = blocks[std::min(k + i, kCount - 1)];
-  write_rows<6>(eight, kCount, first + k);
-}
-
-/// A block of the stiffness in the directions of b. g: ∇N after the motion; c: at rest, turned.
-struct PairBlock {
-  const PrincipalTangent<Lanes>& tangent;
-  const Lanes& lambda;
-  bool has_kept;
-  const Lanes& kept_lambda;
-  const Lanes& kept_mu;
-
-  ARGIL_INLINE void set(const Lanes* gi, const Lanes* gj, const Lanes* ci, const Lanes* cj,
-                        Real33<Lanes>& block) const {
-    for (int s = 0; s < 3; ++s)
-      for (int r = 0; r < 3; ++r) block.m[3 * s + r] = lambda * (gi[r] * gj[s]);
-    for (int k = 0; k < 3; ++k) block.m[4 * k] += tangent.normal[k] * (gi[k] * gj[k]);
-    for (int k = 0; k < 3; ++k) {
-      const int a = kPlanes[k][0], b = kPlanes[k][1];
-      block.m[4 * a] += tangent.own[k] * (gi[b] * gj[b]);
-      block.m[4 * b] += tangent.next[k] * (gi[a] * gj[a]);
-      block.m[3 * b + a] += tangent.coupling[k] * (gi[b] * gj[a]);
-      block.m[3 * a + b] += tangent.coupling[k] * (gi[a] * gj[b]);
-    }
-    if (!has_kept) return;
-    const Lanes dot = kept_mu * (ci[0] * cj[0] + ci[1] * cj[1] + ci[2] * cj[2]);
-    for (int s = 0; s < 3; ++s)
-      for (int r = 0; r < 3; ++r)
-        block.m[3 * s + r] += kept_lambda * (ci[r] * cj[s]) + kept_mu * (cj[r] * ci[s]);
-    for (int k = 0; k < 3; ++k) block.m[4 * k] += dot;
-  }
-};
-
 }  // namespace
 
 ARGIL_EVERY_PROCESSOR void compute_hencky_forces(const ForceArrays& tets, std::ptrdiff_t begin,
@@ -128,7 +56,8 @@ ARGIL_EVERY_PROCESSOR void compute_hencky_forces(const ForceArrays& tets, std::p
   for (int k = 0; k < 3; ++k) stress[k] += pressure;
   Real33<Lanes> tau, inverse, P, piola;
   set_symmetric(stress, tau);
-  set_inverse(strain, inverse);
+  Lanes determinant;
+  set_inverse(strain, inverse, determinant);
   multiply(tau, inverse, P);
   multiply(R, P, piola);
   Lanes force[12];
@@ -186,7 +115,8 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
   for (int k = 0; k < 6; ++k) metric[k] -= 2.0 * strain[k] + strain_squares[k];
   Real33<Lanes> middle, inverse, half, whole;
   set_symmetric(metric, middle);
-  set_inverse(strain, inverse);
+  Lanes determinant;
+  set_inverse(strain, inverse, determinant);
   multiply(inverse, middle, half);
   multiply(half, inverse, whole);
   const Lanes excess[6] = {whole.m[0],
@@ -211,55 +141,17 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
 
 ARGIL_EVERY_PROCESSOR void compute_hencky_stiffness(const TangentArrays& tets, std::ptrdiff_t begin,
                                                     std::ptrdiff_t end) {
-  const std::ptrdiff_t last = end - 1;
-  Lanes strain[6], lambda, mu, weight, gradient[12];
-  Real33<Lanes> F, R;
-  read_lanes<9>(tets.F, begin, last, F.m);
-  read_lanes<1>(tets.lambda, begin, last, &lambda);
-  read_lanes<1>(tets.mu, begin, last, &mu);
-  read_lanes<1>(tets.weight, begin, last, &weight);
-  read_lanes<12>(tets.gradient, begin, last, gradient);
-  find_rotation(F, R);
-  set_strain(R, F, strain);
+  TangentLanes lanes;
+  read_tangent_lanes(tets, begin, end, lanes);
   Lanes plastic[6];
-  const bool is_plastic = read_plastic(tets.plastic_strain, begin, last, plastic);
+  const bool is_plastic = read_plastic(tets.plastic_strain, begin, end - 1, plastic);
   ElasticStretch<Lanes> stretch;
-  find_elastic_stretch(strain, is_plastic ? plastic : nullptr, stretch);
-
+  find_elastic_stretch(lanes.strain, is_plastic ? plastic : nullptr, stretch);
   Lanes tau[3];
-  for (int i = 0; i < 3; ++i) tau[i] = 2.0 * mu * stretch.logarithm[i] + lambda * stretch.trace;
+  for (int i = 0; i < 3; ++i) tau[i] = 2.0 * lanes.mu * stretch.logarithm[i] + lanes.lambda * stretch.trace;
   PrincipalTangent<Lanes> tangent;
-  set_principal_tangent(stretch, mu, tau, tangent);
-  make_positive(mu, tangent);
-  const Lanes exact = tets.exact * weight;
-  for (int k = 0; k < 3; ++k) {
-    tangent.normal[k] *= exact;
-    tangent.own[k] *= exact;
-    tangent.next[k] *= exact;
-    tangent.coupling[k] *= exact;
-  }
-  const Lanes exact_lambda = exact * lambda;
-  const Lanes kept_lambda = tets.kept * weight * lambda, kept_mu = tets.kept * weight * mu;
-
-  Real33<Lanes> inverse, directions;
-  set_inverse(strain, inverse);
-  multiply(R, stretch.N, directions);
-  Lanes moved[12], g[12], c[12];
-  turn(inverse, gradient, moved);
-  turn_back(stretch.N, moved, g);
-  turn_back(stretch.N, gradient, c);
-  const PairBlock pair{tangent, exact_lambda, tets.kept != 0.0, kept_lambda, kept_mu};
-  Lanes blocks[9 * kPairBlocks];
-  int place = 0;
-  for (int i = 0; i < 3; ++i)
-    for (int j = i + 1; j < 4; ++j) {
-      Real33<Lanes> block, half, turned;
-      pair.set(g + 3 * i, g + 3 * j, c + 3 * i, c + 3 * j, block);
-      multiply(directions, block, half);
-      multiply_transposed(half, directions, turned);
-      for (int k = 0; k < 9; ++k) blocks[place++] = turned.m[k];
-    }
-  write_blocks(blocks, begin, end, tets.blocks);
+  set_principal_tangent(stretch, lanes.mu, tau, tangent);
+  write_pair_blocks(tets, begin, end, lanes, stretch.N, lanes.lambda, tangent);
 }
 
 }  // namespace argil::solid

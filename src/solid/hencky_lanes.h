@@ -26,19 +26,7 @@ struct FlowArrays {
 /// flowed. released: ‖dev ε‖² that each loses.
 unsigned flow_by_hencky(const FlowArrays& points, std::ptrdiff_t begin, std::ptrdiff_t end, double* released);
 
-/// Stiffness of tets, from the deformation F that each had when it was last made.
-struct TangentArrays {
-  const double* gradient = nullptr;        ///< 12 a tet
-  const double* F = nullptr;               ///< 9 a tet
-  const double* plastic_strain = nullptr;  ///< 6 a tet
-  const double* weight = nullptr;          ///< volume
-  const double* lambda = nullptr;          ///< 1 a tet [Pa]
-  const double* mu = nullptr;              ///< 1 a tet [Pa]
-  double exact = 1.0;                      ///< how often ∂²W/∂x² enters, its negative modes left out
-  double kept = 0.0;                       ///< and the stiffness of the shape at rest, turned by R
-  double* blocks = nullptr;                ///< kPairBlocks 3×3 a tet, of the pairs of its corners
-};
-
+/// Their stiffness.
 void compute_hencky_stiffness(const TangentArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
 
 }  // namespace argil::solid

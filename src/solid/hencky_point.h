@@ -9,6 +9,7 @@
 
 #include "base/lanes.h"
 #include "solid/polar_newton.h"
+#include "solid/principal_tangent.h"
 
 namespace argil::solid {
 
@@ -229,18 +230,6 @@ ARGIL_INLINE void find_elastic_strain(const Real* strain, const Real* plastic, R
   }
 }
 
-/// How a change of Kirchhoff stress's work follows a change of motion, in the directions of b, with the
-/// velocity gradient l = dF F⁻¹: dP Fᵀ has Σ normalᵢⱼ lⱼⱼ on its diagonal, and (w + τⱼ) lᵢⱼ + w lⱼᵢ at (i,
-/// j).
-template <class Real>
-struct PrincipalTangent {
-  Real normal[3];        ///< what is added to λ on the diagonal: 2μ − τᵢ
-  Real own[3], next[3];  ///< w + τ_b and w + τ_a of the planes (a, b) = 23, 13, 12
-  Real coupling[3];      ///< w
-};
-
-inline constexpr int kPlanes[3][2] = {{1, 2}, {0, 2}, {0, 1}};
-
 /// w = μ ½(b_i + b_j)(ln b_i − ln b_j)/(b_i − b_j) − ½(τᵢ + τⱼ), which has no difference of nearly equal
 /// numbers.
 template <class Real>
@@ -257,29 +246,7 @@ ARGIL_INLINE void set_principal_tangent(const ElasticStretch<Real>& stretch, con
     set_log1p(logarithm, y);
     const Real slope = y == 0.0 ? one : logarithm / (y == 0.0 ? one : y);
     const Real w = mu * (one + 0.5 * y) * slope - 0.5 * (tau[i] + tau[j]);
-    tangent.coupling[k] = w;
-    tangent.own[k] = w + tau[j];
-    tangent.next[k] = w + tau[i];
-  }
-}
-
-/// Leaves out what is negative of each plane's 2×2, and stretches beyond which the diagonal would be.
-template <class Real>
-ARGIL_INLINE void make_positive(const Real& mu, PrincipalTangent<Real>& tangent) {
-  const Real zero = {};
-  for (int i = 0; i < 3; ++i) tangent.normal[i] = tangent.normal[i] < zero ? zero : tangent.normal[i];
-  for (int k = 0; k < 3; ++k) {
-    const Real mean = 0.5 * (tangent.own[k] + tangent.next[k]);
-    const Real half = 0.5 * (tangent.own[k] - tangent.next[k]);
-    Real radius;
-    set_root(radius, half * half + tangent.coupling[k] * tangent.coupling[k]);
-    const Real largest = mean + radius;
-    const Real kept = largest < zero ? zero : 0.5 * largest;
-    const Real is_negative = mean < radius ? zero + 1.0 : zero;
-    const Real over = radius > 1e-30 * mu ? 1.0 / radius : zero;
-    tangent.own[k] = is_negative != 0.0 ? kept * (1.0 + half * over) : tangent.own[k];
-    tangent.next[k] = is_negative != 0.0 ? kept * (1.0 - half * over) : tangent.next[k];
-    tangent.coupling[k] = is_negative != 0.0 ? kept * (tangent.coupling[k] * over) : tangent.coupling[k];
+    tangent.set_plane(k, w, tau[i], tau[j]);
   }
 }
 

@@ -33,6 +33,7 @@ struct PointMotion {
 enum class PlasticSplit {
   additive,        ///< ε_e = ε − ε_p
   multiplicative,  ///< Fₑ = F F_p⁻¹ with F_p = 1 + ε_p, scaled; no eigenvalue of ε_p may reach −1
+  none,            ///< it is elastic
   logarithmic,     ///< F = Fₑ F_p, ε_p = ½ ln F_pᵀF_p; `flow` in the place of flow_drive
 };
 
@@ -80,7 +81,7 @@ struct ElasticLaw {
   } lanes;
 };
 
-extern const ElasticLaw kCorotationalLaw, kLinearLaw, kNeoHookeanLaw, kHenckyLaw;
+extern const ElasticLaw kCorotationalLaw, kLinearLaw, kNeoHookeanLaw, kHenckyLaw, kCurnierLaw;
 
 /// The laws; kElasticLaws is in the same order.
 enum class StrainModel {
@@ -88,8 +89,10 @@ enum class StrainModel {
   linear,        ///< the paper's Cauchy strain
   neo_hookean,   ///< stable neo-Hookean law, isotropic: the reference for large strain [Smith2018]
   hencky,        ///< large strain, isotropic, linear in the logarithmic strain [Hencky1928]
+  curnier,       ///< large strain, elastic and isotropic, linear in a generalised strain [Curnier1991]
 };
-inline constexpr std::array kElasticLaws{&kCorotationalLaw, &kLinearLaw, &kNeoHookeanLaw, &kHenckyLaw};
+inline constexpr std::array kElasticLaws{&kCorotationalLaw, &kLinearLaw, &kNeoHookeanLaw, &kHenckyLaw,
+                                         &kCurnierLaw};
 
 inline const ElasticLaw& find_law(StrainModel model) {
   return *kElasticLaws[static_cast<std::size_t>(model)];

@@ -73,18 +73,6 @@ Mat3 compute_hencky_piola(const PointMotion& m, const Vec6& plastic_strain, cons
   return m.R * point.N * tau.asDiagonal() * point.N.transpose() * point.inverse_stretch();
 }
 
-/// dP Fᵀ of l = dF F⁻¹, both in the directions of b.
-Mat3 apply(const PrincipalTangent<double>& tangent, double lambda, const Mat3& l) {
-  Mat3 change = Mat3::Zero();
-  for (int i = 0; i < 3; ++i) change(i, i) = lambda * l.trace() + tangent.normal[i] * l(i, i);
-  for (int k = 0; k < 3; ++k) {
-    const int i = kPlanes[k][0], j = kPlanes[k][1];
-    change(i, j) = tangent.own[k] * l(i, j) + tangent.coupling[k] * l(j, i);
-    change(j, i) = tangent.next[k] * l(j, i) + tangent.coupling[k] * l(i, j);
-  }
-  return change;
-}
-
 Mat9 compute_tangent(const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e,
                      bool is_positive) {
   const HenckyPoint point = find_point(m, plastic_strain);
@@ -93,16 +81,7 @@ Mat9 compute_tangent(const PointMotion& m, const Vec6& plastic_strain, const Ela
   PrincipalTangent<double> tangent;
   set_principal_tangent(point.stretch, e.mu, tau.data(), tangent);
   if (is_positive) make_positive(e.mu, tangent);
-  const Mat3 directions = m.R * point.N;
-  // F⁻¹ and F⁻ᵀ between the directions of b and the axes at rest.
-  const Mat3 inverse = point.inverse_stretch() * point.N;
-  Mat9 A;
-  for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row) {
-      const Mat3 l = directions.row(row).transpose() * inverse.row(column);
-      A.col(3 * column + row) = (directions * apply(tangent, e.lambda, l) * inverse.transpose()).reshaped();
-    }
-  return 0.5 * (A + A.transpose());  // which it is but for rounding
+  return make_tangent(tangent, e.lambda, m.R * point.N, point.inverse_stretch() * point.N);
 }
 
 Mat9 compute_hencky_tangent(const PointMotion& m, const Vec6& plastic_strain, const Elasticity& e) {

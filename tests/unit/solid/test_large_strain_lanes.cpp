@@ -1,4 +1,4 @@
-// Hencky's law of eight tets at once against that of a point: small strains and large, with plastic strain
+// Laws of large strain, eight tets at once against one point: small strains and large, with plastic strain
 // and without, in batches that are full and not.
 #include "solid/hencky_lanes.h"
 
@@ -7,6 +7,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -20,7 +21,6 @@ namespace argil::solid {
 namespace {
 
 constexpr int kTets = 3 * kLanes + 5;
-constexpr StrainModel kHencky = StrainModel::hencky;
 
 /// A turned stretch of about 1 ± size.
 Mat3 make_motion_of(Rng& rng, double size) {
@@ -31,12 +31,13 @@ Mat3 make_motion_of(Rng& rng, double size) {
 }
 
 struct Tets {
+  StrainModel model;
   Eigen::Matrix3Xd gradient{3, 4 * kTets}, force{3, 4 * kTets}, F{3, 3 * kTets}, R{3, 3 * kTets};
   TensorField strain{6, kTets}, plastic{6, kTets};
   Field weight{kTets}, lambda{kTets}, mu{kTets}, pressure{kTets}, yield{kTets};
   Eigen::Matrix<double, 9, Eigen::Dynamic> pairs{9, kPairBlocks* kTets};
 
-  Tets() {
+  explicit Tets(StrainModel of = StrainModel::hencky) : model(of) {
     Rng rng(11);
     for (int t = 0; t < kTets; ++t) {
       Mat34 rest;
@@ -47,10 +48,12 @@ struct Tets {
       weight(t) = tet.volume;
       const double sizes[] = {1e-9, 1e-3, 0.04, 0.35};
       F.middleCols<3>(3 * t) = make_motion_of(rng, sizes[t % 4]);
-      const PointMotion motion = make_motion(kHencky, F.middleCols<3>(3 * t));
+      const PointMotion motion = make_motion(model, F.middleCols<3>(3 * t));
       R.middleCols<3>(3 * t) = motion.R;
       strain.col(t) = compute_strain(motion.F, motion.R);
-      for (int k = 0; k < 6; ++k) plastic(k, t) = t % 3 == 0 || t < kLanes ? 0.0 : rng.uniform(-0.4, 0.4);
+      const bool is_elastic = find_law(model).plastic_split == PlasticSplit::none;
+      for (int k = 0; k < 6; ++k)
+        plastic(k, t) = is_elastic || t % 3 == 0 || t < kLanes ? 0.0 : rng.uniform(-0.4, 0.4);
       plastic.col(t).head<3>().array() -= plastic.col(t).head<3>().sum() / 3.0;
       lambda(t) = rng.uniform(1e3, 1e5);
       mu(t) = rng.uniform(1e3, 1e5);
@@ -58,12 +61,19 @@ struct Tets {
       yield(t) = rng.uniform(0.0, 0.3);
     }
   }
-  PointMotion motion(int t) const { return make_motion(kHencky, F.middleCols<3>(3 * t)); }
+  PointMotion motion(int t) const { return make_motion(model, F.middleCols<3>(3 * t)); }
   Elasticity elasticity(int t) const { return {lambda(t), mu(t)}; }
   ForceArrays arrays(bool with_pressure) {
     return {gradient.data(), R.data(),      strain.data(), plastic.data(),
             weight.data(),   lambda.data(), mu.data(),     with_pressure ? pressure.data() : nullptr,
             false,           force.data()};
+  }
+  void find_stiffness(double exact, double kept) {
+    const TangentArrays tangents{gradient.data(), F.data(), plastic.data(), weight.data(), lambda.data(),
+                                 mu.data(),       exact,    kept,           pairs.data()};
+    OrderedRuns(1).each(kTets, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      find_law(model).lanes.stiffness(tangents, begin, end);
+    });
   }
 };
 
@@ -72,11 +82,18 @@ void each_batch(Body body) {
   OrderedRuns(1).each(kTets, body);
 }
 
-TEST(HenckyLanes, PressAsThePointDoes) {
-  Tets tets;
+class LargeStrainLanes : public testing::TestWithParam<StrainModel> {
+ protected:
+  Tets tets{GetParam()};
+  const ElasticLaw::Lanes& lanes = find_law(GetParam()).lanes;
+};
+INSTANTIATE_TEST_SUITE_P(Laws, LargeStrainLanes, testing::Values(StrainModel::hencky, StrainModel::curnier),
+                         [](const auto& info) { return std::string(find_law(info.param).name); });
+
+TEST_P(LargeStrainLanes, PressAsThePointDoes) {
   for (const bool with_pressure : {false, true}) {
     each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      compute_hencky_forces(tets.arrays(with_pressure), begin, end);
+      lanes.forces(tets.arrays(with_pressure), begin, end);
     });
     for (int t = 0; t < kTets; ++t) {
       Elasticity e = tets.elasticity(t);
@@ -85,33 +102,27 @@ TEST(HenckyLanes, PressAsThePointDoes) {
         e.volume_change = 1.0;
       }
       const Mat34 expected = compute_element_force({tets.gradient.middleCols<4>(4 * t), tets.weight(t)},
-                                                   kHencky, tets.motion(t), tets.plastic.col(t), e);
+                                                   GetParam(), tets.motion(t), tets.plastic.col(t), e);
       EXPECT_LT((tets.force.middleCols<4>(4 * t) - expected).norm(), 1e-12 * expected.norm() + 1e-10) << t;
     }
   }
 }
 
-TEST(HenckyLanes, HaveTheEnergyOfThePoint) {
-  Tets tets;
+TEST_P(LargeStrainLanes, HaveTheEnergyOfThePoint) {
   for (int t = 0; t < kTets; ++t) {
-    const double expected = tets.weight(t) * compute_energy_density(kHencky, tets.motion(t),
+    const double expected = tets.weight(t) * compute_energy_density(GetParam(), tets.motion(t),
                                                                     tets.plastic.col(t), tets.elasticity(t));
-    EXPECT_NEAR(compute_hencky_energy(tets.arrays(false), t, t + 1), expected, 1e-12 * expected + 1e-20) << t;
+    EXPECT_NEAR(lanes.energy(tets.arrays(false), t, t + 1), expected, 1e-12 * expected + 1e-20) << t;
   }
 }
 
-TEST(HenckyLanes, AreAsStiffAsThePointWithTheRestTurned) {
-  Tets tets;
+TEST_P(LargeStrainLanes, AreAsStiffAsThePointWithTheRestTurned) {
   const double exact = 0.7, kept = 0.2;
-  each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    compute_hencky_stiffness({tets.gradient.data(), tets.F.data(), tets.plastic.data(), tets.weight.data(),
-                              tets.lambda.data(), tets.mu.data(), exact, kept, tets.pairs.data()},
-                             begin, end);
-  });
+  tets.find_stiffness(exact, kept);
   for (int t = 0; t < kTets; ++t) {
     const TetGeometry tet{tets.gradient.middleCols<4>(4 * t), tets.weight(t)};
     const Elasticity e = tets.elasticity(t);
-    const Mat9 tangent = compute_positive_tangent(kHencky, tets.motion(t), tets.plastic.col(t), e);
+    const Mat9 tangent = compute_positive_tangent(GetParam(), tets.motion(t), tets.plastic.col(t), e);
     const Mat12 expected =
         exact * compute_element_stiffness(tet, tangent) +
         kept * compute_element_stiffness(tet, tets.motion(t).R, make_isotropic_stiffness(e.lambda, e.mu));
@@ -123,13 +134,8 @@ TEST(HenckyLanes, AreAsStiffAsThePointWithTheRestTurned) {
   }
 }
 
-TEST(HenckyLanes, StiffnessIsNeverNegative) {
-  Tets tets;
-  each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    compute_hencky_stiffness({tets.gradient.data(), tets.F.data(), tets.plastic.data(), tets.weight.data(),
-                              tets.lambda.data(), tets.mu.data(), 1.0, 0.0, tets.pairs.data()},
-                             begin, end);
-  });
+TEST_P(LargeStrainLanes, StiffnessIsNeverNegative) {
+  tets.find_stiffness(1.0, 0.0);
   for (int t = 0; t < kTets; ++t) {
     Mat12 K = Mat12::Zero();
     for (int i = 0; i < 4; ++i)
