@@ -167,7 +167,9 @@ PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
   point.begin = point.end = -before.distance;
   if (m_places.size() == 1 && (point.end > 0.0 || !finds_near()))
     return {std::max(0.0, point.end), point.end, point.end, point.end > 0.0 ? 1.0 : 0.0, before.outward};
-  point.outward = std::max(0.0, point.end) * before.outward;
+  // By which each place turns the way out, so that a slide presses as much behind as ahead.
+  const auto weigh = [&](const ToolDistance& at) { return std::max(0.0, far - at.distance) * at.outward; };
+  point.outward = weigh(before);
   const std::size_t last = m_places.size() - 1;
   for (std::size_t i = 0; i < last;) {
     // None of the places that are left out is below the surface, nor is the next one.
@@ -179,7 +181,7 @@ PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
     const double share = low >= 0.0 ? 1.0 : high > 0.0 ? high / (high - low) : 0.0;
     point.share += share / pieces;
     point.mean += 0.5 * share * (high + std::max(0.0, low)) / pieces;
-    point.outward += std::max(0.0, point.end) * found.outward;
+    point.outward += weigh(found);
     before = found;
   }
   if (m_is_solved_for && point.begin > 0.0 && point.end <= 0.0) {
@@ -187,16 +189,13 @@ PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
     point.mean = 0.5 * (point.begin + point.end);
     point.share = 1.0;
   }
-  const double length = point.outward.norm();
-  if (length > 0.0) {
-    point.outward /= length;
-  } else if (finds_near()) {
-    const ToolDistance end = find_distance(p, m_places.back());
-    point.end = -end.distance;
-    point.outward = end.outward;
-  } else {
-    point.outward = before.outward;
+  if (!(point.mean > 0.0) && point.begin <= 0.0 && finds_near()) {
+    before = find_distance(p, m_places.back());
+    point.begin = -find_distance(p, m_places.front()).distance;
+    point.end = -before.distance;
   }
+  const double length = point.outward.norm();
+  point.outward = length > 0.0 ? Vec3(point.outward / length) : before.outward;
   return point;
 }
 

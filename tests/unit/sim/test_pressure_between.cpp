@@ -289,9 +289,49 @@ TEST(PressureStiffness, ToolThatGoesBackIsFollowed) {
   const std::vector<Vec3> forces = lead(simulation, press(kLess), 140);
   for (std::size_t k = 0; k < forces.size(); ++k) {
     ASSERT_LE(forces[k].z(), before) << k;
-    if (k > kTicks) ASSERT_GT(forces[k].z(), 0.5 * wanted) << k;
+    if (k > kTicks) {
+      ASSERT_GT(forces[k].z(), 0.5 * wanted) << k;
+    }
   }
   EXPECT_NEAR(forces.back().z() / wanted, 1.0, 5e-3);
+}
+
+/// A ball that slides without friction, a sixth of a cell in a step, over the length of a cell: the mean over
+/// the way neither drives it nor holds it, and what presses behind alternates no more than what presses
+/// ahead.
+TEST(PressureStiffness, SlideInLongStepsIsTheOneInShortSteps) {
+  constexpr double kLarge = 0.016, kDepth = 4e-3, kStart = -4e-3, kCell = 4e-3;
+  constexpr int kTicks = 84, kPeriod = 14;
+  struct Felt {
+    Vec3 mean = Vec3::Zero();
+    double buzz = 0.0;  // root mean square of what goes back and forth [N]
+  };
+  const auto hand = [](double depth, double x) {
+    device::DeviceSample sample = press_block(0.0, x);
+    sample.position.z() = test::kBlockHeight + kLarge - depth;
+    return sample;
+  };
+  const auto slide = [&](int period) {
+    Params params = make_pressure_params(period);
+    params.solid.solver.tolerance = 1e-6;
+    params.contact.round_tool = contact::RoundTool{kLarge, 0.0, kLarge, false};
+    Simulation simulation(argil::test::make_block_body(10, 10, 5, Vec3(0.04, 0.04, test::kBlockHeight)),
+                          contact::make_sphere_tool(kLarge, 2), params, hand(-1e-3, kStart));
+    lead(simulation, hand(kDepth, kStart), kTicks);
+    lead(simulation, hand(kDepth, kStart + kCell), kTicks);
+    const std::vector<Vec3> forces = lead(simulation, hand(kDepth, kStart + 2 * kCell), kTicks);
+    constexpr int kSteps = kTicks / kPeriod;
+    Points steps(3, kSteps);
+    for (int i = 0; i < kSteps; ++i) steps.col(i) = forces[static_cast<std::size_t>(i * kPeriod)];
+    const Points back =
+        steps.leftCols(kSteps - 2) - 2.0 * steps.middleCols(1, kSteps - 2) + steps.rightCols(kSteps - 2);
+    return Felt{steps.rowwise().mean(), back.norm() / std::sqrt(6.0 * (kSteps - 2))};
+  };
+  const Felt fine = slide(1), coarse = slide(kPeriod);
+  const double normal = fine.mean.z();
+  EXPECT_NEAR(coarse.mean.z() / normal, 1.0, 0.004);
+  EXPECT_NEAR((coarse.mean.x() - fine.mean.x()) / normal, 0.0, 0.008);  // 0.014 with all of the end's normals
+  EXPECT_LT(coarse.buzz, 0.004 * normal);                               // 0.0056
 }
 
 /// Under a ball whose patch is two cells of 4 mm in radius: κ as the body's stiffness asks for, twice that,
