@@ -20,7 +20,7 @@ EDGE, MODULUS, POISSON = 0.2, 1e5, 0.3  # of the block [m, Pa, –]
 GAP, SECONDS, DOWN = 0.0005, 0.3, 0.25  # way before the touch [m]; of the motion, and of its way down [s]
 LIMIT = 2.065  # of the light press [N], to 0.01, by cells that are made finer and finer
 NUMBERS = (2200, 5000, 10000, 20000)
-DEMONSTRATION = ["/material/plasticity/enabled=false", "/material/clay_kernel/form=off", "/trace/duration_s=0.9",
+DEMONSTRATION = ["/dynamics/model=hencky", "/material/plasticity/enabled=false", "/material/clay_kernel/form=off", "/trace/duration_s=0.9",
                  "/haptics/physics_period_ticks=10"]
 FINEST = (60000, 240000)  # from which its limit is extrapolated: linear tets err as the square root of their number
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace argil::sim {
 namespace {
@@ -36,17 +37,22 @@ Vec3 place_in_world(const contact::Pose& tool, const Vec3& place) {
 }
 
 /// Of a disc on which a ball would press as far apart [m]: the mean square distance of Hertz's pressure from
-/// the middle is 2/5 of its radius squared.
-double find_radius(const std::vector<VertexForce>& forces, const Points& x) {
+/// the middle is 2/5 of its radius squared. `get`: force [N] and place of each of `parts`.
+template <class Parts, class Get>
+double find_radius(const Parts& parts, Get get) {
   double sum = 0.0;
   Vec3 centre = Vec3::Zero();
-  for (const auto& [vertex, force] : forces) {
-    sum += force.norm();
-    centre += force.norm() / sum * (x.col(vertex) - centre);
+  for (const auto& part : parts) {
+    const auto [force, place] = get(part);
+    if (!(force > 0.0)) continue;
+    sum += force;
+    centre += force / sum * (place - centre);
   }
   double square = 0.0;
-  for (const auto& [vertex, force] : forces)
-    square += force.norm() / sum * (x.col(vertex) - centre).squaredNorm();
+  for (const auto& part : parts) {
+    const auto [force, place] = get(part);
+    if (force > 0.0) square += force / sum * (place - centre).squaredNorm();
+  }
   return std::sqrt(2.5 * square);
 }
 
@@ -55,8 +61,9 @@ double find_radius(const std::vector<VertexForce>& forces, const Points& x) {
 void Grip::hold(const contact::Contacts& contacts, const contact::Patch& patch, const Points& x,
                 const Vec3& on_hand, const contact::Pose& tool) {
   const std::vector<VertexForce> forces = find_vertex_forces(contacts);
-  const double radius = std::max(patch.radius, find_radius(forces, x));
-  const double stiffness = kStiffness * 2.0 * patch.modulus * radius;
+  const double of_vertices = find_radius(
+      forces, [&](const VertexForce& f) { return std::pair(f.force.norm(), Vec3(x.col(f.vertex))); });
+  const double stiffness = kStiffness * 2.0 * patch.modulus * std::max(patch.radius, of_vertices);
   double squares = 0.0;
   for (const VertexForce& f : forces) squares += f.force.squaredNorm();
   const Quat to_tool = tool.orientation.conjugate();
@@ -68,7 +75,11 @@ void Grip::hold(const contact::Contacts& contacts, const contact::Patch& patch, 
     const Vec3 place = x.col(vertex) + force / part;
     m_state.bonds.push_back({vertex, to_tool * (place - tool.position), to_tool * force.normalized(), part});
   }
-  m_state.area = std::numbers::pi * patch.radius * patch.radius;
+  // In a dent a ball touches faces in their middles alone: the patch reaches as far as what presses.
+  const double of_points = find_radius(
+      contacts.contacts, [](const contact::Contact& c) { return std::pair(c.end_force, c.point); });
+  const double radius = std::max(patch.radius, of_points);
+  m_state.area = std::numbers::pi * radius * radius;
   const Vec3 normal = find_normal(tool);
   m_state.pressing_force = holds() ? std::max({0.0, on_body.dot(normal), -on_hand.dot(normal)}) : 0.0;
 }

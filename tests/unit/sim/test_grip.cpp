@@ -160,6 +160,25 @@ TEST(Grip, LetsGoBeyondItsStrengthTimesItsArea) {
   }
 }
 
+/// In a dent a ball touches faces in their middles alone: less is covered than what presses lies apart.
+/// Hertz's pressure on a disc of radius a has the mean square distance 2/5 a² from its middle.
+TEST(Grip, BearsAsMuchAsADiscAsWideAsWhatPresses) {
+  Vec3 centre = Vec3::Zero();
+  const Scene scene;
+  for (std::size_t i = 0; i < kPoints; ++i)
+    centre += static_cast<double>(i + 1) / 6.0 * scene.pressed.contacts[i].point;
+  double square = 0.0;
+  for (std::size_t i = 0; i < kPoints; ++i)
+    square += static_cast<double>(i + 1) / 6.0 * (scene.pressed.contacts[i].point - centre).squaredNorm();
+  const double most = kStrength * std::numbers::pi * 2.5 * square;  // [N]
+  for (const double share : {0.999, 1.001}) {
+    Scene patch;
+    patch.grip.hold(patch.pressed, {1e-4, kPatch.modulus}, patch.x, patch.on_hand, patch.tool);
+    patch.grip.test(-share * most * Vec3::UnitZ(), patch.tool);
+    EXPECT_EQ(patch.grip.holds(), share < 1.0);
+  }
+}
+
 TEST(Grip, HoldsWhatPressesLessThanWhenItTookHold) {
   Scene patch;
   patch.hold();
