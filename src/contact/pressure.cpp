@@ -203,8 +203,7 @@ void PressureContact::add_contact(const std::array<int, 3>& vertex, const Vec3& 
   if (touches) {
     out.contacts.push_back(c);
   } else {
-    // Where the tool goes away it is met on its way, like one that has been touched.
-    c.force = stiffness * std::max(depth.end, 0.5 * (depth.begin + depth.end)) * depth.outward;
+    c.force = stiffness * depth.end * depth.outward;
     c.stiffness = stiffness;
     out.near.push_back(c);
   }

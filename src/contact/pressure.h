@@ -100,10 +100,10 @@ class PressureContact {
   };
   /// How deep a point of the body is below the tool's surface.
   struct PointDepth {
-    double mean = 0.0;            ///< of max(0, depth) over the way [m]; of depth itself where a step lets go
-    double begin = 0.0;           ///< at its start, negative outside [m]
-    double end = 0.0;             ///< at its end, negative outside [m]
-    double share = 0.0;           ///< of the way below the surface; 1 where a step lets go
+    double mean = 0.0;   ///< of max(0, depth) over the way, or where a step asks for it, at its end [m]
+    double begin = 0.0;  ///< at its start, negative outside [m]
+    double end = 0.0;    ///< at its end, negative outside [m]
+    double share = 0.0;  ///< of the way below the surface; 1 where a step lets go
     Vec3 outward = Vec3::Zero();  ///< unit mean of the way out of the tool, weighted by depth
   };
   /// What of a triangle the tool has covered.

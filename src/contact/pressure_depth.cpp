@@ -156,7 +156,10 @@ double PressureContact::find_held_facing(const Vec3& p, const Vec3& normal, cons
   return std::clamp(difference / (kFull * (through_outside + through_body)), 0.0, 1.0);
 }
 
-/// Mean over the way of the depth below the tool's surface, which is linear between its places.
+/// Mean over the way of the depth below the tool's surface, which is linear between its places. Where a step
+/// finds how far the body yields, it is for a point that the tool touches at either end of its way the depth
+/// at the end, even below zero: the body is to meet the tool there. With a mean it would lag ahead of the
+/// tool and not behind it, where it comes back by itself.
 PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
   if (m_passage) return find_passage_depth(p);
   PointDepth point;
@@ -167,9 +170,7 @@ PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
   point.begin = point.end = -before.distance;
   if (m_places.size() == 1 && (point.end > 0.0 || !finds_near()))
     return {std::max(0.0, point.end), point.end, point.end, point.end > 0.0 ? 1.0 : 0.0, before.outward};
-  // By which each place turns the way out, so that a slide presses as much behind as ahead.
-  const auto weigh = [&](const ToolDistance& at) { return std::max(0.0, far - at.distance) * at.outward; };
-  point.outward = weigh(before);
+  point.outward = std::max(0.0, point.end) * before.outward;
   const std::size_t last = m_places.size() - 1;
   for (std::size_t i = 0; i < last;) {
     // None of the places that are left out is below the surface, nor is the next one.
@@ -181,18 +182,13 @@ PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
     const double share = low >= 0.0 ? 1.0 : high > 0.0 ? high / (high - low) : 0.0;
     point.share += share / pieces;
     point.mean += 0.5 * share * (high + std::max(0.0, low)) / pieces;
-    point.outward += weigh(found);
+    point.outward += std::max(0.0, point.end) * found.outward;
     before = found;
   }
-  if (m_is_solved_for && point.begin > 0.0 && point.end <= 0.0) {
-    point.end = -find_distance(p, m_places.back()).distance;
-    point.mean = 0.5 * (point.begin + point.end);
-    point.share = 1.0;
-  }
-  if (!(point.mean > 0.0) && point.begin <= 0.0 && finds_near()) {
+  if (m_is_solved_for) {
     before = find_distance(p, m_places.back());
-    point.begin = -find_distance(p, m_places.front()).distance;
     point.end = -before.distance;
+    if (point.begin > 0.0 || point.end > 0.0) return {point.end, point.begin, point.end, 1.0, before.outward};
   }
   const double length = point.outward.norm();
   point.outward = length > 0.0 ? Vec3(point.outward / length) : before.outward;

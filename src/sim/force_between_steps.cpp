@@ -16,14 +16,14 @@ Vec3 carry(const Vec3& point, const contact::Pose& from, const contact::Pose& to
 
 }  // namespace
 
-ForceBetweenSteps::ForceBetweenSteps(const RateParams& rates)
-    : m_period(rates.haptic_period), m_planned(rates.physics_period_ticks) {}
+ForceBetweenSteps::ForceBetweenSteps(const RateParams& rates, double lag)
+    : m_period(rates.haptic_period), m_planned(rates.physics_period_ticks), m_lag(lag) {}
 
-/// The force of a mean over the tool's way is that of the tool in its middle.
 void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::Pose& from,
                              const contact::Pose& to) {
   Place& told = m_state.told;
-  told.tool = {0.5 * (from.position + to.position), from.orientation.slerp(0.5, to.orientation)};
+  told.tool = {to.position + m_lag * (from.position - to.position),
+               to.orientation.slerp(m_lag, from.orientation)};
   told.centre = told.tool.position;
   told.outward.setZero();
   told.springs = 0.0;
@@ -57,10 +57,10 @@ void ForceBetweenSteps::repay(bool has_left, LoadCollector& load) {
     load.add_reaction({share.vertex, share.weight, share.force.cwiseProduct(-given / step_s)});
 }
 
-/// Where the force grows steadily from answer to answer, by ΔF, the hand has felt (N − ½) ΔF more in the N
-/// ticks after the first than that: that the body gets with the next one.
+/// Where the force grows steadily from answer to answer, by ΔF, the hand has felt (½(N − 1) + N·lag) ΔF more
+/// in N ticks than that: that the body gets with the next one.
 void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& friction) {
-  const double ahead = (m_planned - 0.5) * m_period;
+  const double ahead = (0.5 * (m_planned - 1) + m_planned * m_lag) * m_period;
   m_state.owed += m_period * (m_state.excess + (m_state.ticks - m_planned) * m_state.answer.force) +
                   ahead * (m_state.answer.force - answer.force);
   m_state.excess.setZero();

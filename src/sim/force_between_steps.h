@@ -22,7 +22,8 @@ namespace argil::sim {
 /// with every step, and all of it once the tool has left. So both get the same impulse.
 class ForceBetweenSteps {
  public:
-  explicit ForceBetweenSteps(const RateParams& rates);
+  /// `lag`: how far before the end of its way the tool was that a step answers for, in steps.
+  ForceBetweenSteps(const RateParams& rates, double lag);
 
   /// The body is told of these contacts, found while the tool went from `from` to `to`.
   void tell(const contact::Contacts& contacts, const contact::Pose& from, const contact::Pose& to);
@@ -79,6 +80,7 @@ class ForceBetweenSteps {
 
   double m_period;  // δ [s]
   int m_planned;    // ticks of a step
+  double m_lag;     // [steps]
   State m_state, m_committed;
   Points m_load, m_response;  // 3×nodes, of find_stiffness
 };

@@ -36,7 +36,7 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
     m_friction.emplace(params.contact.friction, surface.num_vertices());
   if (m_pressure && params.rates.between_frames != BetweenFrames::hold &&
       params.rates.physics_period_ticks > 1)
-    m_between.emplace(params.rates);
+    m_between.emplace(params.rates, params.solid.takes_contact_at_end() ? 0.0 : 0.5);
   m_unpressed.with_touched = false;
   begin_at(start);
 }

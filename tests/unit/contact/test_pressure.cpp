@@ -279,7 +279,9 @@ TEST(Pressure, MeasuresThePatchWithoutJumps) {
       const Pose pose{{0.0011, 0.0023, kRadius - 4e-6 * i}};
       pressure.find_contacts(plane.vertices, pose, pose, Yielding::yes, contacts);
       const double radius = pressure.find_patch().radius;
-      if (before > 0.0) EXPECT_NEAR(radius / before, 1.0, 0.05) << n << ' ' << i;
+      if (before > 0.0) {
+        EXPECT_NEAR(radius / before, 1.0, 0.05) << n << ' ' << i;
+      }
       before = radius;
     }
   }

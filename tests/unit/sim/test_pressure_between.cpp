@@ -296,6 +296,29 @@ TEST(PressureStiffness, ToolThatGoesBackIsFollowed) {
   EXPECT_NEAR(forces.back().z() / wanted, 1.0, 5e-3);
 }
 
+/// A ball that is drawn back slowly stays in touch, step after step: what it leaves in one is there in the
+/// next.
+TEST(PressureStiffness, ToolThatIsDrawnBackStaysInTouch) {
+  constexpr double kHeight = 0.01, kDeep = 1e-3, kLess = 0.4e-3;
+  const auto hand = [](double depth) {
+    device::DeviceSample sample;
+    sample.position = {0.0106, 0.0098, kHeight + kBallRadius - depth};
+    return sample;
+  };
+  const auto draw = [&](int period) {
+    Params params = make_pressure_params(period, BetweenFrames::re_evaluate);
+    params.solid.solver.tolerance = 1e-6;
+    Simulation simulation(argil::test::make_block_body(10, 10, 5, Vec3(0.02, 0.02, kHeight), 0.0, true),
+                          contact::make_sphere_tool(kBallRadius, 2), params, hand(-1e-3));
+    lead(simulation, hand(kDeep), 70);
+    lead(simulation, hand(kDeep), 70);
+    return lead(simulation, hand(kLess), 140);
+  };
+  const std::vector<Vec3> fine = draw(1), coarse = draw(5);
+  const double peak = fine.front().norm();
+  for (std::size_t k = 0; k < fine.size(); ++k) ASSERT_LT((coarse[k] - fine[k]).norm(), 0.03 * peak) << k;
+}
+
 /// A ball that slides without friction, a sixth of a cell in a step, over the length of a cell: the mean over
 /// the way neither drives it nor holds it, and what presses behind alternates no more than what presses
 /// ahead.
