@@ -48,8 +48,8 @@ enum class Yielding {
 class PressureContact {
  public:
   /// `surface`: 3×m triangles of body vertex numbers, outward. `is_solved_for`: an implicit step finds how
-  /// far the body comes along with a tool that draws back, and lets go what would draw. A contact that the
-  /// tool has left by the end of its way then has the force of the mean depth, even below zero.
+  /// far the body yields to the tool or comes along with it, and lets go what would draw. A point that the
+  /// tool touches at either end of its way then has the force of the depth at the end, even below zero.
   PressureContact(const Triangles& surface, int num_vertices, ToolSolid tool, SurfaceStiffness stiffness,
                   bool is_solved_for = false, PenaltyKind penalty = PenaltyKind::continuous);
 
@@ -103,7 +103,7 @@ class PressureContact {
     double mean = 0.0;   ///< of max(0, depth) over the way, or where a step asks for it, at its end [m]
     double begin = 0.0;  ///< at its start, negative outside [m]
     double end = 0.0;    ///< at its end, negative outside [m]
-    double share = 0.0;  ///< of the way below the surface; 1 where a step lets go
+    double share = 0.0;  ///< of the way below the surface; 1 where a step asks for the end
     Vec3 outward = Vec3::Zero();  ///< unit mean of the way out of the tool, weighted by depth
   };
   /// What of a triangle the tool has covered.
