@@ -300,7 +300,10 @@ TEST_F(ScenarioFile, AStrengthInPascalsMakesClayOfLargeStrain) {
 TEST_F(ScenarioFile, ABodyMadeHereIsTheSurfaceWithItsCellsWhereTheToolIs) {
   const std::string elastic = "/material/plasticity/enabled=false", pressure = "/contact/law=pressure";
   const Scenario s = load({elastic, pressure});
-  EXPECT_EQ(s.params.solid.model, solid::StrainModel::hencky);
+  EXPECT_EQ(s.params.solid.model, solid::StrainModel::curnier);
+  const std::string creep = "/material/plasticity/creep_per_s=2";
+  ARGIL_EXPECT_THROW_WITH(load({creep, pressure, "/dynamics/model=curnier"}), InputError,
+                          "/dynamics/model: curnier is a law of clay that does not flow");
   EXPECT_EQ(s.body.cells.kind, CellKind::graded);
   EXPECT_EQ(s.body.fit, embed::Fit::surface);
 
