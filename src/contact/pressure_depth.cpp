@@ -170,6 +170,12 @@ PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
   point.begin = point.end = -before.distance;
   if (m_places.size() == 1 && (point.end > 0.0 || !finds_near()))
     return {std::max(0.0, point.end), point.end, point.end, point.end > 0.0 ? 1.0 : 0.0, before.outward};
+  ToolDistance end;
+  if (m_is_solved_for) {
+    end = find_distance(p, m_places.back());
+    if (point.begin > 0.0 || end.distance < 0.0)
+      return {-end.distance, point.begin, -end.distance, 1.0, end.outward};
+  }
   point.outward = std::max(0.0, point.end) * before.outward;
   const std::size_t last = m_places.size() - 1;
   for (std::size_t i = 0; i < last;) {
@@ -186,9 +192,8 @@ PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
     before = found;
   }
   if (m_is_solved_for) {
-    before = find_distance(p, m_places.back());
-    point.end = -before.distance;
-    if (point.begin > 0.0 || point.end > 0.0) return {point.end, point.begin, point.end, 1.0, before.outward};
+    before = end;
+    point.end = -end.distance;
   }
   const double length = point.outward.norm();
   point.outward = length > 0.0 ? Vec3(point.outward / length) : before.outward;

@@ -382,8 +382,7 @@ void bind_dynamics(Binder& b, Scenario& s) {
   b.choice("/dynamics/model", d.model, strain_model_names(),
            describe_strain_models() +
                " Where it is not given: hencky of clay whose strength is in pascals, curnier of elastic, "
-               "isotropic "
-               "clay in a body made here.");
+               "isotropic clay in a body made here.");
   b.choice<solid::ElementKind>(
       "/dynamics/element", d.element,
       {{solid::ElementKind::p1, "p1"},

@@ -25,10 +25,9 @@ ARGIL_INLINE void set_fourth_excess(const Real* x, Real* result) {
   for (int k = 0; k < 6; ++k) result[k] = 2.0 * squares[k] + product[k];
 }
 
-/// The volume ratio J and what the law makes of it.
+/// What the law makes of the volume ratio J.
 template <class Real>
 struct CurnierVolume {
-  Real ratio;   ///< J
   Real stress;  ///< J θ θ′: Kirchhoff stress per λ
   Real slope;   ///< its derivative by ln J
   Real change;  ///< θ = ¼ (J^(5/2) − J^(−3/2))
@@ -49,7 +48,6 @@ ARGIL_INLINE void find_curnier_volume(const Real* x, CurnierVolume<Real>& volume
   const Real over = 1.0 / (fourth + 1.0);  // J⁻⁴
   set_root(root, J);
   const Real small = root * J * J * over;  // J^(−3/2)
-  volume.ratio = J;
   volume.stress = J * fourth * (5.0 + 3.0 * over) / 32.0;
   volume.slope = J * (25.0 * (fourth + 1.0) - 2.0 + 9.0 * over) / 32.0;
   volume.change = 0.25 * small * fourth;

@@ -56,8 +56,7 @@ ARGIL_EVERY_PROCESSOR void compute_hencky_forces(const ForceArrays& tets, std::p
   for (int k = 0; k < 3; ++k) stress[k] += pressure;
   Real33<Lanes> tau, inverse, P, piola;
   set_symmetric(stress, tau);
-  Lanes determinant;
-  set_inverse(strain, inverse, determinant);
+  set_inverse(strain, inverse);
   multiply(tau, inverse, P);
   multiply(R, P, piola);
   Lanes force[12];
@@ -115,8 +114,7 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
   for (int k = 0; k < 6; ++k) metric[k] -= 2.0 * strain[k] + strain_squares[k];
   Real33<Lanes> middle, inverse, half, whole;
   set_symmetric(metric, middle);
-  Lanes determinant;
-  set_inverse(strain, inverse, determinant);
+  set_inverse(strain, inverse);
   multiply(inverse, middle, half);
   multiply(half, inverse, whole);
   const Lanes excess[6] = {whole.m[0],

@@ -21,9 +21,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 using Tensor = std::array<double, 6>;  // 11 22 33 23 13 12
 
 Tensor find_strain(const PointMotion& m) {
-  constexpr double s = 1.0 / kSqrt2;
-  const Vec6 strain = compute_strain(m.F, m.R);
-  return {strain(0), strain(1), strain(2), s * strain(3), s * strain(4), s * strain(5)};
+  return make_tensor(compute_strain(m.F, m.R));
 }
 
 bool is_inverted(const PointMotion& m) {

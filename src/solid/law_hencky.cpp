@@ -7,7 +7,6 @@
 
 #include <Eigen/LU>
 
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -18,13 +17,6 @@
 
 namespace argil::solid {
 namespace {
-
-using Tensor = std::array<double, 6>;  // 11 22 33 23 13 12
-
-Tensor make_tensor(const Vec6& mandel) {
-  constexpr double s = 1.0 / kSqrt2;
-  return {mandel(0), mandel(1), mandel(2), s * mandel(3), s * mandel(4), s * mandel(5)};
-}
 
 Mat3 make_matrix(const Real33<double>& a) {
   return Eigen::Map<const Mat3>(a.m);
@@ -44,8 +36,8 @@ HenckyPoint find_point(const PointMotion& m, const Vec6& plastic_strain) {
   HenckyPoint point;
   point.strain = compute_strain(m.F, m.R);
   point.is_inverted = !(m.F.determinant() > 0.0);
-  const Tensor strain = make_tensor(point.strain);
-  const Tensor plastic = make_tensor(plastic_strain);
+  const auto strain = make_tensor(point.strain);
+  const auto plastic = make_tensor(plastic_strain);
   find_elastic_stretch(strain.data(), plastic_strain.isZero(0.0) ? nullptr : plastic.data(), point.stretch);
   point.logarithm = Eigen::Map<const Vec3>(point.stretch.logarithm);
   point.N = make_matrix(point.stretch.N);

@@ -17,9 +17,10 @@ ARGIL_INLINE void read_tensor(const double* from, std::ptrdiff_t begin, std::ptr
   for (int k = 3; k < 6; ++k) tensor[k] *= kShear;
 }
 
-/// S⁻¹ of S = 1 + ε, as a 3×3, and det S.
-ARGIL_INLINE void set_inverse(const Lanes* strain, Real33<Lanes>& inverse, Lanes& determinant) {
+/// S⁻¹ of S = 1 + ε, as a 3×3.
+ARGIL_INLINE void set_inverse(const Lanes* strain, Real33<Lanes>& inverse) {
   Real33<Lanes> S;
+  Lanes determinant;
   set_symmetric(strain, S);
   for (int k = 0; k < 9; k += 4) S.m[k] += 1.0;
   set_cofactor(S, inverse, determinant);
@@ -119,9 +120,8 @@ ARGIL_INLINE void write_pair_blocks(const TangentArrays& tets, std::ptrdiff_t be
   const Lanes exact_lambda = exact * lambda;
   const Lanes kept_lambda = tets.kept * weight * lanes.lambda, kept_mu = tets.kept * weight * lanes.mu;
 
-  Lanes determinant;
   Real33<Lanes> inverse, directions;
-  set_inverse(lanes.strain, inverse, determinant);
+  set_inverse(lanes.strain, inverse);
   multiply(lanes.R, N, directions);
   Lanes moved[12], g[12], c[12];
   turn(inverse, gradient, moved);

@@ -3,11 +3,20 @@
 // How the stress of an isotropic law of large strain follows a change of motion, at one point or at eight
 // side by side, in the principal directions of the elastic left stretch.
 
+#include <array>
+
 #include "base/lanes.h"
+#include "base/mandel.h"
 #include "base/types.h"
 #include "solid/law.h"
 
 namespace argil::solid {
+
+/// 11 22 33 23 13 12 of a Mandel tensor, shears as they stand in the matrix.
+inline std::array<double, 6> make_tensor(const Vec6& mandel) {
+  constexpr double s = 1.0 / kSqrt2;
+  return {mandel(0), mandel(1), mandel(2), s * mandel(3), s * mandel(4), s * mandel(5)};
+}
 
 /// How a change of Kirchhoff stress's work follows a change of motion, in the directions of b, with the
 /// velocity gradient l = dF F⁻¹: dP Fᵀ has Σ normalᵢⱼ lⱼⱼ on its diagonal, and (w + τⱼ) lᵢⱼ + w lⱼᵢ at (i,
