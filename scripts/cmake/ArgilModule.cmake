@@ -29,12 +29,18 @@ function(argil_module name)
     ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}/argil" FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/argil")
 endfunction()
 
+# What only asks the modules is compiled as fast as its optimizer lets it: half of a clean build is tests.
+function(argil_optimize_little target)
+  target_compile_options(${target} PRIVATE "$<$<CONFIG:Release>:-O1>")
+endfunction()
+
 # argil_test(NAME LABEL label … SOURCES a.cpp … DEPENDS mesh …)
 # One GoogleTest program; every TEST in it becomes a ctest entry that carries the labels.
 function(argil_test name)
   cmake_parse_arguments(ARG "" "" "LABELS;SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   argil_use_precompiled(${name} argil_tests_precompiled)
+  argil_optimize_little(${name})
   target_link_libraries(${name} PRIVATE argil_options argil_test_support GTest::gtest GTest::gtest_main)
   foreach(folder IN LISTS ARG_DEPENDS)
     target_link_libraries(${name} PRIVATE argil_${folder})
