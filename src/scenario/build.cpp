@@ -197,7 +197,7 @@ void fix_and_load(const Scenario& s, const Halvings& halvings, sim::Body& body) 
 void check_supports(const Scenario& s, const sim::Body& body) {
   const solid::Elements elements = solid::make_elements(body.mesh, body.topology, s.params.solid.element);
   const std::string motion = solid::find_rigid_motion(elements, body.topology,
-                                                      solid::find_constraints(elements.rest, body.supports));
+                                                      solid::find_constraints(elements, body.supports));
   if (!motion.empty())
     throw InputError(s.file, "/body/fixed", "does not hold the body: " + motion,
                      "hold at least three vertices of it that are not on a line");

@@ -44,7 +44,7 @@ Model::Model(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
       threads(num_threads),
       elements(make_elements(mesh, topology, params.element)),
       supports(std::move(held)),
-      constraints(find_constraints(elements.rest, supports)) {
+      constraints(find_constraints(elements, supports)) {
   number_rows(*this);
 }
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/quadratic.h"
+#include "solid/elements.h"
+
 namespace argil::solid {
 namespace {
 
@@ -22,6 +25,20 @@ bool contains(const Region& region, const Vec3& x) {
   return false;
 }
 
+/// Adds the nodes in the middle of edges between two of them.
+void add_middles(const Elements& elements, std::vector<int>& nodes) {
+  if (elements.nodes_per_tet == 4) return;
+  std::vector<char> is_listed(static_cast<std::size_t>(elements.num_nodes()), 0);
+  for (const int node : nodes) is_listed[static_cast<std::size_t>(node)] = 1;
+  for (int t = 0; t < elements.num_tets(); ++t)
+    for (int k = 0; k < 6; ++k) {
+      const auto is_end_listed = [&](int end) {
+        return is_listed[static_cast<std::size_t>(elements.nodes(mesh::kTetEdges[k][end], t))] == 1;
+      };
+      if (is_end_listed(0) && is_end_listed(1)) nodes.push_back(elements.nodes(4 + k, t));
+    }
+}
+
 }  // namespace
 
 std::vector<int> find_nodes(const Points& rest, std::span<const Region> regions) {
@@ -36,14 +53,17 @@ std::vector<int> find_nodes(const Points& rest, std::span<const Region> regions)
   return found;
 }
 
-Constraints find_constraints(const Points& rest, std::span<const Support> supports) {
+Constraints find_constraints(const Elements& elements, std::span<const Support> supports) {
   Constraints constraints;
-  constraints.support.setConstant(3, rest.cols(), -1);
-  for (std::size_t s = 0; s < supports.size(); ++s)
-    for (const int node : find_nodes(rest, std::span(&supports[s].region, 1)))
+  constraints.support.setConstant(3, elements.num_nodes(), -1);
+  for (std::size_t s = 0; s < supports.size(); ++s) {
+    std::vector<int> nodes = find_nodes(elements.rest, std::span(&supports[s].region, 1));
+    add_middles(elements, nodes);
+    for (const int node : nodes)
       for (int k = 0; k < 3; ++k)
         if (supports[s].fixes[static_cast<std::size_t>(k)])
           constraints.support(k, node) = static_cast<int>(s);
+  }
   return constraints;
 }
 

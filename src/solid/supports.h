@@ -8,6 +8,8 @@
 
 namespace argil::solid {
 
+struct Elements;
+
 /// Part of space whose nodes at rest are meant.
 struct Region {
   enum class Kind { box, sphere, half_space, plane, nodes } kind = Kind::box;
@@ -42,7 +44,8 @@ struct Constraints {
   bool is_held(int node) const { return (support.col(node).array() >= 0).all(); }
 };
 
-Constraints find_constraints(const Points& rest, std::span<const Support> supports);
+/// A node in the middle of an edge is held where both ends of the edge are meant, by place or by number.
+Constraints find_constraints(const Elements& elements, std::span<const Support> supports);
 
 /// Displacement that a support prescribes at a time.
 Vec3 compute_displacement(const Support& support, double time);

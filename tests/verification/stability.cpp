@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "base/check.h"
+#include "contact/tool_shape.h"
+#include "support/block_body.h"
 #include "support/one_node.h"
 
 namespace argil::verification {
@@ -25,36 +27,72 @@ struct HeldMotion {
   }
 };
 
+using contact::ContactLaw;
+
+// A block that is pressed evenly: without Poisson's effect it is a column, of the stiffness E A/h, and the
+// contact one of κ A.
+constexpr double kSide = 0.02;          // of the square top, and the height [m]
+constexpr double kTop = kSide * kSide;  // [m²]
+constexpr double kFlat = 2e3;  // radius of a ball whose surface is flat over the top, to 10⁻⁷ m [m]
+const material::Elastic kColumn = {2e4, 0.0};
+
 sim::Params make_params(const Wall& wall, double stiffness) {
   sim::Params params = test::make_one_node_params();
-  params.contact.vertex_face_stiffness = stiffness;
-  params.contact.edge_edge_stiffness = stiffness;
+  params.contact.law = wall.law;
   params.contact.penalty = wall.penalty;
   params.rates.physics_period_ticks = wall.physics_period_ticks;
   params.rates.between_frames = wall.between;
   params.passivity = wall.passivity;
+  if (wall.law == ContactLaw::pairs) {
+    params.contact.vertex_face_stiffness = stiffness;
+    params.contact.edge_edge_stiffness = stiffness;
+  } else {
+    params.elastic = kColumn;
+    params.contact.pressure_stiffness = stiffness / kTop;
+    params.contact.grip_strength = 1e9;
+    params.contact.round_tool = contact::RoundTool{kFlat, 0.0, kFlat, false};
+  }
   return params;
+}
+
+device::DeviceSample press(const Wall& wall, double depth) {
+  if (wall.law == ContactLaw::pairs)
+    return test::press_apex(depth, wall.gives_way ? device::ToolMode::push : device::ToolMode::dry);
+  device::DeviceSample sample;
+  sample.position = {0.5 * kSide, 0.5 * kSide, kSide + kFlat - depth};
+  return sample;
+}
+
+sim::Simulation make_simulation(const Wall& wall, const sim::Params& params) {
+  if (wall.law == ContactLaw::pairs) return test::make_one_node_simulation(params);
+  // Small faces press with their corners.
+  sim::Body block = test::make_block_body(6, 6, 1, Vec3(kSide, kSide, kSide));
+  if (!wall.gives_way) block.supports.front().region.offset = 2.0 * kSide;  // all of it is held
+  return {block, contact::make_sphere_tool(kFlat, 0), params, press(wall, -1e-3)};
 }
 
 }  // namespace
 
+double compute_body_stiffness(ContactLaw law) {
+  return law == ContactLaw::pairs ? test::compute_apex_stiffness(test::make_one_node_params().elastic)
+                                  : kColumn.youngs_modulus * kTop / kSide;
+}
+
 Closed run_closed_loop(const Wall& wall, const Operator& hand, double stiffness, Start start) {
   const sim::Params params = make_params(wall, stiffness);
-  const device::ToolMode mode = wall.gives_way ? device::ToolMode::push : device::ToolMode::dry;
-  const double felt = wall.gives_way
-                          ? test::compute_series(stiffness, test::compute_apex_stiffness(params.elastic))
-                          : stiffness;
+  const double felt =
+      wall.gives_way ? test::compute_series(stiffness, compute_body_stiffness(wall.law)) : stiffness;
   const double balance = hand.press / felt;
   const double frequency = std::sqrt(felt / hand.mass);
   const double seconds = std::max(3.0, 40.0 * 2.0 * std::numbers::pi / frequency);
-  sim::Simulation simulation = test::make_one_node_simulation(params);
+  sim::Simulation simulation = make_simulation(wall, params);
   const HeldMotion motion(hand, kTick);
   Closed closed;
   double depth = start == Start::nudge ? balance : -2e-3;
   double speed = 0.0;  // inward
   if (start == Start::nudge) {
     for (int k = 0; k < 280; ++k)  // until the body is in balance too
-      ARGIL_ASSERT(simulation.tick(test::press_apex(depth, mode)).is_ok());
+      ARGIL_ASSERT(simulation.tick(press(wall, depth)).is_ok());
     speed = closed.begin_speed = 1e-3 * balance * frequency;  // a thousandth of the depth
   }
   double given = simulation.hand_state().port_energy;
@@ -64,7 +102,7 @@ Closed run_closed_loop(const Wall& wall, const Operator& hand, double stiffness,
     depth += motion.a * speed + motion.c * force;
     speed = motion.p * speed + motion.q * force;
     if (closed.begin_speed == 0.0 && depth > 0.0) closed.begin_speed = speed;
-    if (!(std::abs(depth) < 0.5) || !simulation.tick(test::press_apex(depth, mode)).is_ok()) {
+    if (!(std::abs(depth) < 0.5) || !simulation.tick(press(wall, depth)).is_ok()) {
       closed.last_speed = closed.largest_speed = std::numeric_limits<double>::infinity();
       break;
     }
@@ -82,7 +120,7 @@ Closed run_closed_loop(const Wall& wall, const Operator& hand, double stiffness,
 double find_stable_stiffness(const Wall& wall, const Operator& hand, Start start, double least, double most) {
   const auto dies_away = [&](double k) { return run_closed_loop(wall, hand, k, start).dies_away(start); };
   // Bounces may come to rest at a stiffness above one at which they do not: the first that does not counts.
-  constexpr double kFactor = 1.5;
+  constexpr double kFactor = 2.0;
   double stable = least;
   if (!dies_away(least)) return 0.0;
   double unstable = std::min(kFactor * least, most);
@@ -91,7 +129,7 @@ double find_stable_stiffness(const Wall& wall, const Operator& hand, Start start
     stable = unstable;
     unstable = std::min(kFactor * unstable, most);
   }
-  while (unstable / stable > 1.001) {
+  while (unstable / stable > 1.003) {
     const double middle = std::sqrt(stable * unstable);
     (dies_away(middle) ? stable : unstable) = middle;
   }

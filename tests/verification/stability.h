@@ -11,12 +11,14 @@ struct Operator {
   double press = 0.02;   ///< [N]
 };
 
-/// How the wall is touched.
+/// How the wall is touched: a large ball, flat over the whole top of a block (the pressure law), or on a point
+/// (pairs).
 struct Wall {
-  bool gives_way = false;  ///< the elastic body of support/one_node.h, or one that is not deformed
+  bool gives_way = false;  ///< is elastic, or does not move at all
+  contact::ContactLaw law = contact::ContactLaw::pressure;
   int physics_period_ticks = 1;
   sim::BetweenFrames between = sim::BetweenFrames::hold;
-  contact::PenaltyKind penalty = contact::PenaltyKind::discrete;
+  contact::PenaltyKind penalty = contact::PenaltyKind::discrete;  ///< of pairs
   device::Passivity passivity = device::Passivity::none;
 };
 
@@ -42,11 +44,14 @@ struct Closed {
   }
 };
 
+/// Stiffness of a wall that gives way [N/m].
+double compute_body_stiffness(contact::ContactLaw law);
+
 /// The operator in closed loop with the simulation's own ticks, for 40 of its periods at the wall and 3 s at
 /// least; its motion under the held force is exact. `stiffness`: of the contact [N/m].
 Closed run_closed_loop(const Wall& wall, const Operator& hand, double stiffness, Start start);
 
-/// Smallest contact stiffness [N/m] from `least` on at which the motion does not die away, to 1 in 1000;
+/// Smallest contact stiffness [N/m] from `least` on at which the motion does not die away, to 3 in 1000;
 /// `most` when there is none.
 double find_stable_stiffness(const Wall& wall, const Operator& hand, Start start, double least, double most);
 

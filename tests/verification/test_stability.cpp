@@ -1,11 +1,14 @@
 // A virtual wall in the hand of a simulated operator, in closed loop with the simulation's own ticks.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "stability.h"
 
 namespace argil::verification {
 namespace {
 
+using contact::ContactLaw;
 using contact::PenaltyKind;
 using device::Passivity;
 using sim::BetweenFrames;
@@ -21,15 +24,19 @@ TEST(StableStiffness, OfAHeldForceTendsToTwiceTheDampingOverThePeriod) {
 
 TEST(StableStiffness, OfAWallIsThatOfTheCharacteristicPolynomial) {
   const Operator hand;
-  for (const PenaltyKind penalty : {PenaltyKind::discrete, PenaltyKind::continuous})
+  for (const auto [law, penalty] : {std::pair(ContactLaw::pressure, PenaltyKind::discrete),
+                                    std::pair(ContactLaw::pairs, PenaltyKind::discrete),
+                                    std::pair(ContactLaw::pairs, PenaltyKind::continuous)})
     for (const int period : {1, 14}) {
       Wall wall;
+      wall.law = law;
       wall.penalty = penalty;
       wall.physics_period_ticks = period;
       const double K = compute_stable_stiffness(hand, 1e-3 * period, penalty);
       for (const double factor : {0.95, 1.05}) {
         const Closed closed = run_closed_loop(wall, hand, factor * K, Start::nudge);
-        EXPECT_EQ(closed.dies_away(Start::nudge), factor < 1.0) << K << ' ' << period;
+        EXPECT_EQ(closed.dies_away(Start::nudge), factor < 1.0)
+            << K << ' ' << period << ' ' << static_cast<int>(law);
       }
     }
 }

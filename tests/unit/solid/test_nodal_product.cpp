@@ -47,8 +47,7 @@ TEST(NodalProduct, IsTheSumOverTheNodesWhileTetsBecomeLockingFreeAndPlainAgain) 
     node_of_row.push_back(node);
   }
   NodalVolume nodal(elements, row_of_node, 1);
-  NodalProduct product(nodal, node_of_row, row_of_node, find_constraints(elements.rest, {&held, 1}), false,
-                       1);
+  NodalProduct product(nodal, node_of_row, row_of_node, find_constraints(elements, {&held, 1}), false, 1);
   const auto num_rows = static_cast<Eigen::Index>(node_of_row.size());
   Rng rng(5);
   Points x(3, num_rows);

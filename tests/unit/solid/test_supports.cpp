@@ -26,6 +26,23 @@ TEST(FindNodes, CollectsEveryRegionOnceInOrder) {
   EXPECT_EQ(find_nodes(mesh.vertices, regions), (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 26}));
 }
 
+TEST(FindConstraints, HoldsTheSameByNumberAsByPlace) {
+  // The bottom of a block: 9 vertices, and of ten-node tets the middles of its 16 edges.
+  const mesh::TetMesh mesh = test::make_block(2, 2, 2, Vec3(1, 1, 1));
+  const mesh::Topology topology = mesh::make_topology(mesh);
+  Support by_place;
+  by_place.region.kind = Region::Kind::plane;
+  Support by_number;
+  by_number.region.kind = Region::Kind::nodes;
+  by_number.region.nodes = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+  for (const auto [kind, count] : {std::pair(ElementKind::p1, 9), std::pair(ElementKind::p2, 25)}) {
+    const Elements elements = make_elements(mesh, topology, kind);
+    const Constraints number = find_constraints(elements, {&by_number, 1});
+    EXPECT_EQ(number.support, find_constraints(elements, {&by_place, 1}).support);
+    EXPECT_EQ((number.support.array() >= 0).count(), 3 * count);
+  }
+}
+
 TEST(FindNodes, TakesTheDirectionOfANormalAndNotItsLength) {
   // The diagonal plane through the middle of a unit cube lies √3/2 from its corner.
   const mesh::TetMesh mesh = test::make_block(2, 2, 2, Vec3(1, 1, 1));
@@ -80,7 +97,7 @@ std::string find_motion(const mesh::TetMesh& mesh, const std::vector<Support>& s
                         ElementKind element = ElementKind::p1) {
   const mesh::Topology topology = mesh::make_topology(mesh);
   const Elements elements = make_elements(mesh, topology, element);
-  return find_rigid_motion(elements, topology, find_constraints(elements.rest, supports));
+  return find_rigid_motion(elements, topology, find_constraints(elements, supports));
 }
 
 /// How many motions of the free components cost no energy: zero eigenvalues of the stiffness.
