@@ -12,6 +12,7 @@ namespace argil::contact {
 namespace {
 
 constexpr int kMostLevels = 10;         // of splitting a triangle in four
+constexpr double kMostPieces = 2.6e5;   // of all triangles near the tool
 constexpr double kLeastRadius = 0.25;   // of that of the covered area
 constexpr double kFarthestNear = 0.25;  // of the tool's radius
 
@@ -162,7 +163,7 @@ double PressureContact::find_patch_radius() {
   double spacing = 0.0;
   for (const Face& face : m_faces) spacing = std::max(spacing, face.size);
   double coarser = 0.0;  // the radius with pieces twice as large
-  for (int pass = 0; pass <= kMostLevels; ++pass, spacing *= 0.5) {
+  for (int pass = 0; pass <= m_most_levels; ++pass, spacing *= 0.5) {
     Cover patch;
     for (const Face& face : m_faces) {
       const double levels = std::ceil(std::log2(face.size / spacing) - 1e-9);
@@ -257,7 +258,7 @@ PressureContact::Cover PressureContact::press_pieces(const Face& face, const Pie
 /// force has no jump as the patch grows. Where the body yields, faces that small press with their corners: as
 /// nodes do that a tool moves.
 void PressureContact::press_face(Face& face, double spacing, Contacts& out) {
-  const double levels = std::clamp(std::log2(face.size / spacing), 0.0, static_cast<double>(kMostLevels));
+  const double levels = std::clamp(std::log2(face.size / spacing), 0.0, static_cast<double>(m_most_levels));
   const int level = static_cast<int>(levels);
   // In which part of a halving one number of them gives way to the next: where the body yields, the force
   // hangs on it most.
@@ -308,22 +309,25 @@ Patch PressureContact::find_patch() const {
 /// κ [Pa/m] of a tool under which the body keeps its shape. Hertz: a ball that is d deep in a half-space is
 /// pressed out by 4/3 E* √R d^{3/2}; as it lies in a plane that does not yield, its patch has the radius
 /// a = √(2Rd) and ∫ depth dA = π R d². So κ = 4√2/(3π) E*/a = 0.600 E*/a; Sneddon's cone wants 0.608 and a
-/// flat punch 0.637.
-double PressureContact::find_held_stiffness() const {
+/// flat punch 0.637. Of a body that will yield, that is in series with its own κ.
+double PressureContact::find_held_stiffness(bool will_yield) const {
   double area = 0.0;
   double modulus = 0.0;
+  double penalty = 0.0;
   for (const Face& face : m_faces) {
     area += face.cover.facing_area;
     modulus += face.cover.facing_area * m_stiffness.modulus(face.number);
+    penalty += face.cover.facing_area * m_stiffness.per_area(face.number);
   }
   if (!(area > 0.0)) return 0.0;
   const double radius = std::sqrt(area / std::numbers::pi);
-  return 4.0 * std::numbers::sqrt2 / (3.0 * std::numbers::pi) * (modulus / area) / radius;
+  const double held = 4.0 * std::numbers::sqrt2 / (3.0 * std::numbers::pi) * (modulus / area) / radius;
+  return will_yield ? 1.0 / (1.0 / held + area / penalty) : held;
 }
 
 /// Contacts were found with κ = 1.
-void PressureContact::hold_shape(Contacts& out) const {
-  const double held = find_held_stiffness();
+void PressureContact::hold_shape(bool will_yield, Contacts& out) const {
+  const double held = find_held_stiffness(will_yield);
   for (Contact& c : out.contacts) {
     c.force *= held;
     c.end_force *= held;
@@ -345,12 +349,16 @@ void PressureContact::find_contacts(const Points& x, const Pose& pose_t0, const 
   // A tool that passes the surface is met on its way in any case.
   const bool at_end = m_penalty == PenaltyKind::discrete && !m_passage;
   press(x, at_end ? pose_t1 : pose_t0, pose_t1, yielding, contacts);
+  if (yielding == Yielding::no) hold_shape(false, contacts);
+  contacts.sum_reactions(pose_t1.position);
 }
 
 void PressureContact::find_unpressed(const Points& x, const Pose& pose, Contacts& contacts) {
   if (!m_tree) prepare(x);
   m_passage.reset();
   press(x, pose, pose, Yielding::no, contacts);
+  hold_shape(true, contacts);
+  contacts.sum_reactions(pose.position);
 }
 
 void PressureContact::press(const Points& x, const Pose& pose_t0, const Pose& pose_t1, Yielding yielding,
@@ -362,6 +370,9 @@ void PressureContact::press(const Points& x, const Pose& pose_t0, const Pose& po
   place_tool(pose_t0, pose_t1);
   find_faces(x);
   if (m_faces.empty()) return;
+  // A tool that lies along the surface touches little of what is near at first.
+  const double levels = 0.5 * std::log2(kMostPieces / static_cast<double>(m_faces.size()));
+  m_most_levels = std::clamp(static_cast<int>(levels), 0, kMostLevels);
   // Of clay that yields, the force is the clay's, and the points only share it out; where it keeps its shape
   // they are all that counts.
   const double points_per_radius = yielding == Yielding::yes ? 3.0 : 4.0;
@@ -370,13 +381,11 @@ void PressureContact::press(const Points& x, const Pose& pose_t0, const Pose& po
   if (radius == 0.0) return;
   for (Face& face : m_faces) press_face(face, radius / points_per_radius, contacts);
   press_all_corners(x, contacts);
-  if (yielding == Yielding::no) hold_shape(contacts);
   for (const Face& face : m_faces) {
     if (!contacts.with_touched || !(face.cover.area > 0.0)) continue;
     contacts.touched_triangle.push_back(face.number);
     contacts.touched_area.push_back(face.cover.area);
   }
-  contacts.sum_reactions(pose_t1.position);
 }
 
 }  // namespace argil::contact

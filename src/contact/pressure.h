@@ -80,7 +80,8 @@ class PressureContact {
   /// moves linearly in so many pieces that none is longer than the tool is thick.
   void find_contacts(const Points& x, const Pose& pose_t0, const Pose& pose_t1, Yielding yielding,
                      Contacts& contacts);
-  /// As if the body kept its shape, of a tool that stands at `pose`; not a part of its way.
+  /// What a body that still has its shape will answer to a tool that stands at `pose`, by its modulus and κ;
+  /// not a part of the tool's way.
   void find_unpressed(const Points& x, const Pose& pose, Contacts& contacts);
 
  private:
@@ -158,8 +159,8 @@ class PressureContact {
   double stiffness_of(const Face& face) const;
   bool is_within_margin(const Face& face);
   bool finds_near() const { return m_is_solved_for && m_yielding == Yielding::yes && !m_passage; }
-  double find_held_stiffness() const;
-  void hold_shape(Contacts& out) const;
+  double find_held_stiffness(bool will_yield) const;
+  void hold_shape(bool will_yield, Contacts& out) const;
   static double facing_share(const Vec3& outward, const Vec3& normal);
 
   Triangles m_surface;
@@ -178,6 +179,7 @@ class PressureContact {
   Mat3 m_turn = Mat3::Identity();              // from the tool's end back to its start
   Yielding m_yielding = Yielding::yes;
   bool m_needs_cover = false;
+  int m_most_levels = 0;        // of splitting a triangle in four
   double m_margin = 0.0;        // how far from the tool points are near it [m]
   double m_patch_radius = 0.0;  // [m]; 0: nothing is touched
   std::vector<int> m_candidates;

@@ -28,6 +28,7 @@ void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::P
   told.outward.setZero();
   told.springs = 0.0;
   told.stiffness = -1.0;
+  told.share = -1.0;
   Vec3 centre = Vec3::Zero();
   Vec3 inward = Vec3::Zero();
   for (const contact::Contact& c : contacts.contacts) {
@@ -95,6 +96,14 @@ StepStatus ForceBetweenSteps::find_stiffness(const BodyBetweenSteps& body) {
   return StepStatus::ok();
 }
 
+void ForceBetweenSteps::compare(double stiffness, const Vec3& force) {
+  Place& place = m_state.place;
+  if (place.stiffness < 0.0) place.stiffness = stiffness;
+  const double answered = std::max(0.0, place.outward.dot(m_state.answer.force - m_state.friction));
+  const double unpressed = place.outward.dot(force);
+  place.share = unpressed > answered ? answered / unpressed : 1.0;
+}
+
 device::Wrench ForceBetweenSteps::forecast(const contact::Pose& tool, const Limits& limits) const {
   const Place& place = m_state.place;
   if (!presses()) return {limits.at_least, Vec3::Zero()};
@@ -106,7 +115,7 @@ device::Wrench ForceBetweenSteps::forecast(const contact::Pose& tool, const Limi
   if (limits.holds || limits.friction > 0.0)
     along -= kAlongSurface * place.stiffness * (path - n.dot(path) * n);
   if (!limits.holds) {
-    pressing = std::max({0.0, pressing, n.dot(limits.at_least)});
+    pressing = std::max({0.0, pressing, place.share * n.dot(limits.at_least)});
     const double most = limits.friction * pressing;
     if (const double length = along.norm(); length > most) along *= most / length;
   }
@@ -127,6 +136,7 @@ void ForceBetweenSteps::serialize(Archive& archive) {
     archive.array(name + "_outward", p.outward);
     archive.number(name + "_springs", p.springs);
     archive.number(name + "_stiffness", p.stiffness);
+    archive.number(name + "_share", p.share);
   };
   place("between/told", m_state.told);
   place("between/place", m_state.place);

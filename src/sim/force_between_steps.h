@@ -35,9 +35,12 @@ class ForceBetweenSteps {
   /// K of what the body was told, from its own matrix, before it answers: how it yields in a step to forces
   /// that are shared as those of its contacts.
   StepStatus find_stiffness(const BodyBetweenSteps& body);
-  /// K of the last answer is not known.
-  bool wants_stiffness() const { return presses() && m_state.place.stiffness < 0.0; }
-  void set_stiffness(double stiffness) { m_state.place.stiffness = stiffness; }
+  /// The last answer has not been compared yet.
+  bool wants_unpressed() const { return presses() && m_state.place.share < 0.0; }
+  /// What a surface as it is after the last answer would answer to the tool of it if it had not been pressed
+  /// yet: K where it is not known, and the force on the hand. What is more than the answer does not count as
+  /// missing.
+  void compare(double stiffness, const Vec3& force);
   const contact::Pose& tool() const { return m_state.place.tool; }  ///< for which the body has answered
 
   /// How the force is limited as the tool goes on.
@@ -64,6 +67,7 @@ class ForceBetweenSteps {
     Vec3 outward = Vec3::Zero();  // unit: from the clay to the tool; zero without contacts
     double springs = 0.0;         // stiffness of the contacts themselves [N/m]
     double stiffness = -1.0;      // K [N/m]; negative: not known
+    double share = -1.0;          // of an unpressed surface's force that counts; negative: not known
   };
   struct State {
     Place told;   // the body has not answered yet

@@ -53,11 +53,11 @@ void HandSide::feel_between_steps() {
   const auto find_unpressed = [this](const contact::Pose& tool) {
     m_pressure->find_unpressed(m_touched.x_t1(), tool, m_unpressed);
   };
-  if (m_between->wants_stiffness()) {
+  if (m_between->wants_unpressed()) {
     find_unpressed(m_between->tool());
     double stiffness = 0.0;
     for (const contact::Contact& c : m_unpressed.contacts) stiffness += c.end_stiffness;
-    m_between->set_stiffness(stiffness);
+    m_between->compare(stiffness, m_unpressed.force_on_tool);
   }
   ForceBetweenSteps::Limits limits{m_grip.holds(), m_params.contact.friction};
   if (!limits.holds) {

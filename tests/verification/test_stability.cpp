@@ -24,7 +24,7 @@ TEST(StableStiffness, OfAHeldForceTendsToTwiceTheDampingOverThePeriod) {
 
 TEST(StableStiffness, OfAWallIsThatOfTheCharacteristicPolynomial) {
   const Operator hand;
-  for (const auto [law, penalty] : {std::pair(ContactLaw::pressure, PenaltyKind::discrete),
+  for (const auto& [law, penalty] : {std::pair(ContactLaw::pressure, PenaltyKind::discrete),
                                     std::pair(ContactLaw::pairs, PenaltyKind::discrete),
                                     std::pair(ContactLaw::pairs, PenaltyKind::continuous)})
     for (const int period : {1, 14}) {

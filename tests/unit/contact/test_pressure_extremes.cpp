@@ -20,6 +20,7 @@ using test::find_spread;
 using test::kBall;
 using test::kModulus;
 using test::kRadius;
+using test::kStiffness;
 using test::kTip;
 using test::make_flat_slab;
 using test::make_turned;
@@ -36,6 +37,27 @@ TEST(HeldPressure, IsSneddonUnderAFlatPunch) {
     const Contacts found =
         press(make_flat_slab(40), ToolSolid(punch), Pose{{0.0011, 0.0023, -depth}}, Yielding::no);
     EXPECT_NEAR(found.force_on_tool.z() / (2.0 * kModulus * kPunch * depth), 1.0, 0.1) << depth;
+  }
+}
+
+/// A ball of 2 km, which lies along a slab of 0.1 m to 10⁻⁶ m: a first touch is small beside what is near.
+TEST(Pressure, OfAToolThatLiesAlongTheSurfaceTakesFewPoints) {
+  constexpr double kFlat = 2e3;
+  const mesh::TriangleMesh slab = make_flat_slab(10);
+  const Eigen::Index count = slab.triangles.cols();
+  for (const double depth : {1e-9, 1e-11, 1e-13}) {
+    PressureContact pressure(slab.triangles, slab.num_vertices(),
+                             ToolSolid(RoundTool{kFlat, 0.0, kFlat, false}),
+                             {Field::Constant(count, kStiffness), Field::Constant(count, kModulus)}, true);
+    Contacts found;
+    pressure.find_contacts(slab.vertices, Pose{{0.0011, 0.0023, kFlat + 1e-6}},
+                           Pose{{0.0011, 0.0023, kFlat - depth}}, Yielding::yes, found);
+    EXPECT_LT(found.contacts.size() + found.near.size(), 300'000U) << depth;
+    // κ times a cap of the height d, π R d², where the patch of √(2Rd) is as large as some pieces.
+    const double cap = kStiffness * std::numbers::pi * kFlat * depth * depth;
+    if (depth > 1e-10) {
+      EXPECT_NEAR(found.force_on_tool.z() / cap, 1.0, 0.1);
+    }
   }
 }
 

@@ -408,6 +408,26 @@ INSTANTIATE_TEST_SUITE_P(Stiffness, Rest,
 INSTANTIATE_TEST_SUITE_P(FineCells, Rest,
                          testing::Combine(testing::Values(14), testing::Values(2.0), testing::Values(2)));
 
+/// A contact that is softer than the clay: what the hand feels between steps is no stiffer than it.
+TEST(PressureStiffness, SofterThanTheClayIsFeltSoBetweenSteps) {
+  std::vector<double> rest, growth;
+  for (const BetweenFrames between :
+       {BetweenFrames::hold, BetweenFrames::re_evaluate, BetweenFrames::compliant}) {
+    const int ticks = between == BetweenFrames::hold ? 1 : 14;
+    Params params = make_pressure_params(ticks, between);
+    params.contact.pressure_stiffness = 6e5;  // a thousandth of the one that is chosen
+    Simulation simulation = make_pressed_block(params);
+    lead(simulation, press_block(5e-4), 140);
+    rest.push_back(lead(simulation, press_block(5e-4), 560).back().z());
+    growth.push_back(lead(simulation, press_block(5.5e-4), 13).back().z() - rest.back());
+  }
+  ASSERT_GT(rest[0], 2e-3);
+  for (const std::size_t i : {1U, 2U}) {
+    EXPECT_NEAR(rest[i] / rest[0], 1.0, 1e-3) << i;
+    EXPECT_NEAR(growth[i] / growth[0], 1.0, 0.1) << i;
+  }
+}
+
 /// Torn off, a pulling tool holds nothing more until it has left and come again.
 TEST(GripInTheLoop, HoldsAgainOnlyAfterTheToolHasLeft) {
   Params params = make_pressure_params();
