@@ -116,6 +116,7 @@ Trace read_trace(const std::string& file, const TraceOptions& options) {
   trace.device = raw.device;
   trace.sha256 = Sha256().add(bytes).hex_digest();
   trace.ignored_columns = raw.ignored_columns;
+  trace.notes = raw.notes;
   trace.time = raw.time;
   trace.samples.reserve(raw.position.size());
   for (std::size_t i = 0; i < raw.position.size(); ++i) {

@@ -34,6 +34,7 @@ struct Trace {
   std::string device;                        ///< name from the header, may be empty
   std::string sha256;                        ///< of the file's bytes
   std::vector<std::string> ignored_columns;  ///< columns that were not used (velocity, force, …)
+  std::vector<std::string> notes;            ///< for the user: what was done to the file's data
   double duration() const { return time.back() - time.front(); }
 };
 

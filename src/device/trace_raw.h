@@ -20,6 +20,7 @@ struct RawTrace {
   std::vector<Vec4> orientation;  ///< x, y, z, w; empty without orientation columns
   std::vector<ToolMode> mode;     ///< empty without a mode column
   std::vector<std::string> ignored_columns;
+  std::vector<std::string> notes;  ///< what was not as the plain format has it, a line each
   std::vector<std::size_t>
       line;  ///< line in the file of each sample; empty: samples are rows 0, 1, … of arrays
 };

@@ -304,6 +304,7 @@ Scene build_scene(const Scenario& s, const std::vector<sim::TouchedPlace>* place
   if (s.mode == Mode::dynamic && !s.trace.file.empty()) {
     scene.trace = device::read_trace(s.trace.file, s.trace.options);
     check_trace(s, scene.trace);
+    for (const std::string& note : scene.trace.notes) scene.notes.push_back("trace: " + note);
   }
   const Halvings halvings = make_cells(s, places, scene);
   sim::Body& body = scene.body;

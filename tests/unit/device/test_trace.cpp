@@ -159,7 +159,7 @@ TEST(ReadTraceCsv, RefusesMissingOrDoubleColumns) {
   expect_refused("t,x,y\n0,0,0\n1,0,0\n", "line 1", "no columns x, y, z");
   expect_refused("t,x,y,z,px\n0,0,0,0,0\n1,0,0,0,0\n", "line 1", "two columns for 'px'");
   expect_refused("t,x,y,z,qx,qy,qz\n0,0,0,0,0,0,0\n", "line 1", "some but not all");
-  expect_refused("t;x;y;z\n0;0;0;0\n", "line 1", "no columns x, y, z");
+  expect_refused("t|x|y|z\n0|0|0|0\n", "line 1", "no columns x, y, z among 't|x|y|z'");
 }
 
 TEST(ReadTraceCsv, RefusesFewerThanTwoSamples) {
