@@ -111,6 +111,12 @@ std::optional<int> find_numbered_part(std::string_view base) {
   return std::nullopt;
 }
 
+std::string quote(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
+  return text;
+}
+
 struct Candidate {
   Role role;
   bool is_plain;
@@ -129,22 +135,81 @@ std::optional<Candidate> find_role(const std::string& name) {
 
 /// A quaternion whose parts are numbered has its scalar where it is told, or is "Q0 Qx Qy Qz".
 void place_numbered_parts(const std::string& file, const std::string& place,
-                          const std::vector<std::string>& names, Layout& layout) {
+                          const std::vector<std::string>& names, const TraceOptions& options,
+                          Layout& layout) {
   std::array<int, 5> numbered;
   numbered.fill(Layout::kAbsent);
   for (std::size_t i = 0; i < names.size(); ++i)
     if (const auto part = find_numbered_part(split_name(names[i]).base))
       numbered[static_cast<std::size_t>(*part)] = static_cast<int>(i);
+  const auto put = [&](Role role, int column) {
+    layout.column[role] = column;
+    layout.unusual.push_back(std::string(name_role(role)) + ": '" + names[static_cast<std::size_t>(column)] +
+                             "'");
+  };
   const bool has_vector = layout.has(kQx) && layout.has(kQy) && layout.has(kQz);
-  if (has_vector && !layout.has(kQw) && numbered[0] != Layout::kAbsent) {
-    layout.column[kQw] = numbered[0];
-    layout.unusual.push_back("qw: '" + names[static_cast<std::size_t>(numbered[0])] + "'");
-    return;
+  if (has_vector && !layout.has(kQw) && numbered[0] != Layout::kAbsent) put(kQw, numbered[0]);
+  if (layout.has(kQx) || layout.has(kQy) || layout.has(kQz) || layout.has(kQw) || layout.has(kRx)) return;
+  const auto found = std::count_if(numbered.begin(), numbered.end(), [](int column) { return column >= 0; });
+  if (found == 0) return;
+  if (options.quaternion_order == QuaternionOrder::by_name)
+    throw InputError(file, place, "the quaternion's columns do not say which is the scalar part",
+                     "say it by /trace/quaternion_order: wxyz or xyzw");
+  const std::size_t first = numbered[0] == Layout::kAbsent ? 1 : 0;
+  if (found != 4 || numbered[first + 3] == Layout::kAbsent)
+    throw InputError(file, place, "a quaternion of " + std::to_string(found) + " numbered columns",
+                     "name them qx qy qz qw by /trace/columns");
+  const std::array<Role, 4> roles = options.quaternion_order == QuaternionOrder::wxyz
+                                        ? std::array<Role, 4>{kQw, kQx, kQy, kQz}
+                                        : std::array<Role, 4>{kQx, kQy, kQz, kQw};
+  for (std::size_t i = 0; i < 4; ++i) put(roles[i], numbered[first + i]);
+}
+
+/// Angles are read where their order is given; they then stand above a quaternion.
+void choose_orientation(const std::string& file, const std::string& place, const TraceOptions& options,
+                        Layout& layout) {
+  const bool reads_angles = options.angle_order != AngleOrder::none;
+  if (reads_angles && !(layout.has(kRx) && layout.has(kRy) && layout.has(kRz)))
+    throw InputError(file, place,
+                     "/trace/angle_order is given, but not all of the columns rx, ry, rz are there",
+                     "they are also called roll, pitch, yaw; or name them by /trace/columns");
+  for (const Role role :
+       reads_angles ? std::array<Role, 4>{kQx, kQy, kQz, kQw} : std::array<Role, 4>{kRx, kRy, kRz, kRz})
+    layout.column[role] = Layout::kAbsent;
+}
+
+int find_button(const std::string& file, const std::string& place, const std::vector<std::string>& names,
+                const TraceOptions& options) {
+  if (options.button_column.empty()) return Layout::kAbsent;
+  if (options.button_mode == ButtonMode::none)
+    throw InputError(file, "",
+                     "a button is asked for by /trace/button/column, but /trace/button/mode is none",
+                     "say by it what the tool does while the button is pressed: push, pull, wet or dry");
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (trim(names[i]) == trim(options.button_column)) return static_cast<int>(i);
+  throw InputError(file, place, "no column '" + options.button_column + "' among " + quote(names),
+                   "correct /trace/button/column");
+}
+
+/// The columns that are left over, with the key by which some could be read.
+void list_ignored(const std::vector<std::string>& names, Layout& layout) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const int column = static_cast<int>(i);
+    if (!names[i].empty() && names[i] != "-" && column != layout.button &&
+        std::find(layout.column.begin(), layout.column.end(), column) == layout.column.end())
+      layout.ignored.push_back(names[i]);
   }
-  const auto found = std::count_if(numbered.begin(), numbered.end(), [](int c) { return c >= 0; });
-  if (found == 0 || layout.has(kQx) || layout.has(kQy) || layout.has(kQz) || layout.has(kQw)) return;
-  throw InputError(file, place, "the quaternion's columns do not say which is the scalar part",
-                   "name them qx qy qz qw by the trace's list of columns");
+}
+
+void list_unusual(const std::vector<std::string>& names, const std::array<bool, kNumRoles>& by_plain_name,
+                  Layout& layout) {
+  for (int role = 0; role < kNumRoles; ++role) {
+    if (layout.column[role] == Layout::kAbsent) continue;
+    const std::string& name = names[static_cast<std::size_t>(layout.column[role])];
+    layout.unit[role] = split_name(name).unit;
+    if (!by_plain_name[role])
+      layout.unusual.push_back(std::string(name_role(static_cast<Role>(role))) + ": '" + name + "'");
+  }
 }
 
 }  // namespace
@@ -176,8 +241,18 @@ std::string_view name_role(Role role) {
   return kNames[static_cast<std::size_t>(role)];
 }
 
+std::string_view find_remedy(const std::string& name) {
+  const std::string base = split_name(name).base;
+  if (base.find("button") != std::string::npos || base.find("btn") != std::string::npos)
+    return "a button is read where /trace/button/column names it";
+  const auto found = find_role(name);
+  if (found && found->role >= kRx && found->role <= kRz)
+    return "angles are read where /trace/angle_order gives their order";
+  return {};
+}
+
 Layout find_layout(const std::string& file, const std::string& place, const std::vector<std::string>& names,
-                   const TraceOptions&) {
+                   const TraceOptions& options) {
   Layout layout;
   layout.column.fill(Layout::kAbsent);
   std::array<bool, kNumRoles> by_plain_name{};
@@ -196,26 +271,17 @@ Layout find_layout(const std::string& file, const std::string& place, const std:
     slot = static_cast<int>(i);
     is_plain = found->is_plain;
   }
-  for (int role = 0; role < kNumRoles; ++role) {
-    if (layout.column[role] == Layout::kAbsent) continue;
-    const std::string& name = names[static_cast<std::size_t>(layout.column[role])];
-    layout.unit[role] = split_name(name).unit;
-    if (!by_plain_name[role])
-      layout.unusual.push_back(std::string(name_role(static_cast<Role>(role))) + ": '" + name + "'");
-  }
-  if (!layout.has(kX) || !layout.has(kY) || !layout.has(kZ)) {
-    std::string found;
-    for (const std::string& name : names) found += (found.empty() ? "'" : ", '") + name + "'";
-    throw InputError(file, place, "no columns x, y, z among " + found, kColumnHelp);
-  }
-  place_numbered_parts(file, place, names, layout);
+  if (!layout.has(kX) || !layout.has(kY) || !layout.has(kZ))
+    throw InputError(file, place, "no columns x, y, z among " + quote(names), kColumnHelp);
+  choose_orientation(file, place, options, layout);
+  list_unusual(names, by_plain_name, layout);
+  place_numbered_parts(file, place, names, options, layout);
   const int parts = layout.has(kQx) + layout.has(kQy) + layout.has(kQz) + layout.has(kQw);
   if (parts != 0 && parts != 4)
     throw InputError(file, place, "some but not all of the columns qx, qy, qz, qw", kColumnHelp);
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (!names[i].empty() && names[i] != "-" &&
-        std::find(layout.column.begin(), layout.column.end(), static_cast<int>(i)) == layout.column.end())
-      layout.ignored.push_back(names[i]);
+  layout.button = find_button(file, place, names, options);
+  if (layout.button == layout.column[kMode]) layout.column[kMode] = Layout::kAbsent;
+  list_ignored(names, layout);
   return layout;
 }
 

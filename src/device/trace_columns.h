@@ -27,16 +27,20 @@ struct Layout {
   std::array<std::string, kNumRoles> unit;  ///< of each role as its column's name says
   std::vector<std::string> ignored;         ///< names of columns that are not used
   std::vector<std::string> unusual;         ///< "x: 'Pos_X [mm]'" of each name that is no plain one
+  int button = kAbsent;
   bool has(Role role) const { return column[role] != kAbsent; }
 };
 
 /// Finds them by the columns' names; "" and "-" are no column. Throws InputError (`file`, `place`) for names
 /// that leave open what is meant: no x y z, two of one kind, part of a quaternion, one that does not say
-/// which number is the scalar.
+/// which number is the scalar, angles that are asked for and not there, a button's column that is not there.
 Layout find_layout(const std::string& file, const std::string& place, const std::vector<std::string>& names,
                    const TraceOptions& options);
 
-/// "push" to "dry", for messages: names one of a role.
+/// How an ignored column can be read; empty: not at all.
+std::string_view find_remedy(const std::string& name);
+
+/// "t" to "mode".
 std::string_view name_role(Role role);
 
 }  // namespace argil::device::internal

@@ -11,7 +11,8 @@
 namespace argil::device::internal {
 namespace {
 
-/// In small letters, with "u" for the three ways to write µ (UTF-8's micro sign and Greek letter, Latin-1's byte).
+/// In small letters, with "u" for the three ways to write µ (UTF-8's micro sign and Greek letter, Latin-1's
+/// byte).
 std::string plain_word(std::string_view word) {
   std::string plain;
   word = trim(word);
@@ -26,21 +27,39 @@ std::string plain_word(std::string_view word) {
 }
 
 template <std::size_t N>
-std::optional<double> find_unit(const std::array<std::pair<std::string_view, double>, N>& units, std::string_view word) {
+std::optional<double> find_unit(const std::array<std::pair<std::string_view, double>, N>& units,
+                                std::string_view word) {
   const std::string plain = plain_word(word);
   for (const auto& [name, value] : units)
     if (name == plain) return value;
   return std::nullopt;
 }
 
-constexpr std::array<std::pair<std::string_view, double>, 16> kTimeUnits = {
-    {{"s", 1.0},          {"sec", 1.0},          {"secs", 1.0},          {"second", 1.0},
-     {"seconds", 1.0},    {"ms", 1e3},           {"msec", 1e3},          {"millisecond", 1e3},
-     {"milliseconds", 1e3}, {"us", 1e6},         {"usec", 1e6},          {"microsecond", 1e6},
-     {"microseconds", 1e6}, {"ns", 1e9},         {"nsec", 1e9},          {"nanoseconds", 1e9}}};
+constexpr std::array<std::pair<std::string_view, double>, 16> kTimeUnits = {{{"s", 1.0},
+                                                                             {"sec", 1.0},
+                                                                             {"secs", 1.0},
+                                                                             {"second", 1.0},
+                                                                             {"seconds", 1.0},
+                                                                             {"ms", 1e3},
+                                                                             {"msec", 1e3},
+                                                                             {"millisecond", 1e3},
+                                                                             {"milliseconds", 1e3},
+                                                                             {"us", 1e6},
+                                                                             {"usec", 1e6},
+                                                                             {"microsecond", 1e6},
+                                                                             {"microseconds", 1e6},
+                                                                             {"ns", 1e9},
+                                                                             {"nsec", 1e9},
+                                                                             {"nanoseconds", 1e9}}};
 
-constexpr std::array<std::pair<std::string_view, double>, 8> kLengthUnits = {
-    {{"m", 1.0}, {"metres", 1.0}, {"meters", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"millimetres", 0.001}, {"millimeters", 0.001}, {"um", 1e-6}}};
+constexpr std::array<std::pair<std::string_view, double>, 8> kLengthUnits = {{{"m", 1.0},
+                                                                              {"metres", 1.0},
+                                                                              {"meters", 1.0},
+                                                                              {"cm", 0.01},
+                                                                              {"mm", 0.001},
+                                                                              {"millimetres", 0.001},
+                                                                              {"millimeters", 0.001},
+                                                                              {"um", 1e-6}}};
 
 /// Takes `count` digits; false when there are not as many.
 bool take_digits(std::string_view& text, std::size_t count, int& value) {
@@ -134,6 +153,7 @@ double metres_per(LengthUnit unit) {
 }
 
 std::optional<Moment> find_moment(std::string_view text) {
+  constexpr std::int64_t kFarthest = 4'000'000'000'000'000'000;  // the difference of two fits 64 bits
   text = trim(text);
   const bool is_negative = text.starts_with('-');
   if (is_negative || text.starts_with('+')) text.remove_prefix(1);
@@ -142,11 +162,12 @@ std::optional<Moment> find_moment(std::string_view text) {
   const std::string_view digits = point < text.size() ? text.substr(point + 1) : std::string_view();
   Moment moment;
   if (!whole.empty() && is_all_digits(whole) && is_all_digits(digits)) {
-    if (std::from_chars(whole.data(), whole.data() + whole.size(), moment.whole).ec != std::errc()) return std::nullopt;
+    const auto error = std::from_chars(whole.data(), whole.data() + whole.size(), moment.whole).ec;
+    if (error != std::errc() || moment.whole > kFarthest) return std::nullopt;
     moment.fraction = fraction_of(digits);
   } else {  // with an exponent
     const auto number = find_number(text) ? find_number(text) : find_comma_number(text);
-    if (!number || !(*number < 9e18)) return std::nullopt;
+    if (!number || !(std::abs(*number) <= static_cast<double>(kFarthest))) return std::nullopt;
     moment.whole = static_cast<std::int64_t>(*number);
     moment.fraction = *number - static_cast<double>(moment.whole);
   }

@@ -16,8 +16,8 @@ std::optional<double> find_time_unit(std::string_view word);
 /// Metres in the unit: 0.001 for "mm". Nothing for a word that is none of m, cm, mm, µm.
 std::optional<double> find_length_unit(std::string_view word);
 
-double per_second(TimeUnit unit);       ///< of no automatic unit
-double metres_per(LengthUnit unit);     ///< of no automatic unit
+double per_second(TimeUnit unit);           ///< of no automatic unit
+double metres_per(LengthUnit unit);         ///< of no automatic unit
 std::string_view to_word(TimeUnit unit);    ///< "ms", as the key has it
 std::string_view to_word(LengthUnit unit);  ///< "mm"
 
@@ -27,7 +27,7 @@ struct Moment {
   double fraction = 0.0;  ///< of the sign of `whole`, below 1
 };
 
-/// The moment that a number spells, with a decimal point or comma. Nothing past 64 bits.
+/// The moment that a number spells, with a decimal point or comma. Nothing past 4e18.
 std::optional<Moment> find_moment(std::string_view text);
 
 /// A date (year first) and time of day, or a time of day alone: "2024-01-02T12:00:00.125Z", "2024/01/02
