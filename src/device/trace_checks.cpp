@@ -29,7 +29,7 @@ constexpr double kWidestMotion = 5.0;  // [m]
 constexpr double kLongestHold = 0.5;    // [s] a longer one is a rest
 constexpr double kRepeatedShare = 0.4;  // of the samples of a motion
 constexpr std::size_t kSomeMoves = 10;
-constexpr double kFeltStep = 2e-5;  // [m] rms; devices resolve 1e-5 to 6e-5
+constexpr double kFeltStep = 1e-4;  // [m] of the median jump; usual devices resolve 1e-5 to 6e-5
 
 template <class T>
 T take_quantile(std::vector<T> values, double share) {
@@ -150,14 +150,15 @@ void note_steps(const RawTrace& raw, double metres, std::vector<std::string>& no
   const auto is_moved = [&](std::size_t i) { return raw.position[i] != raw.position[i - 1]; };
   std::vector<std::size_t> held;  // samples from move to move
   std::vector<double> change;     // of each coordinate that changed [m]
-  double sum_squares = 0.0;
+  std::vector<double> jumps;      // [m]
   std::size_t last = 0;
   for (std::size_t i = 1; i < raw.position.size(); ++i) {
     if (!is_moved(i)) continue;
     if (last > 0 && raw.time[i] - raw.time[last] <= kLongestHold) {
       held.push_back(i - last);
       const Vec3 step = metres * (raw.position[i] - raw.position[i - 1]);
-      sum_squares += step.squaredNorm();
+      if (!step.allFinite()) return;  // refused elsewhere
+      jumps.push_back(step.norm());
       for (const double along : step)
         if (along != 0.0) change.push_back(std::abs(along));
     }
@@ -168,8 +169,8 @@ void note_steps(const RawTrace& raw, double metres, std::vector<std::string>& no
   for (const std::size_t count : held) samples += count;
   const auto moves = static_cast<double>(held.size());
   const double repeated = 1.0 - moves / static_cast<double>(samples);
-  const double rms = std::sqrt(sum_squares / moves);
-  if (!(repeated >= kRepeatedShare && rms >= kFeltStep)) return;
+  const double jump = take_quantile(jumps, 0.5);
+  if (!(repeated >= kRepeatedShare && jump >= kFeltStep)) return;
   const double step = *std::min_element(change.begin(), change.end());
   const auto is_whole = [step](double size) {
     return std::abs(size / step - std::round(size / step)) <= 0.01;
@@ -186,7 +187,7 @@ void note_steps(const RawTrace& raw, double metres, std::vector<std::string>& no
                 "%s: while it moves, %.0f %% of the samples repeat the last place, then it jumps by %.2g mm, "
                 "and so does the force; "
                 "set /hand/kind to simulated, whose spring smooths the motion, or give a finer recording",
-                what, 100.0 * repeated, 1e3 * rms);
+                what, 100.0 * repeated, 1e3 * jump);
   notes.push_back(text);
 }
 
