@@ -136,6 +136,10 @@ def own_files():
         yield "scenarios", text
     for file in sorted(ROOT.glob("traces/*.csv")):
         yield "traces", head(file)
+    yield "traces", b"Time [ms];X_mm;Y_mm;Z_mm;rx;ry;rz;button\n" + b"".join(b"%d;1,5;-2;%d;90;0;4,5;%d\n" % (i, i // 4, i % 2) for i in range(40))
+    yield "traces", b"# t x y z q0 q1 q2 q3\n" + b"".join(b"%d.%03d 0.1 0 0.2 1 0 0 0\n" % (1700000000, i * (1 + i // 20)) for i in range(30))
+    yield "traces", b"time,x,y,z\nms,mm,mm,mm\n0,1,2,3\n1,1,2,3\n"
+    yield "traces", b"time\tx\ty\tz\n2024-02-29T23:59:59.5+01:00\t0\t0\t1\n2024/03/01 00:00:00.25\t0\t0\t1\n"
     for records in hdf5_traces():
         yield "hdf5", records
     yield "queries", b"0,1,1,2,-3,4\n" * 8

@@ -1,6 +1,7 @@
 #pragma once
 
-// Text fields of one CSV record (RFC 4180, without line breaks inside quotes) and numbers without a locale.
+// Text fields of one record of a table (RFC 4180, without line breaks inside quotes; comma, semicolon, tab or
+// blanks between fields) and numbers without a locale.
 
 #include <optional>
 #include <string>
@@ -9,15 +10,26 @@
 
 namespace argil::device::internal {
 
-/// `text` without blanks at both ends.
+/// `text` without blanks and tabs at both ends.
 std::string_view trim(std::string_view text);
 
-/// Fields of one record into `fields` (its storage is reused), trimmed, quotes taken off. False when a quote
-/// is not closed or is followed by more text.
-bool split_record(std::string_view record, std::vector<std::string>& fields);
+/// Fields of one record into `fields` (its storage is reused), trimmed, quotes taken off. `separator` is ',',
+/// ';', '\t', or ' ' for any number of blanks and tabs. False when a quote is not closed or is followed by
+/// more text.
+bool split_record(std::string_view record, char separator, std::vector<std::string>& fields);
+
+/// What separates the fields of a table, by its first row (names, or already a sample) and its second (may be
+/// empty). Both must have as many fields; among those, what gives the second row most numbers.
+char find_separator(std::string_view first, std::string_view second);
+
+/// "comma", "semicolon", "tab" or "blanks".
+std::string_view name_separator(char separator);
 
 /// The number that the whole text spells ("nan" and "inf" included); nothing for any other text.
 std::optional<double> find_number(std::string_view text);
+
+/// The same with one comma in the place of the point: "0,125". Nothing for any other text.
+std::optional<double> find_comma_number(std::string_view text);
 
 /// Lines of a text one after the other; "\n" and "\r\n" end a line.
 class LineReader {

@@ -43,11 +43,14 @@ struct Wrench {
   Vec3 torque = Vec3::Zero();  ///< [N m]
 };
 
-/// x_world = rotation · (scale · x_device) + translation; orientations and forces turn with `rotation`.
+/// x_world = rotation · (scale · x_device) + translation; forces turn with `rotation`, and
+/// q_world = rotation · q_device · tool_rotation.
 struct DeviceToWorld {
   double scale = 1.0;
   Quat rotation = Quat::Identity();
   Vec3 translation = Vec3::Zero();  ///< [m]
+  Quat tool_rotation =
+      Quat::Identity();  ///< the scene's tool to the device's, whose tip looks along another axis
 };
 
 }  // namespace argil::device

@@ -2,38 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "base/check.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/read_file.h"
-#include "device/trace_raw.h"
+#include "device/trace_checks.h"
 
 namespace argil::device {
 
+using internal::print_number;
+using internal::print_place;
 using internal::RawTrace;
 
 namespace {
 
-constexpr double kMaxGapIntervals = 10.0;  // a longer pause than this many median intervals is a lost piece
 constexpr double kMaxUnitError =
     1e-3;  // three printed digits of a quaternion; beyond, it is another quantity
-constexpr double kMaxRateError =
-    0.05;  // stated rate against the median interval; clocks jitter, units do not
 constexpr double kSnapFraction = 1e-6;  // of an interval: a query this near a sample is that sample
 constexpr double kSmallArc = 1e-6;      // [rad]; below, chord and arc weights differ by less than its square
-
-std::string place(const RawTrace& raw, std::size_t i) {
-  return raw.line.empty() ? "row " + std::to_string(i) : "line " + std::to_string(raw.line[i]);
-}
-
-std::string print(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
 
 void fill_times(const std::string& file, const TraceOptions& options, RawTrace& raw) {
   if (raw.position.size() < 2)
@@ -44,56 +32,28 @@ void fill_times(const std::string& file, const TraceOptions& options, RawTrace& 
     throw InputError(file, "", "no time column and no sampling rate",
                      "name a column t [s] or give the rate in Hz");
   for (std::size_t i = 0; i < raw.position.size(); ++i) raw.time.push_back(static_cast<double>(i) / rate);
-}
-
-double median_interval(const std::vector<double>& time) {
-  std::vector<double> interval;
-  for (std::size_t i = 1; i < time.size(); ++i) interval.push_back(time[i] - time[i - 1]);
-  const auto middle = interval.begin() + static_cast<std::ptrdiff_t>(interval.size() / 2);
-  std::nth_element(interval.begin(), middle, interval.end());
-  return *middle;
-}
-
-void check_times(const std::string& file, const RawTrace& raw) {
-  const std::vector<double>& t = raw.time;
-  for (std::size_t i = 0; i < t.size(); ++i)
-    if (!std::isfinite(t[i]))
-      throw InputError(file, place(raw, i), "time is " + print(t[i]), "give a finite number of seconds");
-  for (std::size_t i = 1; i < t.size(); ++i)
-    if (!(t[i] > t[i - 1]))
-      throw InputError(file, place(raw, i),
-                       "time " + print(t[i]) + " s does not come after " + print(t[i - 1]) + " s",
-                       "sort the samples and leave each time once");
-  const double median = median_interval(t);
-  for (std::size_t i = 1; i < t.size(); ++i)
-    if (!(t[i] - t[i - 1] <= kMaxGapIntervals * median))
-      throw InputError(file, place(raw, i),
-                       "gap of " + print(t[i] - t[i - 1]) + " s, more than " + print(kMaxGapIntervals) +
-                           " times the median interval " + print(median) + " s",
-                       "fill the gap or cut the trace there");
-  if (raw.rate_hz > 0.0 && !(std::abs(median * raw.rate_hz - 1.0) <= kMaxRateError))
-    throw InputError(file, "header",
-                     "rate_hz " + print(raw.rate_hz) + " but the median interval is " + print(median) + " s",
-                     "correct the rate, or the unit of the time column");
+  raw.is_time_given = true;
 }
 
 Quat checked_orientation(const std::string& file, const RawTrace& raw, std::size_t i) {
   const Vec4& q = raw.orientation[i];
   const double norm = q.stableNorm();
   if (!std::isfinite(norm))
-    throw InputError(file, place(raw, i), "quaternion is not finite", "give four finite numbers");
+    throw InputError(file, print_place(raw, i), "quaternion is not finite", "give four finite numbers");
   if (norm == 0.0)
-    throw InputError(file, place(raw, i), "quaternion is zero", "no rotation is x y z w = 0 0 0 1");
+    throw InputError(file, print_place(raw, i), "quaternion is zero", "no rotation is x y z w = 0 0 0 1");
   if (!(std::abs(norm - 1.0) <= kMaxUnitError))
-    throw InputError(file, place(raw, i),
-                     "quaternion has norm " + print(norm) + ", not 1 within " + print(kMaxUnitError),
-                     "check the order of the columns, or normalise");
+    throw InputError(
+        file, print_place(raw, i),
+        "quaternion has norm " + print_number(norm) + ", not 1 within " + print_number(kMaxUnitError),
+        "check the order of the columns, or normalise");
   return make_unit(Quat(q[3], q[0], q[1], q[2]));
 }
 
 bool is_identity(const DeviceToWorld& map) {
   return map.scale == 1.0 && map.translation == Vec3::Zero() &&
-         map.rotation.coeffs() == Quat::Identity().coeffs();
+         map.rotation.coeffs() == Quat::Identity().coeffs() &&
+         map.tool_rotation.coeffs() == Quat::Identity().coeffs();
 }
 
 }  // namespace
@@ -102,7 +62,10 @@ bool is_identity(const DeviceToWorld& map) {
 void move_to_world(const DeviceToWorld& map, DeviceSample& sample) {
   if (is_identity(map)) return;
   sample.position = map.rotation * (map.scale * sample.position) + map.translation;
-  sample.orientation = make_unit(map.rotation * sample.orientation);
+  sample.orientation = map.rotation * sample.orientation;
+  if (map.tool_rotation.coeffs() != Quat::Identity().coeffs())
+    sample.orientation = sample.orientation * map.tool_rotation;
+  sample.orientation = make_unit(sample.orientation);
 }
 
 Trace read_trace(const std::string& file, const TraceOptions& options) {
@@ -110,17 +73,20 @@ Trace read_trace(const std::string& file, const TraceOptions& options) {
   const bool is_hdf5 = bytes.starts_with("\x89HDF\r\n\x1a\n");
   RawTrace raw = is_hdf5 ? internal::read_hdf5(file, options) : internal::parse_csv(file, bytes, options);
   fill_times(file, options, raw);
-  check_times(file, raw);
+  internal::check_times(file, options, raw);
+  const double scale = raw.device_to_world.scale * options.device_to_world.scale;
+  internal::note_steps(raw, raw.metres_per_unit * scale, raw.notes);
   Trace trace;
   trace.file = file;
   trace.device = raw.device;
   trace.sha256 = Sha256().add(bytes).hex_digest();
   trace.ignored_columns = raw.ignored_columns;
+  trace.notes = raw.notes;
   trace.time = raw.time;
   trace.samples.reserve(raw.position.size());
   for (std::size_t i = 0; i < raw.position.size(); ++i) {
     if (!raw.position[i].allFinite())
-      throw InputError(file, place(raw, i), "position is not finite", "give three finite numbers");
+      throw InputError(file, print_place(raw, i), "position is not finite", "give three finite numbers");
     DeviceSample sample;
     sample.position = raw.position[i];
     if (raw.metres_per_unit != 1.0) sample.position *= raw.metres_per_unit;
@@ -128,13 +94,15 @@ Trace read_trace(const std::string& file, const TraceOptions& options) {
     sample.mode = raw.mode.empty() ? options.default_mode : raw.mode[i];
     move_to_world(raw.device_to_world, sample);
     if (!is_within_reach(sample.position))
-      throw InputError(file, place(raw, i),
-                       "place " + print(sample.position.stableNorm()) + " m from the origin, more than " +
-                           print(kFarthestPlace) + " m",
+      throw InputError(file, print_place(raw, i),
+                       "place " + print_number(sample.position.stableNorm()) +
+                           " m from the origin, more than " + print_number(kFarthestPlace) + " m",
                        "correct the unit of length");
     move_to_world(options.device_to_world, sample);
     trace.samples.push_back(sample);
   }
+  trace.is_length_assumed = !raw.is_length_given && scale == 1.0;
+  internal::check_path(file, trace);
   return trace;
 }
 

@@ -15,6 +15,16 @@ inline bool is_within_reach(const Vec3& place) {
   return place.allFinite() && place.stableNorm() <= kFarthestPlace;
 }
 
+enum class TimeUnit { automatic, s, ms, us, ns };      ///< automatic: as the file says, else s
+enum class LengthUnit { automatic, m, cm, mm, um };    ///< automatic: as the file says, else m
+enum class AngleUnit { automatic, rad, deg };          ///< automatic: as the file says
+enum class QuaternionOrder { by_name, wxyz, xyzw };    ///< of columns that are numbered, as q0 to q3
+enum class ButtonMode { none, push, pull, wet, dry };  ///< what the tool does while a button is pressed
+
+/// How angles about x, y and z make a rotation: one after the other about the fixed axes (xyz: x first),
+/// about the axes as they turn (XYZ), or as one vector, axis times angle. None: they are not read.
+enum class AngleOrder { none, xyz, xzy, yxz, yzx, zxy, zyx, XYZ, XZY, YXZ, YZX, ZXY, ZYX, vector };
+
 /// How a trace file is read when its header does not say.
 struct TraceOptions {
   DeviceToWorld device_to_world;           ///< applied after the header's own transform
@@ -24,6 +34,14 @@ struct TraceOptions {
   /// column out, as do columns past the list. For files without a header row, or whose names do not say what
   /// they hold.
   std::vector<std::string> columns;
+  TimeUnit time_unit = TimeUnit::automatic;        ///< given, it stands above what the file says
+  LengthUnit length_unit = LengthUnit::automatic;  ///< the same
+  double max_gap = 0.1;  ///< [s] longest pause between samples that is bridged by a straight line
+  QuaternionOrder quaternion_order = QuaternionOrder::by_name;
+  AngleOrder angle_order = AngleOrder::none;
+  AngleUnit angle_unit = AngleUnit::automatic;
+  std::string button_column;  ///< CSV only: it is read as a button; empty: none is
+  ButtonMode button_mode = ButtonMode::none;
 };
 
 /// A recorded motion in world coordinates, times increasing.
@@ -34,12 +52,15 @@ struct Trace {
   std::string device;                        ///< name from the header, may be empty
   std::string sha256;                        ///< of the file's bytes
   std::vector<std::string> ignored_columns;  ///< columns that were not used (velocity, force, …)
+  std::vector<std::string> notes;            ///< for the user: what was done to the file's data
+  bool is_length_assumed = false;            ///< neither file, options nor a scale say the unit of places
   double duration() const { return time.back() - time.front(); }
 };
 
 /// Reads a CSV (header row names columns) or HDF5 trace; the formats are in this folder's README. Throws
-/// InputError (file, line, value, remedy) for gaps, unsorted times, NaN, places beyond kFarthestPlace before
-/// device_to_world of the options, zero quaternions, unknown modes; IoError when the file cannot be read.
+/// InputError (file, line, value, remedy) for long pauses, unsorted times, NaN, places beyond kFarthestPlace
+/// before device_to_world of the options, zero quaternions, unknown modes, and for a rate or a path out of
+/// all reason whose unit nobody gave; IoError when the file cannot be read.
 Trace read_trace(const std::string& file, const TraceOptions& options);
 
 /// The sample at `time` seconds after the trace's first: position linear, orientation slerp along the shorter

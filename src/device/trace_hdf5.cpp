@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "device/trace_raw.h"
+#include "device/trace_units.h"
 #include "hdf5/file.h"
 
 namespace argil::device::internal {
@@ -31,12 +32,29 @@ std::vector<double> read_rows(const Group& group, const std::string& name, std::
   return dataset.read<double>();
 }
 
-double length_unit(const Dataset& position) {
-  const std::string units = position.has_attribute("units") ? position.read_text("units") : "m";
-  if (units == "m") return 1.0;
-  if (units == "cm") return 0.01;
-  if (units == "mm") return 0.001;
-  throw InputError(position.file(), position.path() + " units", "'" + units + "'", "use m, cm or mm");
+/// By the key, else by the dataset's attribute. Nothing where neither says one.
+std::optional<double> choose_unit(const Dataset& data, bool has_key, double of_key,
+                                  std::optional<double> (*find_unit)(std::string_view), const char* remedy) {
+  if (has_key) return of_key;
+  if (!data.has_attribute("units")) return std::nullopt;
+  const std::string units = data.read_text("units");
+  const auto found = find_unit(units);
+  if (!found) throw InputError(data.file(), data.path() + " units", "'" + units + "'", remedy);
+  return found;
+}
+
+void choose_units(const Dataset& time, const Dataset& position, const TraceOptions& options, RawTrace& raw) {
+  const bool has_length = options.length_unit != LengthUnit::automatic;
+  const auto metres = choose_unit(position, has_length, has_length ? metres_per(options.length_unit) : 1.0,
+                                  find_length_unit, "use m, cm, mm or um");
+  raw.metres_per_unit = metres.value_or(1.0);
+  raw.is_length_given = metres.has_value();
+  const bool has_time = options.time_unit != TimeUnit::automatic;
+  const auto second = choose_unit(time, has_time, has_time ? per_second(options.time_unit) : 1.0,
+                                  find_time_unit, "use s, ms, us or ns");
+  raw.is_time_given = second.has_value();
+  if (second.value_or(1.0) != 1.0)
+    for (double& t : raw.time) t /= *second;
 }
 
 std::vector<double> read_numbers(const Group& root, const std::string& name, std::size_t count) {
@@ -78,6 +96,9 @@ RawTrace read_hdf5(const std::string& file, const TraceOptions& options) {
   if (!options.columns.empty())
     throw InputError(file, "", "columns are named for an HDF5 trace",
                      "columns name the columns of CSV files only");
+  if (!options.button_column.empty())
+    throw InputError(file, "", "/trace/button/column is given for an HDF5 trace",
+                     "it names a column of CSV files only");
   const hdf5::File opened = hdf5::File::open_for_reading(file);
   const Group root = opened.root();
   const bool is_result = root.has("haptic");
@@ -91,7 +112,7 @@ RawTrace read_hdf5(const std::string& file, const TraceOptions& options) {
   read_transform(root, raw);
   raw.time = group.open_dataset("time").read<double>();
   const std::uint64_t rows = raw.time.size();
-  raw.metres_per_unit = length_unit(group.open_dataset(names.position));
+  choose_units(group.open_dataset("time"), group.open_dataset(names.position), options, raw);
   const std::vector<double> position = read_rows(group, names.position, rows, 3);
   for (std::size_t i = 0; i < rows; ++i) raw.position.emplace_back(Eigen::Map<const Vec3>(&position[3 * i]));
   if (group.has(names.orientation)) {

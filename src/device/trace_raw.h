@@ -13,6 +13,8 @@ namespace argil::device::internal {
 struct RawTrace {
   DeviceToWorld device_to_world;  ///< from the header
   double metres_per_unit = 1.0;   ///< of the position columns
+  bool is_length_given = false;   ///< the file or the options say that unit
+  bool is_time_given = false;     ///< and that of the times
   double rate_hz = 0.0;           ///< from the header; 0: not stated
   std::string device;
   std::vector<double> time;  ///< [s]; empty without a time column
@@ -20,6 +22,7 @@ struct RawTrace {
   std::vector<Vec4> orientation;  ///< x, y, z, w; empty without orientation columns
   std::vector<ToolMode> mode;     ///< empty without a mode column
   std::vector<std::string> ignored_columns;
+  std::vector<std::string> notes;  ///< what was not as the plain format has it, a line each
   std::vector<std::size_t>
       line;  ///< line in the file of each sample; empty: samples are rows 0, 1, … of arrays
 };

@@ -7,6 +7,7 @@
 #include "mesh/quality.h"
 #include "scenario/binding.h"
 #include "scenario/medium_check.h"
+#include "scenario/motion_table.h"
 #include "scenario/strain_models.h"
 
 namespace argil::scenario {
@@ -464,31 +465,6 @@ void bind_fidelity(Binder& b, sim::FidelityParams& f) {
            "auto: error of the force at the hand that never counts.");
 }
 
-void bind_hand(Binder& b, HandSpec& hand) {
-  b.choice<HandKind>(
-      "/hand/kind", hand.kind, {{HandKind::prescribed, "prescribed"}, {HandKind::simulated, "simulated"}},
-      "The tool is where the trace is; or the trace is what a hand means to do, a mass on a spring that "
-      "yields to the force.");
-  const auto simulated = [&hand] { return hand.kind == HandKind::simulated; };
-  device::HandParams& h = hand.params;
-  b.number("/hand/mass_kg", h.mass, positive(), "kg", "Finger and stylus.").applies = simulated;
-  b.number("/hand/damping_N_s_per_m", h.damping, not_negative(), "N s/m", "Of the hand's spring.").applies =
-      simulated;
-  b.number("/hand/stiffness_N_per_m", h.stiffness, positive(), "N/m",
-           "Of the spring between the trace and the hand.")
-      .applies = simulated;
-  b.number("/hand/reaction_delay_s", h.reaction_delay, not_negative(), "s",
-           "The trace reaches the muscles so much later.")
-      .applies = simulated;
-  b.number("/hand/tremor_m", h.tremor, not_negative(), "m",
-           "Root mean square of the intended point's tremor, each axis.")
-      .applies = simulated;
-  b.number("/hand/tremor_frequency_Hz", h.tremor_frequency, positive(), "Hz",
-           "Where the tremor is strongest.")
-      .applies = simulated;
-  b.integer("/hand/seed", h.seed, between(0, 2147483647), "Of the tremor.").applies = simulated;
-}
-
 void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
   sim::RateParams& r = s.params.rates;
   b.number("/haptics/period_s", r.haptic_period, {kShortestTick, 1.0, false, true}, "s",
@@ -527,26 +503,7 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
            "Live: age of the surface that the hand feels at which it is let go.");
   b.number("/haptics/device/watchdog/release_s", w.release_s, between(0.0, kLongestRelease), "s",
            "In which the force falls to zero then, and comes back; 0: at once.");
-  TraceSpec& t = s.trace;
-  b.path("/trace/file", t.file, folder, "Recorded motion (CSV or HDF5).").required = true;
-  b.choice<device::ToolMode>("/trace/default_mode", t.options.default_mode,
-                             {{device::ToolMode::push, "push"},
-                              {device::ToolMode::pull, "pull"},
-                              {device::ToolMode::wet, "wet"},
-                              {device::ToolMode::dry, "dry"}},
-                             "Mode when the file has no column for it.");
-  b.number("/trace/default_rate_hz", t.options.default_rate_hz, not_negative(), "Hz",
-           "Rate when the file has no time; 0: it must.");
-  b.strings("/trace/columns", t.options.columns,
-            "CSV: names of the columns from the left, in place of a header row.");
-  b.number("/trace/start_s", t.start, not_negative(), "s", "Where in the trace the run starts.");
-  b.number("/trace/duration_s", t.duration, not_negative(), "s", "How long it runs; 0: to the trace's end.");
-  device::DeviceToWorld& to_world = t.options.device_to_world;
-  b.number("/trace/device_to_world/scale", to_world.scale, positive(), "", "World metres per device metre.");
-  b.quaternion("/trace/device_to_world/rotation_xyzw", to_world.rotation,
-               "Unit quaternion, device to world.");
-  b.vector("/trace/device_to_world/translation_m", to_world.translation, "m",
-           "World position of the device's origin.");
+  bind_trace(b, s.trace, folder);
   bind_hand(b, s.hand);
   b.integer(
       "/output/checkpoint_period_ticks", s.checkpoint_period_ticks, between(0, 1e9),

@@ -64,6 +64,22 @@ void read_haply(const std::string& file) {
   if (again.device_id != message.device_id || again.problem.empty()) std::abort();
 }
 
+/// As a scenario without keys reads it, and with all that keys of /trace can say.
+void read_recording(const std::string& file) {
+  device::TraceOptions options;
+  options.time_unit = device::TimeUnit::ms;
+  options.length_unit = device::LengthUnit::mm;
+  options.angle_order = device::AngleOrder::XYZ;
+  options.angle_unit = device::AngleUnit::deg;
+  options.button_column = "button";
+  options.button_mode = device::ButtonMode::pull;
+  try {
+    device::read_trace(file, options);
+  } catch (const InputError&) {
+  }
+  device::read_trace(file, {});
+}
+
 const std::map<std::string, Reader, std::less<>>& readers() {
   static const std::map<std::string, Reader, std::less<>> kReaders = {
       {"tets",
@@ -71,7 +87,7 @@ const std::map<std::string, Reader, std::less<>>& readers() {
         [](const std::string& file) { mesh_files::read_tet_mesh(file); }}},
       {"surfaces",
        {{".obj", ".stl", ".ply"}, [](const std::string& file) { mesh_files::read_triangle_mesh(file); }}},
-      {"traces", {{".csv"}, [](const std::string& file) { device::read_trace(file, {}); }}},
+      {"traces", {{".csv"}, read_recording}},
       {"hdf5", {{".h5"}, [](const std::string& file) { device::read_trace(file, {}); }}},
       {"messages", {{".json"}, read_haply, Form::json}},
       {"queries", {{".csv"}, [](const std::string& file) { contact::read_queries(file); }}},

@@ -115,10 +115,10 @@ TEST(ReadTraceCsv, RefusesBadTimesByLine) {
   expect_refused("t,x,y,z\n0,0,0,0\nnan,0,0,0\n2,0,0,0\n", "line 3, column 1", "'nan' is not finite");
 }
 
-TEST(ReadTraceCsv, RefusesAGapOfMoreThanTenMedianIntervalsAndAcceptsOneOfTen) {
+TEST(ReadTraceCsv, RefusesAPauseOfMoreThanTenLongMedianIntervalsAndAcceptsOneOfTen) {
   const std::string start = "t,x,y,z\n0,0,0,0\n1,0,0,0\n2,0,0,0\n3,0,0,0\n";
   EXPECT_EQ(read(start + "13,0,0,0\n").samples.size(), 5U);
-  expect_refused(start + "13.01,0,0,0\n", "line 6", "gap of 10.01 s");
+  expect_refused(start + "13.01,0,0,0\n", "line 6", "pause of 10.01 s");
 }
 
 TEST(ReadTraceCsv, RefusesAPlaceBeyondAKilometreByItsLine) {
@@ -159,7 +159,7 @@ TEST(ReadTraceCsv, RefusesMissingOrDoubleColumns) {
   expect_refused("t,x,y\n0,0,0\n1,0,0\n", "line 1", "no columns x, y, z");
   expect_refused("t,x,y,z,px\n0,0,0,0,0\n1,0,0,0,0\n", "line 1", "two columns for 'px'");
   expect_refused("t,x,y,z,qx,qy,qz\n0,0,0,0,0,0,0\n", "line 1", "some but not all");
-  expect_refused("t;x;y;z\n0;0;0;0\n", "line 1", "no columns x, y, z");
+  expect_refused("t|x|y|z\n0|0|0|0\n", "line 1", "no columns x, y, z among 't|x|y|z'");
 }
 
 TEST(ReadTraceCsv, RefusesFewerThanTwoSamples) {

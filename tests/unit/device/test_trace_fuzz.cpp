@@ -19,8 +19,9 @@ const char* const kTrace =
     "0.002,0.7,3e-3,-2,0,\"1\",0,0,2\n0.003,0.8,4e-3,-2,1,0,0,0,dry\n";
 
 std::string mutate(std::string text, Rng& rng) {
-  const std::string_view pieces[] = {"nan", "inf", "-", ",", "\n", "\"",   "1e999",        "#",
-                                     ":",   "\r",  "",  "0", "e",  "\xff", "# sha256: x\n"};
+  const std::string_view pieces[] = {"nan", "inf", "-",        ",",   "\n",   "\"",   "1e999",         "#",
+                                     ":",   "\r",  "",         "0",   "e",    "\xff", "# sha256: x\n", ";",
+                                     "\t",  " ",   "12:00:00", "_ms", "[mm]", "%"};
   const std::uint64_t changes = 1 + rng.next_bits() % 4;
   for (std::uint64_t i = 0; i < changes && !text.empty(); ++i) {
     const std::size_t at = rng.next_bits() % text.size();

@@ -1,0 +1,30 @@
+#pragma once
+
+// What is asked of a motion's times and places as a whole, and what a user should know of them.
+
+#include <string>
+#include <vector>
+
+#include "device/trace_raw.h"
+
+namespace argil::device::internal {
+
+/// "line 12", or "row 12" of arrays.
+std::string print_place(const RawTrace& raw, std::size_t sample);
+/// With nine digits.
+std::string print_number(double value);
+
+/// Throws InputError for times that do not increase, pauses longer than options.max_gap and ten median
+/// intervals, a stated rate that is not the samples', and a rate out of all reason in a unit that nobody
+/// gave. Shorter pauses go to the notes.
+void check_times(const std::string& file, const TraceOptions& options, RawTrace& raw);
+
+/// Throws InputError where a hand would be faster or go farther than hands do, and nobody gave the unit of
+/// places or a scale.
+void check_path(const std::string& file, const Trace& trace);
+
+/// Says it where a motion goes in steps: places in whole steps of a coarse sensor, or held for several
+/// samples. `metres` per unit of the file's places in the world.
+void note_steps(const RawTrace& raw, double metres, std::vector<std::string>& notes);
+
+}  // namespace argil::device::internal
