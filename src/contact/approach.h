@@ -45,6 +45,12 @@ class ApproachFinder {
   std::optional<double> find_shift(std::span<const Pose> poses, const Vec3& begin, const Vec3& direction,
                                    double depth, double most);
 
+  /// How deep a point is in the tool [m]; negative outside.
+  double find_depth(const Pose& pose, const Vec3& point) {
+    return -m_tool.find_distance(pose.orientation.conjugate() * (point - pose.position), m_tool_face)
+                .distance;
+  }
+
   const ToolSolid& tool() const { return m_tool; }
   const mesh::Box& box() const { return m_box; }  ///< of the body
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iomanip>
+#include <limits>
 #include <memory>
 #include <span>
 #include <sstream>
@@ -116,6 +117,34 @@ Vec3 find_translation(ApproachFinder& finder, const Way& way, double depth, cons
                    "give less");
 }
 
+/// The same with the tool moved sideways until it is so deep at the wanted place, as near as that goes: on a
+/// slope it meets the body beside the line on which it comes.
+Vec3 aim(ApproachFinder& finder, Way way, double depth, const PlaceOptions& options) {
+  constexpr int kMostTries = 30;
+  constexpr double kClose = 1e-3;  // of the depth
+  Vec3 best = find_translation(finder, way, depth, options);
+  Vec3 last = best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMostTries; ++i) {
+    Pose tool = way.asked.front();
+    tool.position += last;
+    const double missing = depth - finder.find_depth(tool, *options.at);
+    if (missing < least) {
+      least = missing;
+      best = last;
+    }
+    const Vec3 miss = *options.at - finder.find(way.asked, last).on_body;
+    const Vec3 beside = miss - miss.dot(way.direction) * way.direction;
+    if (missing <= kClose * depth || beside.norm() <= kClose * depth) break;
+    way.begin += beside;
+    step_back(finder, depth, finder.tool().reach(), way);
+    const auto shift = finder.find_shift(way.asked, way.begin, way.direction, depth, way.most);
+    if (!shift) break;
+    last = way.begin + *shift * way.direction;
+  }
+  return best;
+}
+
 double choose_depth(const contact::ToolSolid& tool, double given) {
   constexpr double kChosen = 0.25;  // of the tool's radius
   if (given <= tool.thickness()) return given > 0.0 ? given : kChosen * tool.thickness();
@@ -173,8 +202,9 @@ class Placing {
     for (int i = 0; i < kMostTries; ++i) {
       m_way = m_options.at ? make_way_to_place(finder(), m_poses, *m_options.at, *m_options.from, m_depth)
                            : make_way_to_nearest(finder(), m_poses, m_nearest, m_depth);
-      const Vec3 found =
-          rounded_to_nanometres(m_given + find_translation(finder(), m_way, m_depth, m_options));
+      const Vec3 shift = m_options.at ? aim(finder(), m_way, m_depth, m_options)
+                                      : find_translation(finder(), m_way, m_depth, m_options);
+      const Vec3 found = rounded_to_nanometres(m_given + shift);
       const bool is_same_body = i > 0 || m_scenario.body.cells.kind == scenario::CellKind::even;
       const bool is_close = (found - translation()).norm() <= kClose * m_depth;
       if (is_same_body && is_close) return;

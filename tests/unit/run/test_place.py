@@ -95,6 +95,15 @@ class Place(unittest.TestCase):
         patch = json.loads(out[out.index("{"):])["trace"]["device_to_world"]["translation_m"]
         np.testing.assert_allclose(patch, [-0.04 - RADIUS + 0.001 - 0.024, 0.013, -0.9], atol=2e-8)
 
+    def test_a_place_that_is_met_aslant_is_the_deepest(self):
+        # From 45°: the pose that goes farthest is that at 15 ms, and the ball's middle ends above the place.
+        s = math.sqrt(0.5)
+        out = self.call("place", "scene.json", "--at", "0.01,0.02,0.04", "--from", "1,0,1", "--depth", "0.001", "-o", "p.json")[0]
+        down = TOP + RADIUS - 0.001 - (LOWEST + 0.02 * (1 - s))
+        np.testing.assert_allclose(self.read_translation("p.json"), [0.01 - (0.004 - 0.02 * s), 0.023, down], atol=1e-5)
+        self.assertIn("touches   0.001 m deep at 0.015 s", out)
+        self.assertRegex(out, r"deepest   0.00685\d m deep at 0.03 s")
+
     def test_a_ball_whose_cells_follow_the_motion_is_touched_as_deep(self):
         self.write_scene({"kind": "sphere", "size_m": 0.04, "target_tets": 2000, "skin_triangles": 0}, "graded")
         for extra in ((), ("--at", "0,0.012,0.036", "--from", "0,0.6,0.8")):
