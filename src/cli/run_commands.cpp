@@ -2,18 +2,22 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 
+#include "base/error.h"
 #include "cli/commands.h"
 #include "cli/finite_number.h"
 #include "device/devices.h"
 #include "live/live.h"
 #include "output/compare.h"
 #include "output/info.h"
+#include "run/approach.h"
 #include "run/export.h"
 #include "run/files.h"
+#include "run/place.h"
 #include "run/run.h"
 #include "run/start.h"
 #include "scenario/build.h"
@@ -30,6 +34,8 @@ struct Options {
   run::RunOptions run;
   live::LiveOptions live;
   run::ExportOptions exported;
+  run::PlaceOptions placed;
+  std::string at = "nearest", from;
   bool reference = false;
   std::vector<std::string> devices;
   std::string first, second, tolerances;
@@ -45,6 +51,26 @@ int compare_files(const std::string& a, const std::string& b, const std::string&
   const output::CompareReport report = output::compare_results(a, b, options);
   std::fputs(to_string(report).c_str(), stdout);
   return report.is_equal() ? ExitCode::kDone : ExitCode::kDifferent;
+}
+
+/// "X,Y,Z", of an option.
+Vec3 parse_place(const std::string& option, const std::string& text) {
+  const std::vector<std::string> parts = CLI::detail::split(text, ',');
+  Vec3 place;
+  bool is_place = parts.size() == 3;
+  for (Eigen::Index k = 0; is_place && k < 3; ++k)
+    is_place =
+        CLI::detail::lexical_cast(parts[static_cast<std::size_t>(k)], place(k)) && std::isfinite(place(k));
+  if (!is_place)
+    throw InputError(option, text, "is not X,Y,Z, three finite numbers", "write for instance 0,0,0.05");
+  return place;
+}
+
+int place(Options& o) {
+  o.placed.run = o.run;
+  if (o.at != "nearest") o.placed.at = parse_place("--at", o.at);
+  if (!o.from.empty()) o.placed.from = parse_place("--from", o.from);
+  return run::place(o.placed);
 }
 
 int print_info(const std::string& file) {
@@ -85,6 +111,8 @@ int validate(const run::RunOptions& options) {
   const scenario::Scenario s = run::load(options);
   const scenario::Scene scene = scenario::build_scene(s);
   if (!scene.contact_cells.empty()) std::fprintf(stderr, "argil: note: %s\n", scene.contact_cells.c_str());
+  if (const std::string miss = run::describe_miss(s, scene); !miss.empty())
+    std::fprintf(stderr, "argil: note: %s\n", miss.c_str());
   for (const std::string& warning : s.warnings) std::fprintf(stderr, "argil: warning: %s\n", warning.c_str());
   std::printf("%s: valid\n", s.file.c_str());
   return ExitCode::kDone;
@@ -99,6 +127,11 @@ void add_run_commands(CLI::App& app, int& code) {
     command
         ->add_option("--set", o->run.settings,
                      "/json/pointer=value, put in the scenario's place; may be repeated")
+        ->allow_extra_args(false);
+    command
+        ->add_option(
+            "--patch", o->run.patches,
+            "JSON file with keys of a scenario, put in the place of its own before --set; may be repeated")
         ->allow_extra_args(false);
     command->add_option("--trace", o->run.trace, "recorded motion in place of the scenario's");
   };
@@ -140,6 +173,23 @@ void add_run_commands(CLI::App& app, int& code) {
   CLI::App* show_command = app.add_subcommand("show", "print a scenario with every default written out");
   add_scenario(show_command);
   show_command->callback([o] { show(o->run); });
+
+  CLI::App* placing = app.add_subcommand(
+      "place", "say how near the tool comes, and propose where to put the motion so that it touches");
+  add_scenario(placing);
+  placing
+      ->add_option(
+          "--at", o->at,
+          "X,Y,Z [m] of the body's surface, or nearest: along the line where tool and body are nearest")
+      ->capture_default_str();
+  placing->add_option("--from", o->from, "X,Y,Z: direction that the tool comes from, with --at X,Y,Z");
+  placing
+      ->add_option(
+          "--depth", o->placed.depth,
+          "how deep the tool goes into the body at rest [m] (default: a quarter of the tool's radius)")
+      ->check(finite_number(false));
+  placing->add_option("-o,--output", o->placed.output, "patch for argil run --patch (default: printed)");
+  placing->callback([o, &code] { code = place(*o); });
 
   CLI::App* schema = app.add_subcommand("schema", "print the JSON Schema of a scenario");
   schema->add_flag("--reference", o->reference, "print the reference page (Markdown) instead");

@@ -54,6 +54,9 @@ class ToolSolid {
     return {length - m_radius, length > 0.0 ? Vec3(p / length) : Vec3(-Vec3::UnitZ())};
   }
 
+  /// Known to be convex, as the distance from it then is.
+  bool is_convex() const { return m_round.has_value(); }
+
   const Vec3& centre() const { return m_centre; }              ///< of a ball that holds the tool
   double radius() const { return m_radius; }                   ///< of that ball [m]
   double reach() const { return m_centre.norm() + m_radius; }  ///< from the origin, at most [m]

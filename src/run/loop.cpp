@@ -37,9 +37,10 @@ class StageClock final : public sim::StageObserver {
   std::array<double, static_cast<std::size_t>(sim::Stage::count)> m_seconds = {};
 };
 
-/// Appends what a tick gave.
-void append_records(sim::Simulation& simulation, FullModel* full, output::ResultFile& file) {
-  file.append(simulation.haptic_record());
+/// Appends what a tick gave. Returns whether the tool touched the body.
+bool append_records(sim::Simulation& simulation, FullModel* full, output::ResultFile& file) {
+  const sim::HapticRecord haptic = simulation.haptic_record();
+  file.append(haptic);
   if (full) full->compare(simulation);
   if (simulation.physics_due_last_tick()) {
     sim::PhysicsRecord record = simulation.physics_record();
@@ -47,12 +48,13 @@ void append_records(sim::Simulation& simulation, FullModel* full, output::Result
     file.append(record);
   }
   if (simulation.frame_due_last_tick()) file.append(simulation.make_frame());
+  return haptic.num_contacts > 0;
 }
 
 /// The ticks themselves. Returns the failure, if any.
 std::optional<Failure> run_ticks(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand,
                                  sim::Simulation& simulation, FullModel* full, output::ResultFile& file,
-                                 CostMeter& cost, Progress& progress) {
+                                 CostMeter& cost, Progress& progress, bool& has_touched) {
   Tick last_checkpoint = simulation.clock().tick;
   for (Tick k = simulation.clock().tick + 1; k <= num_ticks; ++k) {
     const device::DeviceSample sample = hand.advance(k, simulation.hand().gated().force);
@@ -62,7 +64,7 @@ std::optional<Failure> run_ticks(const scenario::Scenario& s, Tick num_ticks, Ha
     if (!status.is_ok()) return status.failure();
     if (full)
       if (const StepStatus beside = full->tick(sample); !beside.is_ok()) return beside.failure();
-    append_records(simulation, full, file);
+    if (append_records(simulation, full, file)) has_touched = true;
     progress.update(k);
     if (!simulation.physics_due_last_tick()) continue;
     const bool is_due = s.checkpoint_period_ticks > 0 && k - last_checkpoint >= s.checkpoint_period_ticks;
@@ -129,7 +131,7 @@ LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, 
   if (first == 0) file.append(simulation.make_frame());
   LoopEnd end;
   CostMeter cost;
-  end.failure = run_ticks(s, num_ticks, hand, simulation, full, file, cost, progress);
+  end.failure = run_ticks(s, num_ticks, hand, simulation, full, file, cost, progress, end.has_touched);
   const Tick last = simulation.clock().tick;
   end.is_interrupted = !end.failure && last < num_ticks;
   if (!simulation.frame_due_last_tick()) file.append(simulation.make_frame());  // the last good state

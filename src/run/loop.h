@@ -30,6 +30,7 @@ std::uint64_t count_frames(const scenario::Scenario& s, Tick tick);
 struct LoopEnd {
   std::optional<Failure> failure;
   bool is_interrupted = false;  ///< by SIGINT or SIGTERM
+  bool has_touched = false;     ///< the tool, in one of these ticks
   double seconds = 0.0;         ///< of wall clock
 };
 

@@ -8,6 +8,8 @@
 
 #include "base/error.h"
 #include "output/result_file.h"
+#include "output/result_reader.h"
+#include "run/approach.h"
 #include "run/files.h"
 #include "run/identity.h"
 #include "run/loop.h"
@@ -15,6 +17,7 @@
 #include "run/resume.h"
 #include "run/start.h"
 #include "scenario/build.h"
+#include "scenario/patch.h"
 #include "sim/simulation.h"
 
 namespace argil::run {
@@ -53,6 +56,16 @@ int print_end(const std::string& result, const LoopEnd& end, Tick first, Tick la
   if (first > 0) std::printf(", resumed after tick %lld", static_cast<long long>(first));
   std::printf("\n");
   return kDone;
+}
+
+/// Says so where the tool has touched nothing since the start. `miss`: what was known of it before.
+void print_miss(const std::string& result, const LoopEnd& end, Tick first, const std::string& miss,
+                const RunOptions& options) {
+  if (end.has_touched || options.quiet) return;
+  if (first > 0)
+    for (const sim::HapticRecord& record : output::ResultReader(result).read_haptic())
+      if (record.num_contacts > 0) return;
+  std::fprintf(stderr, "argil: note: no tick had contact%s%s\n", miss.empty() ? "" : ": ", miss.c_str());
 }
 
 /// One equilibrium: a physics record and a frame, at the time 0 of an empty motion.
@@ -119,6 +132,10 @@ int run_replay(const scenario::Scenario& s, const output::Session& session, cons
 
 scenario::Scenario load(const RunOptions& options) {
   std::vector<scenario::Setting> settings;
+  for (const std::string& patch : options.patches) {
+    require_input_file(patch);
+    for (scenario::Setting& setting : scenario::read_patch(patch)) settings.push_back(std::move(setting));
+  }
   for (const std::string& text : options.settings) settings.push_back(scenario::parse_setting(text));
   if (!options.trace.empty())
     settings.push_back({"/trace/file", "\"" + std::filesystem::absolute(options.trace).string() + "\""});
@@ -145,6 +162,7 @@ int run(const RunOptions& options) {
   const scenario::Scenario s = load(options);
   const std::string result = name_result(s, options);
   check_result_name(s, result);
+  for (const std::string& patch : options.patches) require_other_file(result, patch, "the patch", "-o");
   if (s.mode == scenario::Mode::equilibrium && options.resume)
     throw InputError(s.file, "/dynamics/mode", "\"static\" has no ticks to resume", "leave --resume out");
   std::string note;
@@ -153,6 +171,8 @@ int run(const RunOptions& options) {
   scenario::Scene scene = scenario::build_scene(s);
   if (!note.empty()) scene.notes.push_back(note);
   if (s.mode == scenario::Mode::equilibrium) return run_static(s, scene, options);
+  const std::string miss = describe_miss(s, scene);
+  if (!miss.empty()) scene.notes.push_back(miss);
   const mesh::TriangleMesh tool = scene.tool;
   const device::DeviceSample start = sample_at(s, scene.trace, 0);
   std::optional<FullModel> full;
@@ -195,6 +215,7 @@ int run(const RunOptions& options) {
     throw;
   }
   if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
+  print_miss(result, end, first, miss, options);
   return print_end(result, end, first, simulation.clock().tick, options);
 }
 

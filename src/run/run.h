@@ -12,6 +12,7 @@ struct RunOptions {
   std::string scenario;
   std::string trace;   ///< replaces /trace/file when not empty
   std::string output;  ///< result file; empty: the scenario's name with .h5 in the working folder
+  std::vector<std::string> patches;   ///< --patch files: below the settings
   std::vector<std::string> settings;  ///< --set texts
   int threads = 1;
   bool resume = false;  ///< go on from the result file's checkpoint where there is one

@@ -229,12 +229,4 @@ StabilityStudy read_stability_study(const std::string& file) {
   return study;
 }
 
-std::string print_patch(const std::vector<Setting>& settings) {
-  Json patch = Json::object();
-  for (const Setting& setting : settings)
-    patch[Json::json_pointer(setting.pointer)] =
-        Json::accept(setting.value) ? Json::parse(setting.value) : Json(setting.value);
-  return patch.dump(2) + "\n";
-}
-
 }  // namespace argil::scenario

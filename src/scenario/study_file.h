@@ -68,7 +68,4 @@ struct StabilityStudy {
 ChartStudy read_chart_study(const std::string& file);
 StabilityStudy read_stability_study(const std::string& file);
 
-/// Settings as a JSON object that holds just these keys, to be merged into a scenario (RFC 7396).
-std::string print_patch(const std::vector<Setting>& settings);
-
 }  // namespace argil::scenario

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "output/study_table.h"
 #include "run/run.h"
+#include "scenario/patch.h"
 #include "scenario/study_file.h"
 #include "study/measure.h"
 #include "study/outcome.h"

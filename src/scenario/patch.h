@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.h"
+
+namespace argil::scenario {
+
+// A patch is a JSON object that holds some keys of a scenario alone, to be merged into it (RFC 7396).
+
+/// Settings as a patch.
+std::string print_patch(const std::vector<Setting>& settings);
+
+/// A patch as settings. Throws InputError for what is no object, and for null, which would take a key away.
+std::vector<Setting> read_patch(const std::string& file);
+
+}  // namespace argil::scenario
