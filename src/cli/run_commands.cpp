@@ -110,6 +110,8 @@ void show(const run::RunOptions& options) {
 int validate(const run::RunOptions& options) {
   const scenario::Scenario s = run::load(options);
   const scenario::Scene scene = scenario::build_scene(s);
+  for (const std::string& note : scene.trace.notes)
+    std::fprintf(stderr, "argil: note: trace: %s\n", note.c_str());
   if (!scene.contact_cells.empty()) std::fprintf(stderr, "argil: note: %s\n", scene.contact_cells.c_str());
   if (const std::string miss = run::describe_miss(s, scene); !miss.empty())
     std::fprintf(stderr, "argil: note: %s\n", miss.c_str());

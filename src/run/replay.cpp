@@ -14,8 +14,7 @@ void append_step(Tick ticks_before, sim::Simulation& simulation, output::ResultF
   sim::BodySide& body = simulation.body_side();
   file.append(body.make_record());
   const int period = simulation.params().rates.frame_period_ticks;
-  if (sim::passes_multiple(ticks_before, body.hand().ticks, period))
-    file.append(body.make_frame_of_step());
+  if (sim::passes_multiple(ticks_before, body.hand().ticks, period)) file.append(body.make_frame_of_step());
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -197,8 +196,8 @@ void fix_and_load(const Scenario& s, const Halvings& halvings, sim::Body& body) 
 /// An equilibrium has no mass to lean on: the supports alone must hold every part of the body.
 void check_supports(const Scenario& s, const sim::Body& body) {
   const solid::Elements elements = solid::make_elements(body.mesh, body.topology, s.params.solid.element);
-  const std::string motion = solid::find_rigid_motion(elements, body.topology,
-                                                      solid::find_constraints(elements, body.supports));
+  const std::string motion =
+      solid::find_rigid_motion(elements, body.topology, solid::find_constraints(elements, body.supports));
   if (!motion.empty())
     throw InputError(s.file, "/body/fixed", "does not hold the body: " + motion,
                      "hold at least three vertices of it that are not on a line");
@@ -276,34 +275,6 @@ void check_grip(const Scenario& s, const device::Trace& trace) {
                      "give the mean traction at which the tool lets go");
 }
 
-/// Is a motion whose unit of length nobody gave far from the body in m, and at it in mm or cm?
-void check_length_unit(const Scenario& s, const device::Trace& trace, const Points& vertices) {
-  if (!trace.is_length_assumed) return;
-  const Vec3 low = vertices.rowwise().minCoeff();
-  const Vec3 high = vertices.rowwise().maxCoeff();
-  const double size = (high - low).norm();
-  const Vec3& origin = s.trace.options.device_to_world.translation;
-  const auto find_distance = [&](double factor) {
-    double least = std::numeric_limits<double>::max();
-    for (const device::DeviceSample& sample : trace.samples) {
-      const Vec3 place = origin + factor * (sample.position - origin);
-      least = std::min(least, (place - place.cwiseMax(low).cwiseMin(high)).norm());
-    }
-    return least;
-  };
-  constexpr double kFar = 10.0;  // sizes of the body
-  const double distance = find_distance(1.0);
-  if (!(distance > kFar * size)) return;
-  for (const auto& [factor, unit] : {std::pair(1e-3, "mm"), std::pair(1e-2, "cm")}) {
-    if (!(find_distance(factor) < size)) continue;
-    std::ostringstream problem;
-    problem << "the motion stays " << distance << " m away from a body of " << size
-            << " m if places are in m, and comes to it if they are in " << unit;
-    throw InputError(trace.file, "", problem.str(),
-                     std::string("give the unit by /trace/length_unit: m, cm, mm or um, perhaps ") + unit);
-  }
-}
-
 void check_trace(const Scenario& s, const device::Trace& trace) {
   check_grip(s, trace);
   for (const device::DeviceSample& sample : trace.samples)
@@ -342,7 +313,6 @@ Scene build_scene(const Scenario& s, const std::vector<sim::TouchedPlace>* place
   body.topology = mesh::make_topology(body.mesh);
   if (body.skin.num_triangles() > 0) embed_skin(s, scene);
   scene.contact_cells = describe_contact_cells(s, scene.trace, scene.tool, body);
-  check_length_unit(s, scene.trace, body.mesh.vertices);
   check_medium(s, scene);
   check_diffusion(s, body);
   fix_and_load(s, halvings, body);

@@ -23,9 +23,9 @@ constexpr auto kPressure = contact::ContactLaw::pressure;
 constexpr auto kPairs = contact::ContactLaw::pairs;
 constexpr Case kCases[] = {
     {"1 kHz", {false, kPressure, 1, BetweenFrames::hold}},
-    {"1 kHz pairs mean", {false, kPairs, 1, BetweenFrames::hold, PenaltyKind::continuous}},
+    {"1 kHz mean", {false, kPairs, 1, BetweenFrames::hold, PenaltyKind::continuous}},
     {"71 Hz hold", {false, kPressure, 14, BetweenFrames::hold}},
-    {"71 Hz hold pairs mean", {false, kPairs, 14, BetweenFrames::hold, PenaltyKind::continuous}},
+    {"71 Hz hold mean", {false, kPairs, 14, BetweenFrames::hold, PenaltyKind::continuous}},
     {"71 Hz re_evaluate", {false, kPressure, 14, BetweenFrames::re_evaluate}},
     {"1 kHz", {true, kPressure, 1, BetweenFrames::hold}},
     {"71 Hz hold", {true, kPressure, 14, BetweenFrames::hold}},

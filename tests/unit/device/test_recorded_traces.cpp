@@ -166,6 +166,7 @@ TEST(RecordedHands, QuaternionsTurnAsTheRecordedAngularVelocitySays) {
   const Trace trace = read_trace(test::shared_data(name), robot_columns());
   TraceOptions velocity_columns;
   velocity_columns.columns = {"t", "", "", "", "", "", "", "", "", "", "", "x", "y", "z"};
+  velocity_columns.length_unit = LengthUnit::m;  // else such places would be refused
   const Trace velocity = read_trace(test::shared_data(name), velocity_columns);
   ASSERT_EQ(trace.samples.size(), 1965U);
   double worst = 0.0;

@@ -123,7 +123,8 @@ class Place(unittest.TestCase):
 
     def test_a_motion_in_millimetres_is_said(self):
         write_swing(self.folder / "swing.csv", length=20.0)
-        self.assertIn("times larger than the body", self.call("place", "scene.json", "-o", "p.json")[0])
+        in_metres = ("--set", '/trace/length_unit="m"')  # nobody's hand, unless one says so
+        self.assertIn("times larger than the body", self.call("place", "scene.json", *in_metres, "-o", "p.json")[0])
 
     def test_what_cannot_be_placed_is_refused(self):
         for arguments, words in ((["--at", "0,0"], "is not X,Y,Z"),
