@@ -24,6 +24,7 @@ constexpr std::size_t kSomeSamples = 10;
 constexpr double kFastestHand = 20.0;  // [m/s] in a hundredth of a motion
 constexpr double kFastestMean = 3.0;   // [m/s]
 constexpr double kWidestMotion = 5.0;  // [m]
+constexpr double kWideMotion = 1.0;    // [m] less may be fast: a stab that someone wrote
 
 // A motion in steps.
 constexpr double kLongestHold = 0.5;    // [s] a longer one is a rest
@@ -138,9 +139,11 @@ void check_path(const std::string& file, const Trace& trace) {
   }
   const double mean = path / trace.duration();
   const double fast = take_quantile(std::move(speed), 0.99);
-  if (mean <= kFastestMean && fast <= kFastestHand && (high - low).norm() <= kWidestMotion) return;
+  const double width = (high - low).norm();
+  const bool is_fast = mean > kFastestMean || fast > kFastestHand;
+  if (width <= kWidestMotion && !(is_fast && width > kWideMotion)) return;
   throw InputError(file, "",
-                   "the motion is " + print_number((high - low).norm()) + " m wide, " + print_number(mean) +
+                   "the motion is " + print_number(width) + " m wide, " + print_number(mean) +
                        " m/s fast in the mean and " + print_number(fast) +
                        " m/s at its fastest, which is no hand's if places are in m",
                    "give the unit by /trace/length_unit: m, cm, mm or um, perhaps mm");

@@ -141,6 +141,10 @@ TEST(RecordingUnits, ThatNobodyGaveAreRefusedWhereThePathIsOutOfReason) {
                  "", "/trace/length_unit");  // 3.75 m/s
   expect_refused(make_rows("t,x,y,z", 9000, time, [](int i) { return 0.001 * i; }), "",
                  "9");  // 1 m/s, but 9 m
+  // A stab at 5 m/s and a jump of 0.5 m in a tick are fast, but not wide.
+  EXPECT_TRUE(read(make_rows("t,x,y,z", 100, time, [](int i) { return 0.4 - 0.005 * i; })).is_length_assumed);
+  EXPECT_TRUE(
+      read(make_rows("t,x,y,z", 20, time, [](int i) { return i < 10 ? 0.5 : 0.0; })).is_length_assumed);
   options.length_unit = LengthUnit::mm;
   EXPECT_NEAR(read(mm, options).samples[100].position.z(), 0.070, 1e-15);
   options = {};
