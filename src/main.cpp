@@ -2,16 +2,37 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "cli/commands.h"
 #include "run/identity.h"
 #include "run/interrupt.h"
 #include "run/run.h"
+#include "scenario/json_document.h"
+
+namespace {
+
+/// The parser would only miss a command.
+void require_command(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) return;
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  const std::string nearest = argil::scenario::find_nearest(word, names);
+  throw argil::InputError(
+      word, "", "is no command",
+      (nearest.empty() ? "" : "did you mean " + nearest + "? ") + ("commands are: " + list));
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using argil::run::ExitCode;
@@ -23,6 +44,7 @@ int main(int argc, char** argv) {
   argil::cli::add_law_commands(app, code);
   argil::cli::add_study_commands(app, code);
   try {
+    if (argc > 1) require_command(app, argv[1]);
     app.parse(argc, argv);
     return code;
   } catch (const CLI::ParseError& error) {

@@ -29,6 +29,9 @@ std::vector<std::string> find_keys_below(const std::vector<Parameter>& rows, con
   return keys;
 }
 
+/// By which editors find the schema of a file.
+constexpr const char* kSchemaKey = "$schema";
+
 bool is_key(const std::vector<Parameter>& rows, const std::string& pointer) {
   return std::any_of(rows.begin(), rows.end(), [&](const Parameter& row) { return row.pointer == pointer; });
 }
@@ -39,13 +42,15 @@ void check_keys(const std::vector<Parameter>& rows, const Json& object, const st
     throw InputError(file, prefix + pointer, object.dump() + " is not an object", "give an object {…}");
   const std::vector<std::string> allowed = find_keys_below(rows, pointer);
   for (const auto& [key, value] : object.items()) {
+    if (key == kSchemaKey && (prefix + pointer).empty() && value.is_string()) continue;
     const std::string below = pointer + "/" + escape_key(key);
     if (std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
       std::string list;
       for (const std::string& word : allowed) list += (list.empty() ? "" : ", ") + word;
       const std::string nearest = find_nearest(key, allowed);
-      throw InputError(file, prefix + below, "is not a known key",
-                       nearest.empty() ? "known here are: " + list : "did you mean \"" + nearest + "\"?");
+      throw InputError(
+          file, prefix + below, "is not a known key",
+          (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") + ("known here are: " + list));
     }
     if (!is_key(rows, below)) check_keys(rows, value, below, file, prefix);
   }
@@ -195,6 +200,8 @@ std::string print_schema() {
   schema["properties"]["body"]["oneOf"] = {
       {{"required", {"mesh"}}}, {{"required", {"shape"}}}, {{"required", {"surface"}}}};
   schema["required"].push_back("body");
+  schema["properties"][kSchemaKey] = {
+      {"type", "string"}, {"description", "Where this schema lies, for an editor; argil does not read it."}};
   Json page = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "argil scenario"}};
   page.update(schema);
   return page.dump(2) + "\n";

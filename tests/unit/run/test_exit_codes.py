@@ -127,6 +127,7 @@ class ExitCodes(unittest.TestCase):
     def test_2_bad_command_lines(self):
         for arguments in ([], ["rum"], ["run"], ["run", "scene.json", "--threads", "0"], ["run", "scene.json", "--sett"]):
             self.assertEqual(self.call(*arguments)[0], 2, arguments)
+        self.assertIn("rnu: is no command; did you mean run?", self.call("rnu", "scene.json")[2])
 
     def test_2_numbers_that_are_none(self):
         for option, others in (("--minimum-separation", ["ccd", "--kind", "edge-edge", "press.csv"]),

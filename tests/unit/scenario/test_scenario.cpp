@@ -157,7 +157,9 @@ TEST_F(ScenarioFile, LaterSetWins) {
 }
 
 TEST_F(ScenarioFile, BadSetPointersNameTheNearestKey) {
-  expect_refused("/water/porosty=0.3", {"scene.json: /water/porosty", "did you mean \"porosity\"?"});
+  expect_refused(
+      "/water/porosty=0.3",
+      {"scene.json: /water/porosty", "did you mean \"porosity\"? known here are: ", "diffusivity_m2_per_s"});
   expect_refused("/watr/porosity=0.3", {"/watr", "did you mean \"water\"?"});
   expect_refused("/body/fixed/0/ofset_m=1", {"/body/fixed/0/ofset_m", "did you mean \"offset_m\"?"});
   expect_refused("/about/first=1",
@@ -171,6 +173,13 @@ TEST_F(ScenarioFile, BadSetPointersNameTheNearestKey) {
   expect_refused("/water/a~1b=1", {"/water/a~1b: is not a known key"});
   expect_refused("porosity=0.3", {"--set: porosity=0.3", "/json/pointer=value"});
   expect_refused("/water/porosity", {"--set: /water/porosity", "/json/pointer=value"});
+}
+
+TEST_F(ScenarioFile, MayNameItsSchemaForAnEditor) {
+  EXPECT_EQ(print_resolved(load({R"(/$schema="argil.schema.json")"})), print_resolved(load()));
+  EXPECT_NE(print_schema().find("\"$schema\": {"), std::string::npos);
+  expect_refused("/$schema=1", {"/$schema: is not a known key"});
+  expect_refused(R"(/body/$schema="x")", {"/body/$schema: is not a known key"});
 }
 
 TEST_F(ScenarioFile, DuplicateKeysAreRefusedAtAnyDepthAndInSettings) {
