@@ -150,12 +150,18 @@ def add_midpoints(nodes, tets):
 
 
 def find_region(nodes, num_vertices, region):
-    """Numbers of the nodes in a region; a list of vertices means them alone."""
+    """Numbers of the nodes in a region, or of a list of vertices."""
     if region["kind"] == "nodes":
         assert max(region["nodes"]) < num_vertices
         return np.array(region["nodes"])
     assert region["kind"] == "box"
     return np.flatnonzero(np.all((nodes >= region["lower_m"]) & (nodes <= region["upper_m"]), axis=1))
+
+
+def with_midpoints(held, tets):
+    """Of ten-node tets also the midpoints of edges both of whose ends are held."""
+    between = np.isin(tets[:, EDGES], held).all(axis=2)
+    return np.union1d(held, tets[:, 4:][between])
 
 
 def pose(scenario, vertices, tets, modulus=None):
@@ -170,6 +176,8 @@ def pose(scenario, vertices, tets, modulus=None):
     prescribed = np.full_like(nodes, np.nan)
     for support in body["fixed"]:
         held = find_region(nodes, len(vertices), support)
+        if tets.shape[1] == 10:
+            held = with_midpoints(held, tets)
         for k, axis in enumerate("xyz"):
             if support.get("fixes_" + axis, True):
                 prescribed[held, k] = support.get("displacement_m", (0, 0, 0))[k]
