@@ -3,6 +3,7 @@
 
 Usage: test_coverage.py ARGIL
 """
+import itertools
 import json
 import subprocess
 import sys
@@ -16,6 +17,13 @@ ELSEWHERE = {  # point by point in unit tests
     "/material/effective_medium/scheme": {"dilute_strain", "voigt", "reuss", "hs_lower", "hs_upper"},
     "/tool/shape/kind": {"mesh"},
     "/trace/default_mode": {"pull", "wet", "dry"},
+    # How a recording is read: tests/unit/device/test_recording_units.cpp.
+    "/trace/time_unit": {"s", "ms", "us", "ns"},
+    "/trace/length_unit": {"m", "cm", "mm", "um"},
+    "/trace/quaternion_order": {"wxyz", "xyzw"},
+    "/trace/angle_order": {"vector", *map("".join, itertools.permutations("xyz")), *map("".join, itertools.permutations("XYZ"))},
+    "/trace/angle_unit": {"rad", "deg"},
+    "/trace/button/mode": {"push", "pull", "wet", "dry"},
 }
 
 
