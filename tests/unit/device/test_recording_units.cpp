@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <sstream>
+#include <string>
 
 #include "base/error.h"
 #include "device/trace.h"
@@ -266,6 +269,35 @@ TEST(RecordingAngles, TurnInTheOrderThatIsStated) {
     EXPECT_NEAR((turned(read(text, options), Vec3::UnitX()) - Vec3::UnitZ()).norm(), 0.0, 1e-15);
     EXPECT_NEAR((turned(read(text, options), Vec3::UnitY()) + Vec3::UnitX()).norm(), 0.0, 1e-15);
     EXPECT_NEAR((turned(read(text, options), Vec3::UnitZ()) + Vec3::UnitY()).norm(), 0.0, 1e-15);
+  }
+}
+
+// About fixed axes the first turn stands on the right, about those that turn on the left.
+TEST(RecordingAngles, TurnInEveryOrder) {
+  const std::string text = "t,x,y,z,rx,ry,rz\n0,0,0,0,0.3,-0.5,0.7\n1,0,0,0,0.3,-0.5,0.7\n";
+  const std::array<Mat3, 3> turn = {Eigen::AngleAxisd(0.3, Vec3::UnitX()).toRotationMatrix(),
+                                    Eigen::AngleAxisd(-0.5, Vec3::UnitY()).toRotationMatrix(),
+                                    Eigen::AngleAxisd(0.7, Vec3::UnitZ()).toRotationMatrix()};
+  using enum AngleOrder;
+  const std::map<std::string, std::array<AngleOrder, 2>> orders = {{"xyz", {xyz, XYZ}}, {"xzy", {xzy, XZY}},
+                                                                   {"yxz", {yxz, YXZ}}, {"yzx", {yzx, YZX}},
+                                                                   {"zxy", {zxy, ZXY}}, {"zyx", {zyx, ZYX}}};
+  TraceOptions options;
+  options.angle_unit = AngleUnit::rad;
+  for (const auto& [axes, order] : orders) {
+    const auto about = [&](std::size_t k) -> const Mat3& {
+      return turn[static_cast<std::size_t>(axes[k] - 'x')];
+    };
+    options.angle_order = order[0];
+    EXPECT_LT((read(text, options).samples[0].orientation.toRotationMatrix() - about(2) * about(1) * about(0))
+                  .norm(),
+              1e-14)
+        << axes;
+    options.angle_order = order[1];
+    EXPECT_LT((read(text, options).samples[0].orientation.toRotationMatrix() - about(0) * about(1) * about(2))
+                  .norm(),
+              1e-14)
+        << axes;
   }
 }
 
