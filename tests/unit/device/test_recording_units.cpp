@@ -8,30 +8,14 @@
 #include <sstream>
 #include <string>
 
-#include "base/error.h"
-#include "device/trace.h"
-#include "support/temp_folder.h"
+#include "unit/device/recordings.h"
 
 namespace argil::device {
 namespace {
 
-using test::TempFolder;
-
-Trace read(const std::string& text, const TraceOptions& options = {}) {
-  const TempFolder folder;
-  return read_trace(folder.write("trace.csv", text), options);
-}
-
-void expect_refused(const std::string& text, const std::string& place, const std::string& problem,
-                    const TraceOptions& options = {}) {
-  ARGIL_EXPECT_THROW_WITH(read(text, options), InputError, "trace.csv: " + place);
-  ARGIL_EXPECT_THROW_WITH(read(text, options), InputError, problem);
-}
-
-bool has_note(const Trace& trace, const std::string& part) {
-  return std::any_of(trace.notes.begin(), trace.notes.end(),
-                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
-}
+using test::expect_refused;
+using test::has_note;
+using test::read;
 
 /// `count` rows whose cells are functions of the row.
 template <class Time, class Height>
