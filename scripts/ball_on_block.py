@@ -1,4 +1,4 @@
-"""A ball on an elastic block that stands on its floor: the scene that the tables of the pressure law share."""
+"""What the tables of the pressure law share: how a scene is run along a way, and a ball on an elastic block."""
 import json
 import subprocess
 
@@ -8,11 +8,19 @@ EDGE = 0.04  # of the block [m]
 PERIOD = 0.001  # [s]
 
 
-def find_force(argil, folder, places, *, radius, friction=0.0, ticks_of_step=1, between="hold", modulus=1e5, target_tets=8000):
-    """Force at the hand [N] in each tick (N×3), with the ball's middle at `places` (N×3) [m] one tick after the other. `modulus`
-    is E [Pa]; `folder` takes the scene and its result."""
+def run_along(argil, folder, places, scene):
+    """Force at the hand [N] in each tick (N×3) of a scene whose tool is at `places` (N×3) [m] one tick after the other. `folder` takes
+    scene, motion and result."""
     lines = ["t,x,y,z"] + [f"{i * PERIOD:.3f},{x:.9f},{y:.9f},{z:.9f}" for i, (x, y, z) in enumerate(places)]
     (folder / "motion.csv").write_text("\n".join(lines) + "\n", encoding="ascii")
+    (folder / "scene.json").write_text(json.dumps({**scene, "trace": {"file": "motion.csv"}}), encoding="ascii")
+    subprocess.run([argil, "run", folder / "scene.json", "-q", "-o", folder / "run.h5"], check=True)
+    with h5py.File(folder / "run.h5") as run:
+        return run["haptic/force"][:]
+
+
+def find_force(argil, folder, places, *, radius, friction=0.0, ticks_of_step=1, between="hold", modulus=1e5, target_tets=8000):
+    """The same of the ball's middle over the block. `modulus` is E [Pa]."""
     scene = {
         "about": "A ball on a block.",
         "body": {"shape": {"kind": "box", "size_m": EDGE, "target_tets": target_tets, "skin_triangles": 0},
@@ -23,9 +31,5 @@ def find_force(argil, folder, places, *, radius, friction=0.0, ticks_of_step=1, 
         "contact": {"law": "pressure", "friction": friction},
         "haptics": {"physics_period_ticks": ticks_of_step, "water_period_ticks": ticks_of_step,
                     "frame_period_ticks": 100 * ticks_of_step, "between_frames": between, "chatter_limit": 1},
-        "trace": {"file": "motion.csv"},
     }
-    (folder / "scene.json").write_text(json.dumps(scene), encoding="ascii")
-    subprocess.run([argil, "run", folder / "scene.json", "-q", "-o", folder / "run.h5"], check=True)
-    with h5py.File(folder / "run.h5") as run:
-        return run["haptic/force"][:]
+    return run_along(argil, folder, places, scene)

@@ -9,17 +9,16 @@ speed is no jump.
 """
 import argparse
 import csv
-import json
-import subprocess
 import tempfile
 from pathlib import Path
 
-import h5py
 import numpy as np
+
+from ball_on_block import PERIOD, run_along
 
 ROOT = Path(__file__).resolve().parent.parent
 BODY, TOOL, DEPTH = 0.04, 0.006, 0.0015  # radii, and depth below the innermost facet [m]
-ANGLE, PERIOD = 0.35, 0.001  # half the arc, haptic tick [s]
+ANGLE = 0.35  # half the arc
 DOWN, REST = 150, 50  # ticks
 
 
@@ -61,8 +60,6 @@ def find_force(argil, folder, vertices, faces, speed):
     slide = np.arange(-ANGLE, ANGLE, speed * PERIOD / BODY)
     radius = np.concatenate([radius, np.full(slide.size, inner)])
     angle = np.concatenate([np.full(DOWN + REST, -ANGLE), slide])
-    lines = ["t,x,y,z"] + [f"{i * PERIOD:.3f},{r * np.sin(a):.9f},0,{r * np.cos(a):.9f}" for i, (r, a) in enumerate(zip(radius, angle))]
-    (folder / "motion.csv").write_text("\n".join(lines) + "\n", encoding="ascii")
     (folder / "ball.obj").write_text("".join(f"v {x:.9f} {y:.9f} {z:.9f}\n" for x, y, z in vertices)
                                      + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in faces), encoding="ascii")
     scene = {
@@ -71,12 +68,9 @@ def find_force(argil, folder, vertices, faces, speed):
         "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3, "plasticity": {"enabled": False}, "clay_kernel": {"form": "off"}},
         "tool": {"shape": {"kind": "sphere", "radius_m": TOOL}, "mode": "push"},
         "haptics": {"physics_period_ticks": 1, "water_period_ticks": 1, "frame_period_ticks": 100, "chatter_limit": 1},
-        "trace": {"file": "motion.csv"},
     }
-    (folder / "scene.json").write_text(json.dumps(scene), encoding="ascii")
-    subprocess.run([argil, "run", folder / "scene.json", "-q", "-o", folder / "run.h5"], check=True)
-    with h5py.File(folder / "run.h5") as run:
-        return run["haptic/force"][DOWN + REST:]
+    places = np.column_stack([radius * np.sin(angle), np.zeros(angle.size), radius * np.cos(angle)])
+    return run_along(argil, folder, places, scene)[DOWN + REST:]
 
 
 def main():

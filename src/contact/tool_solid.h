@@ -81,4 +81,9 @@ class ToolSolid {
   std::vector<InnerBall> m_inner_balls;
 };
 
+/// By its exact shape where it has one, else what its triangles enclose.
+inline ToolSolid make_tool_solid(const std::optional<RoundTool>& round, const mesh::TriangleMesh& triangles) {
+  return round ? ToolSolid(*round) : ToolSolid(triangles);
+}
+
 }  // namespace argil::contact

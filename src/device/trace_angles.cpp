@@ -2,31 +2,21 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "base/check.h"
+#include "base/lower_case.h"
 
 namespace argil::device::internal {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-Quat turn_about(int axis, double angle) {
-  Quat q(std::cos(0.5 * angle), 0.0, 0.0, 0.0);
-  q.vec()[axis] = std::sin(0.5 * angle);
-  return q;
-}
-
-}  // namespace
 
 std::optional<double> find_angle_unit(AngleUnit unit, std::string_view stated) {
-  std::string word;
-  for (const char c : stated) word += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const std::string word = to_lower_case(stated);
   if (unit == AngleUnit::rad || (unit == AngleUnit::automatic && (word == "rad" || word == "radians")))
     return 1.0;
   if (unit == AngleUnit::deg ||
       (unit == AngleUnit::automatic && (word == "deg" || word == "degrees" || word == "\xC2\xB0")))
-    return kPi / 180.0;
+    return std::numbers::pi / 180.0;
   return std::nullopt;
 }
 
@@ -45,7 +35,7 @@ Quat turn_by_angles(AngleOrder order, const Vec3& angles) {
   const int first = static_cast<int>(is_fixed ? AngleOrder::xyz : AngleOrder::XYZ);
   Quat q = Quat::Identity();
   for (const int axis : kOrders[static_cast<std::size_t>(static_cast<int>(order) - first)]) {
-    const Quat turn = turn_about(axis, angles[axis]);
+    const Quat turn(Eigen::AngleAxisd(angles[axis], Vec3::Unit(axis)));
     q = is_fixed ? turn * q : q * turn;
   }
   return q;

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/lower_case.h"
 #include "device/csv.h"
 #include "device/trace_angles.h"
 #include "device/trace_parser.h"
@@ -163,8 +164,7 @@ double read_time(Parser& parser, std::size_t line) {
 bool is_pressed(const Parser& parser, std::size_t line) {
   const int column = parser.layout.button;
   const std::string& text = parser.fields[static_cast<std::size_t>(column)];
-  std::string word;
-  for (const char c : text) word += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const std::string word = to_lower_case(text);
   for (const char* known : {"true", "pressed", "down", "on", "yes"})
     if (word == known) return true;
   for (const char* known : {"false", "released", "up", "off", "no"})

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/lower_case.h"
 #include "device/csv.h"
 
 namespace argil::device::internal {
@@ -19,19 +20,13 @@ bool is_alnum(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0;
 }
 
-char lower(char c) {
-  return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-}
-
 /// Units that may end a name behind a blank or a sign: "x_mm", "Time, s".
 bool is_unit_word(std::string_view word) {
   static const std::vector<std::string_view> kWords = {
       "s",         "sec",   "secs", "second", "seconds", "ms",  "us",      "\xC2\xB5s",
       "\xCE\xBCs", "\xB5s", "ns",   "m",      "cm",      "mm",  "um",      "\xC2\xB5m",
       "\xCE\xBCm", "\xB5m", "nm",   "in",     "rad",     "deg", "radians", "degrees"};
-  std::string small;
-  for (const char c : word) small += lower(c);
-  return std::find(kWords.begin(), kWords.end(), small) != kWords.end();
+  return std::find(kWords.begin(), kWords.end(), to_lower_case(word)) != kWords.end();
 }
 
 /// Plain names, in whose presence a column with another name for the same is not used.
@@ -230,8 +225,8 @@ ColumnName split_name(std::string_view name) {
       name = name.substr(0, sign);
     }
   }
-  for (const char c : name)
-    if (is_alnum(c)) found.base += lower(c);
+  for (const char c : to_lower_case(name))
+    if (is_alnum(c)) found.base += c;
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/lower_case.h"
 #include "device/csv.h"
 
 namespace argil::device::internal {
@@ -22,8 +23,7 @@ std::string plain_word(std::string_view word) {
       word.remove_prefix(micro.size());
       break;
     }
-  for (const char c : word) plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return plain;
+  return plain + to_lower_case(word);
 }
 
 template <std::size_t N>
@@ -137,11 +137,6 @@ std::string_view to_word(TimeUnit unit) {
   return kWords[static_cast<std::size_t>(unit)];
 }
 
-std::string_view to_word(LengthUnit unit) {
-  constexpr std::array<std::string_view, 5> kWords = {"auto", "m", "cm", "mm", "um"};
-  return kWords[static_cast<std::size_t>(unit)];
-}
-
 double per_second(TimeUnit unit) {
   ARGIL_ASSERT(unit != TimeUnit::automatic);
   return *find_time_unit(to_word(unit));
@@ -149,7 +144,8 @@ double per_second(TimeUnit unit) {
 
 double metres_per(LengthUnit unit) {
   ARGIL_ASSERT(unit != LengthUnit::automatic);
-  return *find_length_unit(to_word(unit));
+  constexpr std::array<std::string_view, 5> kWords = {"auto", "m", "cm", "mm", "um"};
+  return *find_length_unit(kWords[static_cast<std::size_t>(unit)]);
 }
 
 std::optional<Moment> find_moment(std::string_view text) {

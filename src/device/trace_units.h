@@ -16,10 +16,9 @@ std::optional<double> find_time_unit(std::string_view word);
 /// Metres in the unit: 0.001 for "mm". Nothing for a word that is none of m, cm, mm, µm.
 std::optional<double> find_length_unit(std::string_view word);
 
-double per_second(TimeUnit unit);           ///< of no automatic unit
-double metres_per(LengthUnit unit);         ///< of no automatic unit
-std::string_view to_word(TimeUnit unit);    ///< "ms", as the key has it
-std::string_view to_word(LengthUnit unit);  ///< "mm"
+double per_second(TimeUnit unit);         ///< of no automatic unit
+double metres_per(LengthUnit unit);       ///< of no automatic unit
+std::string_view to_word(TimeUnit unit);  ///< "ms", as the key has it
 
 /// A number in two parts, for times such as nanoseconds since 1970, of whose digits a double loses three.
 struct Moment {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/lower_case.h"
 #include "mesh_files/number_type.h"
 #include "mesh_files/vtk_grid.h"
 
@@ -74,9 +75,7 @@ void LegacyReader::read_header() {
 }
 
 NumberType LegacyReader::number_type() {
-  std::string name(m_cursor.word("a number type"));
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string name = to_lower_case(m_cursor.word("a number type"));
   const auto type =
       std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& known) { return known.first == name; });
   if (type == kTypes.end())

@@ -1,9 +1,9 @@
 #include "mesh_files/readers.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/lower_case.h"
 #include "mesh_files/surface_file.h"
 #include "mesh_files/tet_file.h"
 
@@ -12,10 +12,7 @@ namespace {
 
 // Ending of the name in small letters, with its dot.
 std::string find_ending(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return ending;
+  return to_lower_case(std::filesystem::path(file).extension().string());
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "run/approach.h"
 
-#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -20,8 +19,7 @@ std::vector<contact::Pose> list_poses(const scenario::Scenario& s, const device:
 }
 
 contact::ApproachFinder make_approach_finder(const scenario::Scenario& s, const scenario::Scene& scene) {
-  const std::optional<contact::RoundTool>& round = s.params.contact.round_tool;
-  contact::ToolSolid tool = round ? contact::ToolSolid(*round) : contact::ToolSolid(scene.tool);
+  contact::ToolSolid tool = contact::make_tool_solid(s.params.contact.round_tool, scene.tool);
   const sim::Body& body = scene.body;
   if (s.params.contact_surface == sim::SurfaceKind::skin) return {body.skin, std::move(tool)};
   return {{body.mesh.vertices, body.topology.boundary}, std::move(tool)};

@@ -239,8 +239,7 @@ std::vector<sim::TouchedPlace> find_places(const Scenario& s, const device::Trac
                                            const mesh::TriangleMesh& tool_surface,
                                            const embed::TriangleTree& surface) {
   if (trace.samples.empty()) return {};
-  const std::optional<contact::RoundTool>& round = s.params.contact.round_tool;
-  return find_touched_places(s, trace, round ? contact::ToolSolid(*round) : contact::ToolSolid(tool_surface),
+  return find_touched_places(s, trace, contact::make_tool_solid(s.params.contact.round_tool, tool_surface),
                              surface);
 }
 

@@ -27,7 +27,7 @@ bool contains(const Region& region, const Vec3& x) {
 
 /// Adds the nodes in the middle of edges between two of them.
 void add_middles(const Elements& elements, std::vector<int>& nodes) {
-  if (elements.nodes_per_tet == 4) return;
+  if (elements.nodes_per_tet == 4 || nodes.size() < 2) return;
   std::vector<char> is_listed(static_cast<std::size_t>(elements.num_nodes()), 0);
   for (const int node : nodes) is_listed[static_cast<std::size_t>(node)] = 1;
   for (int t = 0; t < elements.num_tets(); ++t)

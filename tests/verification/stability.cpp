@@ -120,7 +120,7 @@ Closed run_closed_loop(const Wall& wall, const Operator& hand, double stiffness,
 double find_stable_stiffness(const Wall& wall, const Operator& hand, Start start, double least, double most) {
   const auto dies_away = [&](double k) { return run_closed_loop(wall, hand, k, start).dies_away(start); };
   // Bounces may come to rest at a stiffness above one at which they do not: the first that does not counts.
-  constexpr double kFactor = 2.0;
+  constexpr double kFactor = 1.5;
   double stable = least;
   if (!dies_away(least)) return 0.0;
   double unstable = std::min(kFactor * least, most);
@@ -129,7 +129,7 @@ double find_stable_stiffness(const Wall& wall, const Operator& hand, Start start
     stable = unstable;
     unstable = std::min(kFactor * unstable, most);
   }
-  while (unstable / stable > 1.003) {
+  while (unstable / stable > 1.001) {
     const double middle = std::sqrt(stable * unstable);
     (dies_away(middle) ? stable : unstable) = middle;
   }

@@ -11,8 +11,8 @@ struct Operator {
   double press = 0.02;   ///< [N]
 };
 
-/// How the wall is touched: a large ball, flat over the whole top of a block (the pressure law), or on a point
-/// (pairs).
+/// How the wall is touched: a large ball, flat over the whole top of a block (the pressure law), or on a
+/// point (pairs).
 struct Wall {
   bool gives_way = false;  ///< is elastic, or does not move at all
   contact::ContactLaw law = contact::ContactLaw::pressure;
@@ -51,7 +51,7 @@ double compute_body_stiffness(contact::ContactLaw law);
 /// least; its motion under the held force is exact. `stiffness`: of the contact [N/m].
 Closed run_closed_loop(const Wall& wall, const Operator& hand, double stiffness, Start start);
 
-/// Smallest contact stiffness [N/m] from `least` on at which the motion does not die away, to 3 in 1000;
+/// Smallest contact stiffness [N/m] from `least` on at which the motion does not die away, to 1 in 1000;
 /// `most` when there is none.
 double find_stable_stiffness(const Wall& wall, const Operator& hand, Start start, double least, double most);
 
