@@ -19,11 +19,12 @@ def run_along(argil, folder, places, scene):
         return run["haptic/force"][:]
 
 
-def find_force(argil, folder, places, *, radius, friction=0.0, ticks_of_step=1, between="hold", modulus=1e5, target_tets=8000):
+def find_force(argil, folder, places, *, radius, friction=0.0, ticks_of_step=1, between="hold", modulus=1e5, target_tets=8000,
+               cells="graded"):
     """The same of the ball's middle over the block. `modulus` is E [Pa]."""
     scene = {
         "about": "A ball on a block.",
-        "body": {"shape": {"kind": "box", "size_m": EDGE, "target_tets": target_tets, "skin_triangles": 0},
+        "body": {"cells": {"kind": cells}, "shape": {"kind": "box", "size_m": EDGE, "target_tets": target_tets, "skin_triangles": 0},
                  "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 1e-6}]},
         "material": {"youngs_modulus_Pa": modulus, "poissons_ratio": 0.3, "plasticity": {"enabled": False},
                      "clay_kernel": {"form": "off"}},

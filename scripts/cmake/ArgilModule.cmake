@@ -7,6 +7,7 @@ function(argil_module name)
   if(ARG_SOURCES)
     set(scope PUBLIC)
     add_library(${target} STATIC ${ARG_SOURCES})
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)  # the Python module holds them
     argil_use_precompiled(${target} argil_precompiled)
   else()
     set(scope INTERFACE)

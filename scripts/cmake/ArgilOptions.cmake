@@ -11,6 +11,7 @@ target_compile_features(argil_options INTERFACE cxx_std_20)
 target_compile_definitions(argil_options INTERFACE EIGEN_DONT_PARALLELIZE)
 target_compile_options(argil_options INTERFACE
   -ffp-contract=off
+  -fno-semantic-interposition  # calls within a library are inlined as in a program
   "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Wdouble-promotion;-Wold-style-cast>"
   "$<BUILD_INTERFACE:-Wnon-virtual-dtor;-Woverloaded-virtual>"
   # g++ 12 warns of "literal" + std::string (GCC bug 105651)
