@@ -14,7 +14,8 @@ from pathlib import Path
 
 # Start of an included header's name → the folders (or files) that may include it.
 LIBRARIES = {"hdf5": ["hdf5"], "cholmod": ["linear"], "umfpack": ["linear"], "nlohmann/": ["device", "scenario"],
-             "boost/": ["device"], "spnav": ["device"], "dlfcn": ["device"], "CLI/": ["cli", "main.cpp"]}
+             "boost/": ["device"], "spnav": ["device"], "dlfcn": ["device"], "CLI/": ["cli", "main.cpp"],
+             "pybind11/": ["python"], "Python.h": ["python"]}
 # What no folder of the loop may include: a tick neither locks nor calls the system. One file there is read by no tick.
 LOOP = {"contact", "material", "linear", "water", "solid", "embed", "sim"}
 NOT_OF_THE_LOOP = {"contact/queries"}
@@ -22,7 +23,7 @@ SYSTEM = re.compile(r"(mutex|shared_mutex|thread|condition_variable|future|semap
                     r"|filesystem|unistd\.h|pthread\.h|sys/.*)$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 ROW = re.compile(r"^\| (\d+) \| `([\w.]+)` \|.*\| ([^|]+) \|$", re.MULTILINE)
-MODULE = re.compile(r"argil_module\((\w+)([^)]*)\)")
+MODULE = re.compile(r"argil_(?:module|extension)\((\w+)([^)]*)\)")
 
 
 def read_table(readme):

@@ -1,6 +1,5 @@
 # What `cmake --install` and the Debian package (`cpack`) hold: the program with its page, man page, completion and
 # scenarios, and the libraries and headers that find_package(argil) finds.
-find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
   set(share "${PROJECT_BINARY_DIR}/share")
   add_custom_command(OUTPUT "${share}/man/man1/argil.1" "${share}/bash-completion/completions/argil"

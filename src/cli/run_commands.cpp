@@ -141,7 +141,7 @@ void add_run_commands(CLI::App& app, int& code) {
   add_scenario(run);
   run->add_option("-o,--output", o->run.output, "result file (default: the scenario's name with .h5)");
   run->add_option("--threads", o->run.threads, "threads; results do not depend on them")
-      ->check(CLI::Range(1, 256));
+      ->check(CLI::Range(1, run::kMostThreads));
   run->add_flag("--resume", o->run.resume, "go on from the result's last checkpoint, if there is one");
   run->add_flag("--dry-run", o->run.dry_run, "check and build everything, write nothing");
   run->add_flag("-q,--quiet", o->run.quiet, "print errors only");
@@ -155,7 +155,7 @@ void add_run_commands(CLI::App& app, int& code) {
   live->add_option("--duration", o->live.duration, "seconds (default: a simulated hand's trace; else Ctrl-C)")
       ->check(finite_number(false));
   live->add_option("--threads", o->run.threads, "of the physics; results do not depend on them")
-      ->check(CLI::Range(1, 256));
+      ->check(CLI::Range(1, run::kMostThreads));
   live->add_option("--watch", o->live.watch, "HDF5 file that others may read while it grows (SWMR)");
   live->add_flag("-q,--quiet", o->run.quiet, "print errors only");
   live->callback([o, &code] {

@@ -5,10 +5,10 @@
 namespace argil::run {
 namespace {
 
-volatile std::sig_atomic_t g_interrupted = 0;  // the one thing a signal handler may touch
+volatile std::sig_atomic_t g_interrupted = 0;  // the signal; the one thing a signal handler may touch
 
-void on_signal(int) {
-  g_interrupted = 1;
+void on_signal(int signal) {
+  g_interrupted = signal;
 }
 
 void on_child(int) {}  // a signal that is ignored would not end a sleep
@@ -23,6 +23,23 @@ void watch_signals() {
 
 bool is_interrupted() {
   return g_interrupted != 0;
+}
+
+SignalGuest::SignalGuest() : m_interrupt_before(), m_terminate_before(), m_size_before() {
+  g_interrupted = 0;
+  sigaction(SIGINT, nullptr, &m_interrupt_before);
+  sigaction(SIGTERM, nullptr, &m_terminate_before);
+  sigaction(SIGXFSZ, nullptr, &m_size_before);
+}
+
+SignalGuest::~SignalGuest() {
+  sigaction(SIGINT, &m_interrupt_before, nullptr);
+  sigaction(SIGTERM, &m_terminate_before, nullptr);
+  sigaction(SIGXFSZ, &m_size_before, nullptr);
+}
+
+int SignalGuest::caught() const {
+  return g_interrupted;
 }
 
 SignalPause::SignalPause() : m_before(), m_child_before() {

@@ -13,6 +13,22 @@ void watch_signals();
 /// One of them came since.
 bool is_interrupted();
 
+/// For a run within another program: forgets signals that came before. At its end signals do what they did at
+/// its begin.
+class SignalGuest {
+ public:
+  SignalGuest();
+  ~SignalGuest();
+  SignalGuest(const SignalGuest&) = delete;
+  SignalGuest& operator=(const SignalGuest&) = delete;
+
+  /// The signal that has come since; 0: none.
+  int caught() const;
+
+ private:
+  struct sigaction m_interrupt_before, m_terminate_before, m_size_before;
+};
+
 /// Many runs were ended by a signal before they were over. Ends the program with exit code 130 and this
 /// message.
 class Interrupted : public std::runtime_error {

@@ -37,51 +37,6 @@ class StageClock final : public sim::StageObserver {
   std::array<double, static_cast<std::size_t>(sim::Stage::count)> m_seconds = {};
 };
 
-/// Appends what a tick gave. Returns whether the tool touched the body.
-bool append_records(sim::Simulation& simulation, FullModel* full, output::ResultFile& file) {
-  const sim::HapticRecord haptic = simulation.haptic_record();
-  file.append(haptic);
-  if (full) full->compare(simulation);
-  if (simulation.physics_due_last_tick()) {
-    sim::PhysicsRecord record = simulation.physics_record();
-    if (full) record.fidelity.error = full->take_error();
-    file.append(record);
-  }
-  if (simulation.frame_due_last_tick()) file.append(simulation.make_frame());
-  return haptic.num_contacts > 0;
-}
-
-/// The ticks themselves. Returns the failure, if any.
-std::optional<Failure> run_ticks(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand,
-                                 sim::Simulation& simulation, FullModel* full, output::ResultFile& file,
-                                 CostMeter& cost, Progress& progress, bool& has_touched) {
-  Tick last_checkpoint = simulation.clock().tick;
-  for (Tick k = simulation.clock().tick + 1; k <= num_ticks; ++k) {
-    const device::DeviceSample sample = hand.advance(k, simulation.hand().gated().force);
-    cost.begin();
-    const StepStatus status = simulation.tick(sample);
-    cost.end();
-    if (!status.is_ok()) return status.failure();
-    if (full)
-      if (const StepStatus beside = full->tick(sample); !beside.is_ok()) return beside.failure();
-    if (append_records(simulation, full, file)) has_touched = true;
-    progress.update(k);
-    if (!simulation.physics_due_last_tick()) continue;
-    const bool is_due = s.checkpoint_period_ticks > 0 && k - last_checkpoint >= s.checkpoint_period_ticks;
-    if ((is_due || is_interrupted()) && k < num_ticks) {
-      Snapshot snapshot = simulation.take_snapshot();
-      Archive archive = Archive::make_saving(snapshot);
-      hand.serialize(archive);
-      if (full) full->save(snapshot);
-      file.write_checkpoint(snapshot);
-      last_checkpoint = k;
-      if (is_interrupted()) break;
-    }
-  }
-  if (const StepStatus status = simulation.hand().status(); !status.is_ok()) return status.failure();
-  return {};
-}
-
 }  // namespace
 
 std::optional<device::ToolMode> find_fixed_mode(const scenario::Scenario& s) {
@@ -120,27 +75,86 @@ std::uint64_t count_frames(const scenario::Scenario& s, Tick tick) {
   return 1 + static_cast<std::uint64_t>(tick / s.params.rates.frame_period_ticks);  // one at the start
 }
 
+struct RecordedTicks::Cost {
+  StageClock stages;
+  CostMeter meter;
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+};
+
+RecordedTicks::RecordedTicks(sim::Simulation& simulation, FullModel* full, output::ResultFile& file)
+    : m_simulation(simulation),
+      m_full(full),
+      m_file(file),
+      m_first(simulation.clock().tick),
+      m_cost(std::make_unique<Cost>()) {
+  m_simulation.observe_stages(&m_cost->stages);
+  if (m_first == 0) m_file.append(m_simulation.make_frame());
+}
+
+RecordedTicks::~RecordedTicks() {
+  m_simulation.observe_stages(nullptr);
+}
+
+StepStatus RecordedTicks::make(const device::DeviceSample& sample) {
+  m_cost->meter.begin();
+  const StepStatus status = m_simulation.tick(sample);
+  m_cost->meter.end();
+  ARGIL_TRY(status);
+  if (m_full) ARGIL_TRY(m_full->tick(sample));
+  const sim::HapticRecord haptic = m_simulation.haptic_record();
+  if (haptic.num_contacts > 0) m_has_touched = true;
+  m_file.append(haptic);
+  if (m_full) m_full->compare(m_simulation);
+  if (m_simulation.physics_due_last_tick()) {
+    sim::PhysicsRecord record = m_simulation.physics_record();
+    if (m_full) record.fidelity.error = m_full->take_error();
+    m_file.append(record);
+  }
+  if (m_simulation.frame_due_last_tick()) m_file.append(m_simulation.make_frame());
+  return StepStatus::ok();
+}
+
+double RecordedTicks::end() {
+  const Tick last = m_simulation.clock().tick;
+  if (!m_simulation.frame_due_last_tick()) m_file.append(m_simulation.make_frame());
+  const double seconds = seconds_since(m_cost->start);
+  auto timing = m_cost->stages.seconds(seconds, last - m_first);
+  timing.emplace_back("cpu", m_cost->meter.cpu_seconds());
+  if (const auto instructions = m_cost->meter.instructions())
+    timing.emplace_back("instructions", *instructions);
+  m_file.append_timing(timing);
+  return seconds;
+}
+
 LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, sim::Simulation& simulation,
                  FullModel* full, output::ResultFile& file, bool shows_progress) {
   watch_signals();
   Progress progress(num_ticks, shows_progress);
-  StageClock clock;
-  simulation.observe_stages(&clock);
-  const auto start = std::chrono::steady_clock::now();
-  const Tick first = simulation.clock().tick;
-  if (first == 0) file.append(simulation.make_frame());
+  RecordedTicks ticks(simulation, full, file);
+  StepStatus status = StepStatus::ok();
+  Tick last_checkpoint = simulation.clock().tick;
+  for (Tick k = simulation.clock().tick + 1; k <= num_ticks; ++k) {
+    status = ticks.make(hand.advance(k, simulation.hand().gated().force));
+    if (!status.is_ok()) break;
+    progress.update(k);
+    if (!simulation.physics_due_last_tick()) continue;
+    const bool is_due = s.checkpoint_period_ticks > 0 && k - last_checkpoint >= s.checkpoint_period_ticks;
+    if ((is_due || is_interrupted()) && k < num_ticks) {
+      Snapshot snapshot = simulation.take_snapshot();
+      Archive archive = Archive::make_saving(snapshot);
+      hand.serialize(archive);
+      if (full) full->save(snapshot);
+      file.write_checkpoint(snapshot);
+      last_checkpoint = k;
+      if (is_interrupted()) break;
+    }
+  }
+  if (status.is_ok()) status = simulation.hand().status();
   LoopEnd end;
-  CostMeter cost;
-  end.failure = run_ticks(s, num_ticks, hand, simulation, full, file, cost, progress, end.has_touched);
-  const Tick last = simulation.clock().tick;
-  end.is_interrupted = !end.failure && last < num_ticks;
-  if (!simulation.frame_due_last_tick()) file.append(simulation.make_frame());  // the last good state
-  end.seconds = seconds_since(start);
-  auto timing = clock.seconds(end.seconds, last - first);
-  timing.emplace_back("cpu", cost.cpu_seconds());
-  if (const auto instructions = cost.instructions()) timing.emplace_back("instructions", *instructions);
-  file.append_timing(timing);
-  simulation.observe_stages(nullptr);
+  if (!status.is_ok()) end.failure = status.failure();
+  end.is_interrupted = !end.failure && simulation.clock().tick < num_ticks;
+  end.has_touched = ticks.has_touched();
+  end.seconds = ticks.end();
   return end;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "device/trace.h"
@@ -26,6 +27,34 @@ Tick count_ticks(const scenario::Scenario& s, const device::Trace& trace);
 /// Frames that a run has written when tick `tick` has ended.
 std::uint64_t count_frames(const scenario::Scenario& s, Tick tick);
 
+/// Ticks and their record.
+class RecordedTicks {
+ public:
+  /// From the simulation's present tick on; at the first, with the frame before it. `full`, if any, goes
+  /// beside. All are kept by reference.
+  RecordedTicks(sim::Simulation& simulation, FullModel* full, output::ResultFile& file);
+  ~RecordedTicks();
+  RecordedTicks(const RecordedTicks&) = delete;
+  RecordedTicks& operator=(const RecordedTicks&) = delete;
+
+  /// One tick; appends the records and the frame that it gives. One that fails leaves none.
+  StepStatus make(const device::DeviceSample& sample);
+  /// Has the tool touched the body in one of them?
+  bool has_touched() const { return m_has_touched; }
+  /// Appends the last good state, where no frame shows it, and what the ticks cost. Returns seconds of wall
+  /// clock.
+  double end();
+
+ private:
+  struct Cost;
+  sim::Simulation& m_simulation;
+  FullModel* m_full;
+  output::ResultFile& m_file;
+  Tick m_first;
+  bool m_has_touched = false;
+  std::unique_ptr<Cost> m_cost;
+};
+
 /// How the loop ended.
 struct LoopEnd {
   std::optional<Failure> failure;
@@ -34,9 +63,8 @@ struct LoopEnd {
   double seconds = 0.0;         ///< of wall clock
 };
 
-/// Feeds the simulation the hand's motion from its present tick to `num_ticks` and appends records, frames,
-/// checkpoints and timing as they come. A signal ends it after the next physics step, with a checkpoint
-/// there. `full`, if any, goes beside.
+/// Feeds the simulation the hand's motion from its present tick to `num_ticks`, with record and checkpoints.
+/// A signal ends it after the next physics step, with a checkpoint there. `full`, if any, goes beside.
 LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, sim::Simulation& simulation,
                  FullModel* full, output::ResultFile& file, bool shows_progress);
 

@@ -9,53 +9,53 @@
 #include "base/error.h"
 #include "output/result_file.h"
 #include "output/result_reader.h"
-#include "run/approach.h"
 #include "run/files.h"
 #include "run/identity.h"
 #include "run/loop.h"
+#include "run/ready_run.h"
 #include "run/replay.h"
 #include "run/resume.h"
 #include "run/start.h"
 #include "scenario/build.h"
 #include "scenario/patch.h"
+#include "scenario/scenario_text.h"
 #include "sim/simulation.h"
 
 namespace argil::run {
 namespace {
 
-int print_ready(const scenario::Scenario& s, const sim::Simulation& simulation, Tick num_ticks) {
+RunEnd print_ready(const scenario::Scenario& s, const sim::Simulation& simulation, Tick num_ticks) {
   std::printf("%s: %d vertices, %d tets, %d skin triangles, %lld ticks: ready to run\n", s.file.c_str(),
               simulation.body().mesh.num_vertices(), simulation.body().mesh.num_tets(),
               simulation.body().skin.num_triangles(), static_cast<long long>(num_ticks));
-  return kDone;
+  return {};
 }
 
-int end_done_before(const std::string& result, const RunOptions& options) {
+RunEnd end_done_before(const std::string& result, const RunOptions& options) {
   if (options.writes_xdmf && !output::has_whole_xdmf(name_xdmf(result)))  // killed before its end, or removed
     output::write_xdmf(result, name_xdmf(result));
   if (!options.quiet) std::printf("%s: complete already\n", result.c_str());
-  return kDone;
+  return {};
 }
 
-int print_failure(const Failure& failure) {
-  std::fprintf(stderr, "argil: run failed: %s\n", to_string(failure).c_str());
-  return kRunFailed;
+RunEnd make_failed(const Failure& failure) {
+  return {kRunFailed, "run failed: " + to_string(failure), failure};
 }
 
-int print_end(const std::string& result, const LoopEnd& end, Tick first, Tick last,
-              const RunOptions& options) {
-  if (end.failure) return print_failure(*end.failure);
-  if (end.is_interrupted) {
-    std::fprintf(stderr, "argil: interrupted after tick %lld; %s is readable up to there; %s\n",
-                 static_cast<long long>(last), result.c_str(), options.remedy.c_str());
-    return kInterrupted;
-  }
-  if (options.quiet) return kDone;
+RunEnd print_end(const std::string& result, const LoopEnd& end, Tick first, Tick last,
+                 const RunOptions& options) {
+  if (end.failure) return make_failed(*end.failure);
+  if (end.is_interrupted)
+    return {kInterrupted,
+            "interrupted after tick " + std::to_string(last) + "; " + result + " is readable up to there; " +
+                options.remedy,
+            std::nullopt};
+  if (options.quiet) return {};
   std::printf("%s: %lld ticks in %.1f s (%.0f/s)", result.c_str(), static_cast<long long>(last - first),
               end.seconds, static_cast<double>(last - first) / end.seconds);
   if (first > 0) std::printf(", resumed after tick %lld", static_cast<long long>(first));
   std::printf("\n");
-  return kDone;
+  return {};
 }
 
 /// Says so where the tool has touched nothing since the start. `miss`: what was known of it before.
@@ -69,7 +69,8 @@ void print_miss(const std::string& result, const LoopEnd& end, Tick first, const
 }
 
 /// One equilibrium: a physics record and a frame, at the time 0 of an empty motion.
-int run_static(const scenario::Scenario& s, scenario::Scene& scene, const RunOptions& options) {
+RunEnd run_static(const scenario::Scenario& s, const RunOptions& options) {
+  scenario::Scene scene = scenario::build_scene(s);
   const mesh::TriangleMesh tool = scene.tool;
   sim::Simulation simulation(std::move(scene.body), tool, s.params, {});
   print_notes(scene, options);
@@ -86,18 +87,18 @@ int run_static(const scenario::Scenario& s, scenario::Scene& scene, const RunOpt
   file.append_timing({{"solve", seconds}, {"total", seconds}});
   file.finish(failure);
   if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
-  if (failure) return print_failure(*failure);
+  if (failure) return make_failed(*failure);
   if (!options.quiet) {
     const Points moved = simulation.body_state().solid.x - simulation.solid().model.elements.rest;
     std::printf("%s: equilibrium in %.2f s, largest displacement %.6g m\n", result.c_str(), seconds,
                 moved.colwise().norm().maxCoeff());
   }
-  return kDone;
+  return {};
 }
 
 /// A live session once more, in one thread. It ends as the session did.
-int run_replay(const scenario::Scenario& s, const output::Session& session, const std::string& note,
-               const RunOptions& options) {
+RunEnd run_replay(const scenario::Scenario& s, const output::Session& session, const std::string& note,
+                  const RunOptions& options) {
   if (options.resume)
     throw InputError(options.trace, "", "is a live session, whose replay has no checkpoints",
                      "leave --resume out");
@@ -121,10 +122,8 @@ int run_replay(const scenario::Scenario& s, const output::Session& session, cons
   if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
   if (session.end_hash.empty())
     std::fprintf(stderr, "argil: note: %s was killed: replayed up to its last tick\n", options.trace.c_str());
-  else if (session.end_hash != simulation.state_hash()) {
-    std::fprintf(stderr, "argil: the replay ended in another state than %s\n", options.trace.c_str());
-    return kDifferent;
-  }
+  else if (session.end_hash != simulation.state_hash())
+    return {kDifferent, "the replay ended in another state than " + options.trace, std::nullopt};
   return print_end(result, end, 0, num_ticks, options);
 }
 
@@ -139,12 +138,14 @@ scenario::Scenario load(const RunOptions& options) {
   for (const std::string& text : options.settings) settings.push_back(scenario::parse_setting(text));
   if (!options.trace.empty())
     settings.push_back({"/trace/file", "\"" + std::filesystem::absolute(options.trace).string() + "\""});
-  require_input_file(options.scenario);
+  const bool is_text = !options.text.empty();
+  if (!is_text) require_input_file(options.scenario);
   if (!options.trace.empty()) require_input_file(options.trace);
-  scenario::Scenario s = scenario::load_scenario(options.scenario, settings);
+  scenario::Scenario s = is_text ? scenario::load_text(options.text, options.scenario, settings)
+                                 : scenario::load_scenario(options.scenario, settings);
   s.params.threads = options.threads;
   for (const scenario::InputFile& input : scenario::list_input_files(s))
-    require_input_file(input.file, input.pointer);
+    if (!is_text || !input.pointer.empty()) require_input_file(input.file, input.pointer);
   return s;
 }
 
@@ -158,8 +159,7 @@ void print_notes(const scenario::Scene& scene, const RunOptions& options) {
   if (!scene.contact_cells.empty()) std::fprintf(stderr, "argil: note: %s\n", scene.contact_cells.c_str());
 }
 
-int run(const RunOptions& options) {
-  const scenario::Scenario s = load(options);
+RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
   const std::string result = name_result(s, options);
   check_result_name(s, result);
   for (const std::string& patch : options.patches) require_other_file(result, patch, "the patch", "-o");
@@ -168,23 +168,13 @@ int run(const RunOptions& options) {
   std::string note;
   if (const auto session = find_session(options.trace, s, note))
     return run_replay(without_trace(s), *session, note, options);
-  scenario::Scene scene = scenario::build_scene(s);
-  if (!note.empty()) scene.notes.push_back(note);
-  if (s.mode == scenario::Mode::equilibrium) return run_static(s, scene, options);
-  const std::string miss = describe_miss(s, scene);
-  if (!miss.empty()) scene.notes.push_back(miss);
-  const mesh::TriangleMesh tool = scene.tool;
-  const device::DeviceSample start = sample_at(s, scene.trace, 0);
-  std::optional<FullModel> full;
-  if (s.params.fidelity.mode == sim::FidelityMode::check) full.emplace(scene.body, tool, s.params, start);
-  sim::Simulation simulation(std::move(scene.body), tool, s.params, start);
-  const bool is_given = !options.trace.empty();
-  require_free_start(simulation, tool, is_given ? options.trace : s.file, is_given ? "" : "/trace",
-                     "start the motion outside it");
-  print_notes(scene, options);
-  if (options.dry_run) return print_ready(s, simulation, count_ticks(s, scene.trace));
+  if (s.mode == scenario::Mode::equilibrium) return run_static(s, options);
+  ReadyRun run(s, options.trace, note);
+  sim::Simulation& simulation = run.simulation;
+  FullModel* const full = run.full.get();
+  print_notes(run.scene, options);
+  if (options.dry_run) return print_ready(s, simulation, count_ticks(s, run.scene.trace));
   const Identity identity = find_identity(s);
-  HandMotion hand(s, scene.trace);
   ResumePoint from;
   if (options.resume) from = find_resume_point(result, identity);
   if (from.kind == ResumePoint::Kind::done) return end_done_before(result, options);
@@ -192,22 +182,18 @@ int run(const RunOptions& options) {
     simulation.restore(from.state, result);
     if (full) full->restore(from.state, result);
     Archive archive = Archive::make_restoring(from.state, result);
-    hand.serialize(archive);
+    run.hand.serialize(archive);
     from.state.clear();
   }
   const Tick first = simulation.clock().tick;
   std::optional<output::ResultFile> file;
-  if (from.kind == ResumePoint::Kind::checkpoint) {
+  if (from.kind == ResumePoint::Kind::checkpoint)
     file.emplace(result, first, count_frames(s, first));
-  } else {
-    output::ResultHeader header = make_header(s, simulation, scene, tool, identity);
-    header.fidelity = s.params.fidelity.mode;  // here a full run may go beside
-    file.emplace(result, header);
-  }
+  else
+    file.emplace(result, run.make_header(identity));
   LoopEnd end;
   try {
-    end = run_loop(s, count_ticks(s, scene.trace), hand, simulation, full ? &*full : nullptr, *file,
-                   !options.quiet);
+    end = run_loop(s, count_ticks(s, run.scene.trace), run.hand, simulation, full, *file, !options.quiet);
     file->finish(end.failure, end.is_interrupted);
   } catch (const IoError&) {
     std::fprintf(stderr, "argil: note: %s is readable up to its last flush; make room and %s\n",
@@ -215,8 +201,14 @@ int run(const RunOptions& options) {
     throw;
   }
   if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
-  print_miss(result, end, first, miss, options);
+  print_miss(result, end, first, run.miss, options);
   return print_end(result, end, first, simulation.clock().tick, options);
+}
+
+int run(const RunOptions& options) {
+  const RunEnd end = run_loaded(load(options), options);
+  if (!end.message.empty()) std::fprintf(stderr, "argil: %s\n", end.message.c_str());
+  return end.code;
 }
 
 }  // namespace argil::run

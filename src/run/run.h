@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/status.h"
 #include "scenario/build.h"
 
 namespace argil::run {
@@ -10,17 +12,20 @@ namespace argil::run {
 /// How `argil run` was called.
 struct RunOptions {
   std::string scenario;
+  std::string text;    ///< the scenario itself, which lies in no file then: `scenario` stands for it
   std::string trace;   ///< replaces /trace/file when not empty
   std::string output;  ///< result file; empty: the scenario's name with .h5 in the working folder
   std::vector<std::string> patches;   ///< --patch files: below the settings
   std::vector<std::string> settings;  ///< --set texts
-  int threads = 1;
-  bool resume = false;  ///< go on from the result file's checkpoint where there is one
+  int threads = 1;                    ///< 1 to kMostThreads
+  bool resume = false;                ///< go on from the result file's checkpoint where there is one
   bool writes_xdmf = true;
   bool dry_run = false;  ///< check and build everything, run and write nothing
   bool quiet = false;
   std::string remedy = "go on with --resume";  ///< of a run that was stopped or found no room, in its message
 };
+
+inline constexpr int kMostThreads = 256;
 
 /// Exit codes of the program.
 enum ExitCode : int {
@@ -41,10 +46,20 @@ std::string name_result(const scenario::Scenario& s, const RunOptions& options);
 /// What the user should know of a scene, on standard error.
 void print_notes(const scenario::Scene& scene, const RunOptions& options);
 
-/// Runs a scenario from start, or with `resume` from its last checkpoint, to end and writes its result file
-/// and XDMF. A resumed run leaves the same bits as one that was never killed. Returns kDone, kRunFailed or
-/// kInterrupted (the file is complete up to the last tick in each case). Throws InputError before anything is
-/// written, IoError.
+/// How a run ended.
+struct RunEnd {
+  int code = kDone;                ///< kDone, kRunFailed, kInterrupted; of a session's replay also kDifferent
+  std::string message;             ///< one line that says why it is not done
+  std::optional<Failure> failure;  ///< of kRunFailed
+};
+
+/// Runs a scenario, which load() gave for these options, from start, or with `resume` from its last
+/// checkpoint, to end and writes its result file and XDMF. A resumed run leaves the same bits as one that was
+/// never killed. The file is complete up to the last tick also where the run failed or was interrupted.
+/// Throws InputError before anything is written, IoError.
+RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options);
+
+/// Loads, runs and prints why it is not done. Returns the exit code.
 int run(const RunOptions& options);
 
 }  // namespace argil::run

@@ -14,6 +14,7 @@
 #include "material/plasticity.h"
 #include "scenario/medium_check.h"
 #include "scenario/parameter_table.h"
+#include "scenario/scenario_text.h"
 #include "scenario/setting.h"
 #include "sim/extent.h"
 
@@ -404,16 +405,7 @@ void check_combinations(Scenario& s) {
     throw InputError(s.file, "/material/clay_kernel/radius_m", "is 0", "give R_D in metres, or form \"off\"");
 }
 
-}  // namespace
-
-Scenario::Scenario() {
-  params.extent = sim::Extent::automatic;
-  params.contact.law = contact::ContactLaw::pressure;
-  params.contact_surface = sim::SurfaceKind::automatic;
-}
-
-Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings) {
-  Json document = read_json(file);
+Scenario load_document(Json document, const std::string& file, const std::vector<Setting>& settings) {
   if (!document.is_object())
     throw InputError(file, "", "is not a JSON object", "a scenario is {\"about\": …}");
   for (const Setting& setting : settings) apply_setting(document, setting, file);
@@ -432,6 +424,22 @@ Scenario load_scenario(const std::string& file, const std::vector<Setting>& sett
   leave_out_pairs(s, document);
   check_combinations(s);
   return s;
+}
+
+}  // namespace
+
+Scenario::Scenario() {
+  params.extent = sim::Extent::automatic;
+  params.contact.law = contact::ContactLaw::pressure;
+  params.contact_surface = sim::SurfaceKind::automatic;
+}
+
+Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings) {
+  return load_document(read_json(file), file, settings);
+}
+
+Scenario load_text(const std::string& text, const std::string& file, const std::vector<Setting>& settings) {
+  return load_document(parse_json(text, file), file, settings);
 }
 
 std::vector<InputFile> list_input_files(const Scenario& scenario) {
