@@ -2,92 +2,21 @@
 """Draws where the energy of runs goes: what the hand and the contact give, what the body holds, what flow dissipates.
 
 Usage: plot_energy.py A.h5 [B.h5 ...] [--labels A B ...] [-o STEM]     → STEM.png, STEM.pdf, a panel a run
-
-The hand's work counts while it pushes or pulls, for what it feels when it wets or dries deforms nothing. The rest is the contact's work less what the body holds more than at the first step and what flow dissipated: damping,
-the clay's kernel, moduli that water changed, and the work of weight and loads, which no file records.
 """
 import argparse
-from typing import NamedTuple
 
 import argil_plot as ap
-from argil_plot import np, plt
-
-PREFIXES = ((1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9, "nJ"), (1e-12, "pJ"))
+from argil.plot.energy_figure import make_figure
 
 
-class Energies(NamedTuple):
-    """Of one run at each physics step [J]; all but elastic and kinetic since the start."""
-
-    label: str
-    time: np.ndarray  # [s]
-    hand: np.ndarray  # work of the pressing hand against the device's force
-    contact: np.ndarray  # work of the contact on the body
-    elastic: np.ndarray
-    flow: np.ndarray  # dissipated by plastic flow
-    kinetic: np.ndarray
-
-    def rest(self):
-        held = self.elastic + self.kinetic
-        return self.contact - (held - held[0]) - self.flow
-
-
-def read_energies(file, label):
-    with ap.open_result(file) as result:
-        physics, haptic = result["physics"], result["haptic"]
-        time = physics["time"][:]
-        if len(time) == 0:
-            ap.refuse(f"{file}: has no physics steps, so it has no energies")
-        given = np.diff(haptic["port_energy"][:], prepend=0.0) * ap.is_deforming(result)  # by the device, each tick
-        # A static result has steps and no ticks: no hand works there.
-        hand = -np.interp(time, haptic["time"][:], np.cumsum(given)) if len(given) else np.zeros(len(time))
-        return Energies(label, time, hand, *(physics[name][:] for name in (
-            "contact_work", "elastic_energy", "plastic_dissipation", "kinetic_energy")))
-
-
-def with_prefix(energy):
-    """A size in the unit that keeps it between 1 and 1000, as "1.2 mJ"."""
-    scale, unit = next(((s, u) for s, u in PREFIXES if energy >= s), PREFIXES[-1])
-    return f"{energy / scale:.3g} {unit}" if energy > 0.0 else "0 J"
-
-
-def lines_of(run):
-    return (("work of the pressing hand", run.hand), ("work of the contact on the body", run.contact), ("elastic", run.elastic),
-            ("dissipated by flow", run.flow), ("the rest: damping, loads …", run.rest()), ("kinetic", run.kinetic))
-
-
-def find_begin(run):
-    """A little before the first energy that can be seen; the start where there is none."""
-    values = np.abs([values for _, values in lines_of(run)]).max(axis=0)
-    first = run.time[np.argmax(values > 1e-3 * values.max())] if values.max() > 0.0 else run.time[0]
-    return max(run.time[0], first - 0.05 * (run.time[-1] - first))
-
-
-def draw(runs):
-    largest = max(np.abs(values).max() for run in runs for _, values in lines_of(run))
-    scale, unit = next(((s, u) for s, u in PREFIXES if largest >= s), PREFIXES[0])
-    figure, panels = plt.subplots(1, len(runs), figsize=((90 + 70 * (len(runs) - 1)) * ap.MILLIMETRES,
-                                                         72 * ap.MILLIMETRES), squeeze=False, sharey=True)
-    for run, axes in zip(runs, panels[0]):
-        for number, (name, values) in enumerate(lines_of(run)):
-            axes.plot(run.time, values / scale, label=name, color=ap.COLOURS[number], linestyle=ap.DASHES[number],
-                      marker="o" if len(run.time) == 1 else "", markersize=4)
-        begin, end = find_begin(run), run.time[-1]
-        axes.set_xlim(begin, end if end > begin else begin + 1.0)
-        axes.set_xlabel("time [s]")
-        axes.set_title(f"{run.label}\nkinetic at most {with_prefix(run.kinetic.max())}", loc="left", color=ap.GREY)
-    panels[0][0].set_ylabel(f"energy [{unit}]")
-    panels[0][-1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    return figure
-
-
+@ap.refusing
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("files", nargs="+", metavar="RESULT.h5")
     parser.add_argument("--labels", nargs="+", help="one a file; default: the files' names")
     parser.add_argument("-o", "--output", default="energy", metavar="STEM", help="default: %(default)s")
     options = parser.parse_args()
-    labels = ap.labels_for(options.files, options.labels)
-    ap.save(draw([read_energies(*pair) for pair in zip(options.files, labels)]), options.output)
+    ap.save(make_figure(options.files, options.labels), options.output)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import argil_plot as ap
 from argil_plot import np
-from plot_water import read_ledger, rest_volumes
+from argil.plot.water_figure import read_ledger, rest_volumes
 
 NEAR_TOOL = 0.012  # [m] from the tool's centre: what counts as clay under the tool
 

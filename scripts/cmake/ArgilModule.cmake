@@ -25,6 +25,7 @@ function(argil_module name)
   if(name STREQUAL cli)  # the program's own
     return()
   endif()
+  set_property(GLOBAL APPEND PROPERTY ARGIL_MODULES ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})  # argil::NAME for those who link it
   install(TARGETS ${target} EXPORT argil COMPONENT development
     ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}/argil" FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/argil")

@@ -182,7 +182,9 @@ void describe_hand(Summary& s) {
     s.simplify("force: contact every tick, with a surface that is predicted for up to " + held +
                " (compliant)");
   if (s.word("/hand/kind") == "prescribed")
-    s.simplify("hand: goes where the trace goes and does not yield to the force");
+    s.simplify(s.word("/trace/file").empty()
+                   ? "hand: was a program's own, whose rule is not in the file"
+                   : "hand: goes where the trace goes and does not yield to the force");
   if (s.word("/haptics/passivity") == "time_domain")
     s.simplify("passivity: the device's force is damped where it would give energy");
 }

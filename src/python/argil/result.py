@@ -10,6 +10,22 @@ from .errors import InputError, IoError
 _GROUPS = ("haptic", "physics", "fidelity", "session", "mesh")
 
 
+def open_file(file):
+    """h5py's file of a result. Raises IoError, InputError where it is none."""
+    try:
+        result = h5py.File(os.fspath(file), "r")
+    except OSError as error:
+        raise IoError(f"{os.fspath(file)}: cannot be read: {error}") from None
+    if _attributes(result).get("format", "") != "argil-result":
+        result.close()
+        raise InputError(f"{os.fspath(file)}: is not a result file of argil run")
+    return result
+
+
+def _attributes(node):
+    return {name: value.decode() if isinstance(value, bytes) else value for name, value in node.attrs.items()}
+
+
 class Array(np.ndarray):
     """A numpy array that knows its unit and its meaning. What is computed from it is a plain one."""
 
@@ -20,10 +36,6 @@ class Array(np.ndarray):
 
     def __array_wrap__(self, array, context=None):
         return np.asarray(array)[()]
-
-
-def _attributes(node):
-    return {name: value.decode() if isinstance(value, bytes) else value for name, value in node.attrs.items()}
 
 
 def _read(dataset):
@@ -103,13 +115,12 @@ class Result:
     """
 
     def __init__(self, file):
-        try:
-            self._file = h5py.File(os.fspath(file), "r")
-        except OSError as error:
-            raise IoError(f"{os.fspath(file)}: cannot be read: {error}") from None
-        if str(self.attrs.get("format", "")) != "argil-result":
-            self._file.close()
-            raise InputError(f"{os.fspath(file)}: is not a result file of argil run")
+        self._file = open_file(file)
+
+    @property
+    def h5(self):
+        """h5py's file."""
+        return self._file
 
     @property
     def attrs(self):

@@ -19,13 +19,11 @@ if not MISSING:
     import h5py
     import matplotlib.image
     import numpy as np
-    import plot_energy
-    import plot_force
-    import plot_water
     import render
     import render_shots
     import render_vtk
     import summarise
+    from argil.plot import energy_figure, force_figure, water_figure
 
 PUSH, WET = 0, 2
 
@@ -87,40 +85,40 @@ class Figures(unittest.TestCase):
         self.assertNotIn("Traceback", run.stderr)
 
     def test_the_strongest_contact_is_that_of_the_largest_push(self):
-        runs = [plot_force.read_run(self.file("dry.h5"), "dry", align_press=True)]
+        runs = [force_figure.read_run(self.file("dry.h5"), "dry", align_press=True)]
         self.assertEqual(runs[0].time[0], -0.05)  # the push begins at tick 50
-        start, end = plot_force.find_peak(runs)
+        start, end = force_figure.find_peak(runs)
         self.assertAlmostEqual(start, 0.060)
         self.assertAlmostEqual(end, 0.089)
 
     def test_smoothing_is_the_mean_of_the_samples_around(self):
-        mean = plot_force.moving_mean(1e-3 * np.arange(6), np.array([1.0, 2, 3, 4, 5, 9]), 0.002)
+        mean = force_figure.moving_mean(1e-3 * np.arange(6), np.array([1.0, 2, 3, 4, 5, 9]), 0.002)
         np.testing.assert_allclose(mean, [1.5, 2, 3, 4, 6, 7])
 
     def test_a_run_without_contact_has_no_strongest_one(self):
         write_result(self.file("none.h5"), 0.0, touch=False)
-        self.assertIsNone(plot_force.find_peak([plot_force.read_run(self.file("none.h5"), "none", False)]))
+        self.assertIsNone(force_figure.find_peak([force_figure.read_run(self.file("none.h5"), "none", False)]))
         self.assertEqual(self.draw("plot_force.py", "none.h5").returncode, 0)
 
     def test_the_ledger_error_is_the_missing_water(self):
         write_result(self.file("leak.h5"), 0.0, leak=1e-6)
         with h5py.File(self.file("leak.h5")) as leaking, h5py.File(self.file("wet.h5")) as tight:
             largest_number = 2e-5 * 199  # [kg] added is the largest of mass, added and removed
-            self.assertAlmostEqual(plot_water.read_ledger(leaking).error()[-1], 1e-6 / largest_number, places=12)
-            self.assertLess(plot_water.read_ledger(tight).error().max(), 1e-15)
+            self.assertAlmostEqual(water_figure.read_ledger(leaking).error()[-1], 1e-6 / largest_number, places=12)
+            self.assertLess(water_figure.read_ledger(tight).error().max(), 1e-15)
 
     def test_the_rest_of_the_energy_is_what_is_neither_held_nor_dissipated_by_flow(self):
-        run = plot_energy.read_energies(self.file("wet.h5"), "wet")
+        run = energy_figure.read_energies(self.file("wet.h5"), "wet")
         np.testing.assert_allclose(run.rest(), (5e-4 - 2e-4 - 1.5e-4 - 0.5e-4) * np.arange(200), atol=1e-15)
 
     def test_the_hand_works_only_while_it_presses(self):
-        run = plot_energy.read_energies(self.file("wet.h5"), "wet")
+        run = energy_figure.read_energies(self.file("wet.h5"), "wet")
         self.assertAlmostEqual(run.hand[49], 0.0)
         self.assertAlmostEqual(run.hand[-1], 150 * 3e-4)  # the 50 ticks that wet do not count
 
     def test_sizes_of_energies_have_a_prefix(self):
         for energy, words in {0.0: "0 J", 2.0: "2 J", 3.4e-4: "340 µJ", 5e-14: "0.05 pJ"}.items():
-            self.assertEqual(plot_energy.with_prefix(energy), words)
+            self.assertEqual(energy_figure.with_prefix(energy), words)
 
     def test_the_summary_holds_the_forces_and_the_water_that_were_put_in(self):
         figures = summarise.summarise(self.file("wet.h5"))
@@ -145,8 +143,8 @@ class Figures(unittest.TestCase):
 
     def test_mean_saturation_is_weighted_by_volume(self):
         with h5py.File(self.file("wet.h5")) as result:
-            saturation = plot_water.read_saturation(result)
-            self.assertAlmostEqual(plot_water.rest_volumes(result).sum(), 1e-3)
+            saturation = water_figure.read_saturation(result)
+            self.assertAlmostEqual(water_figure.rest_volumes(result).sum(), 1e-3)
         self.assertAlmostEqual(saturation.mean[-1], 0.9 / 6)
         self.assertAlmostEqual(saturation.largest[-1], 0.9)
 

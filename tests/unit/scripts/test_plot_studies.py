@@ -22,8 +22,7 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "h5py", "mat
 sys.path.insert(0, str(SCRIPTS))
 sys.dont_write_bytecode = True
 import argil_plot as ap
-import plot_chart
-import plot_map
+from argil.plot import chart_figure, map_figure
 
 SCENE = {
     "about": "a box poked from above",
@@ -93,15 +92,15 @@ class PlotStudies(unittest.TestCase):
         self.assertEqual(stem.with_suffix(".pdf").read_bytes()[:5], b"%PDF-")
 
     def test_a_chart_has_a_mark_for_every_run(self):
-        rows = plot_chart.read_table(self.tables["chart"])
+        rows = chart_figure.read_table(self.tables["chart"])
         outcomes = [row["outcome"] for row in rows]
         self.assertEqual(outcomes, ["accurate", "accurate", "accurate", "wrong", "wrong", "refused", "inverted", "unknown", "chatter"])
-        figure = plot_chart.draw(rows, "force_error", "")
+        figure = chart_figure.draw(rows, "force_error", "")
         self.addCleanup(ap.plt.close, figure)
         axes = figure.axes[0]
         found = marks(axes)
         self.assertEqual(found.total(), len(rows) - 2)  # of the reference there are lines
-        number = plot_chart.number
+        number = chart_figure.number
         for row in rows[3:5] + rows[8:]:
             self.assertEqual(found[number(row, "cpu_s_per_s"), number(row, "force_error")], 1, row["outcome"])
         costs = [number(row, "cpu_s_per_s") for row in rows[2:] if row["cpu_s_per_s"]]
@@ -125,11 +124,11 @@ class PlotStudies(unittest.TestCase):
         for name, outcomes in (("line", {"accurate", "inverted", "refused"}),
                                ("plane", {"accurate", "inverted", "refused", "unknown"})):
             with self.subTest(name):
-                rows, provenance = plot_map.read_table(self.tables[name])
+                rows, provenance = map_figure.read_table(self.tables[name])
                 runs = [row for row in rows if row["kind"] == "run"]
                 self.assertEqual({row["outcome"] for row in runs}, outcomes)
                 self.assertIn("boundary", {row["kind"] for row in rows})
-                figure = plot_map.draw(rows, provenance, "")
+                figure = map_figure.draw(rows, provenance, "")
                 self.addCleanup(ap.plt.close, figure)
                 found = marks(figure.axes[0])
                 self.assertEqual(found.total(), len(runs))
@@ -140,11 +139,11 @@ class PlotStudies(unittest.TestCase):
                     if name == "plane":
                         self.assertEqual(found[x, float(row["y"])], 1, row)
                     elif row["force_error"]:  # the same run as its reference: no error at all
-                        self.assertEqual(found[x, plot_map.ERROR_BOTTOM], 1, row)
+                        self.assertEqual(found[x, map_figure.ERROR_BOTTOM], 1, row)
                     else:
-                        self.assertEqual(found[x, plot_map.ERROR_TOP], at_top[x], row)
+                        self.assertEqual(found[x, map_figure.ERROR_TOP], at_top[x], row)
                 words = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
-                self.assertTrue({plot_map.OUTCOMES[outcome][0] for outcome in outcomes} | {"a limit"} <= words, words)
+                self.assertTrue({map_figure.OUTCOMES[outcome][0] for outcome in outcomes} | {"a limit"} <= words, words)
                 self.call("plot_map.py", self.tables[name], "--forces", "method", "reference")
                 self.assert_pictures(self.tables[name])
 

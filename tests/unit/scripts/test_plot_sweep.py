@@ -16,7 +16,7 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "h5py", "mat
 sys.path.insert(0, str(SCRIPTS))
 sys.dont_write_bytecode = True
 import argil_plot as ap
-import plot_sweep
+from argil.plot import sweep_figure
 
 
 def write_table(file, outcome=lambda index: "done", **settings):
@@ -46,10 +46,10 @@ class PlotSweep(unittest.TestCase):
 
     def draw(self, x):
         """The drawing's axes."""
-        rows, settings, _ = plot_sweep.read_table(self.table)
-        others = plot_sweep.find_others(self.table, rows, settings, x)
-        good, left_out = plot_sweep.count_left_out(rows, "peak_force_N")
-        figure = plot_sweep.draw(good, x, "peak_force_N", others, left_out)
+        rows, settings, _ = sweep_figure.read_table(self.table)
+        others = sweep_figure.find_others(self.table, rows, settings, x)
+        good, left_out = sweep_figure.count_left_out(rows, "peak_force_N")
+        figure = sweep_figure.draw(good, x, "peak_force_N", others, left_out)
         self.addCleanup(ap.plt.close, figure)
         return figure.axes[0]
 
