@@ -1,7 +1,8 @@
 # %% [markdown]
 # # A first press
-# A ball of clay is pressed dry and wet by the same motion, then by a hand of one's own. Run it as a script, or open it as a
-# notebook (editors and Jupytext know the marks `# %%`). It takes some seconds and writes into the folder first_press.
+# A ball of clay is pressed dry and wet by the same motion, then by a hand of one's own. Run it as a script, or open it
+# as a notebook (editors and Jupytext know the marks `# %%`). It takes some seconds and writes into the folder
+# first_press.
 
 # %%
 from pathlib import Path
@@ -23,7 +24,8 @@ motion = np.column_stack([time, 0 * time, 0 * time, height])
 np.savetxt(OUT / "press.csv", motion, delimiter=",", header="t,x,y,z", comments="", fmt="%.6f")
 
 # %% [markdown]
-# A scenario is a dict, or a JSON file for `argil.load`. `argil.reference()` has every key; a wrong one is refused by name.
+# A scenario is a dict, or a JSON file for `argil.load`. `argil.reference()` has every key; a wrong one is named with the
+# nearest.
 
 # %%
 ball = {
@@ -55,8 +57,8 @@ argil.plot.save(argil.plot.force(dry, wet, labels=["dry", "wet"]), OUT / "force"
 argil.plot.save(argil.plot.energy(dry, wet, labels=["dry", "wet"]), OUT / "energy")
 
 # %% [markdown]
-# Tick by tick, with a hand of one's own: it wants to go where the motion goes, and gives way by 0.2 mm for each newton. The
-# body's arrays can be read after every tick.
+# Tick by tick, with a hand of one's own: it wants to go where the motion goes, and gives way by 0.2 mm for each newton.
+# The body's arrays can be read after every tick.
 
 # %%
 GIVE = 0.2e-3  # [m/N]

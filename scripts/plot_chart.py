@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Draws a chart of `argil chart`: error against cost, a curve a method, the Pareto front marked. Every run has its mark: along the
-top those without an error, at the left those without a cost.
+"""Draws a chart of `argil chart`: error against cost, a curve a method, the Pareto front marked. Every run has its
+mark: along the top those without an error, at the left those without a cost.
 
 Usage: plot_chart.py TABLE.csv [-o STEM] [--error force_error] [--title TITLE]      writes STEM.png, STEM.pdf
 """

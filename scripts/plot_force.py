@@ -22,7 +22,8 @@ def main():
                         help="draw the moving mean over so long; 0.1 takes out a hand's tremor")
     parser.add_argument("-o", "--output", default="force", metavar="STEM", help="default: force")
     options = parser.parse_args()
-    ap.save(make_figure(options.files, options.labels, options.align_press, options.smooth, options.start), options.output)
+    ap.save(make_figure(options.files, options.labels, options.align_press, options.smooth, options.start),
+            options.output)
 
 
 if __name__ == "__main__":

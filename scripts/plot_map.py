@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Draws a map of `argil stability`: what became of each run over one or two parameters, the boundaries found, and the limits
-of theory.
+"""Draws a map of `argil stability`: what became of each run over one or two parameters, the boundaries found, and the
+limits of theory.
 
 Usage: plot_map.py TABLE.csv [-o STEM] [--title TITLE] [--forces METHOD REFERENCE]      writes STEM.png, STEM.pdf
 With --forces a second panel has the largest hand force of the method and of the reference, which are given those names.

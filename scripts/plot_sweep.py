@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Draws a figure of `argil sweep collect` against one setting, a line for each combination of the others.
 
-Usage: plot_sweep.py TABLE.csv [-o STEM] [--x SETTING] [--y FIGURE] [--only SETTING=VALUE ...]   writes STEM.png, STEM.pdf
+Usage: plot_sweep.py TABLE.csv [-o STEM] [--x SETTING] [--y FIGURE] [--only SETTING=VALUE ...]  → STEM.png, STEM.pdf
 
-Colours tell the values of the other setting with the most, dashes those of one more; where more vary, --only says at which
-value. A setting that is text is an axis of names. What had no figure is counted in the picture and on stderr.
+Colours tell the values of the other setting with the most, dashes those of one more; where more vary, --only says at
+which value. A setting that is text is an axis of names. What had no figure is counted in the picture and on stderr.
 """
 import argparse
 from pathlib import Path
@@ -22,7 +22,8 @@ def main():
     parser.add_argument("--y", default=FIRST_FIGURE, metavar="FIGURE", help="default: %(default)s")
     parser.add_argument("--only", nargs="+", default=[], metavar="SETTING=VALUE", help="the points where that holds")
     options = parser.parse_args()
-    ap.save(make_figure(options.table, options.x, options.y, options.only), options.output or options.table.with_suffix(""))
+    figure = make_figure(options.table, options.x, options.y, options.only)
+    ap.save(figure, options.output or options.table.with_suffix(""))
 
 
 if __name__ == "__main__":

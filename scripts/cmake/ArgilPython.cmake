@@ -22,6 +22,14 @@ endif()
 # Where a build and an installation have the package; both are of use as PYTHONPATH.
 set(ARGIL_PYTHON_BUILD "${PROJECT_BINARY_DIR}/python")
 set(ARGIL_PYTHON_INSTALL "lib/python3/dist-packages" CACHE STRING "Where Python packages are installed, below the prefix")
+# Debian's Python looks there in /usr alone; elsewhere, as in /usr/local, in a folder of its version, which then names this one.
+function(argil_install_python_path)
+  file(RELATIVE_PATH way "/lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages" "/${ARGIL_PYTHON_INSTALL}")
+  install(CODE "if(NOT CMAKE_INSTALL_PREFIX STREQUAL \"/usr\")
+    file(WRITE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages/argil.pth\"
+      \"${way}\\n\")
+  endif()" COMPONENT python)
+endfunction()
 
 # argil_extension(NAME SOURCES a.cpp … HEADERS a.h … DEPENDS base run … SCRIPTS argil/a.py …)
 # A folder that Python imports: package argil with the extension _argil and its sources in Python.
@@ -37,6 +45,7 @@ function(argil_extension name)
   set_target_properties(_argil PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
     LIBRARY_OUTPUT_DIRECTORY "${ARGIL_PYTHON_BUILD}/argil")
   install(TARGETS _argil LIBRARY DESTINATION "${ARGIL_PYTHON_INSTALL}/argil" COMPONENT python)
+  argil_install_python_path()
   set(copies "")
   foreach(script IN LISTS ARG_SCRIPTS)
     set(copy "${ARGIL_PYTHON_BUILD}/${script}")

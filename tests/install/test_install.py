@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""What `cmake --install` leaves works without the project: the program, its pages, and find_package(argil).
+"""What `cmake --install` leaves works without the project: the program, its pages, find_package(argil) and the Python
+package.
 
-Usage: test_install.py BUILD. The example of examples/press_ball is built against the installed libraries, and its hand
-is replayed from a trace by the installed program: the same forces. Exit code 77 (skipped) without h5py.
+Usage: test_install.py BUILD. The example of examples/press_ball, a project in C++ alone, is built against the installed
+libraries, and its hand is replayed from a trace by the installed program: the same forces. Exit code 77 (skipped)
+without h5py.
 """
 import os
 import subprocess
@@ -20,7 +22,8 @@ except ImportError as missing:
 
 ROOT = Path(__file__).resolve().parents[2]
 BALL = ROOT / "tests/golden/ball.json"
-BUILD = None
+BUILD = os.path.abspath(sys.argv.pop(1))
+HAS_PYTHON = Path(BUILD, "python/argil").is_dir()
 
 
 def run(*command, **options):
@@ -57,6 +60,26 @@ class Installed(unittest.TestCase):
         self.assertGreater(force[-1], 1.0)
         np.testing.assert_allclose(seen[:, 1], force, rtol=1e-4, atol=1e-4)  # printed digits, summed steps
 
+    @unittest.skipUnless(HAS_PYTHON, "built without the Python package")
+    def test_python_imports_what_is_installed_and_computes_the_same_bits(self):
+        packages = self.prefix / "lib/python3/dist-packages"
+        (local,) = self.prefix.glob("lib/python3.*/dist-packages")  # where Debian's Python looks in /usr/local
+        script = f"""import site
+site.addsitedir({str(local)!r})
+import argil, argil.plot
+from os.path import realpath
+assert realpath(argil.__file__).startswith(realpath({str(packages)!r})), argil.__file__
+result = argil.run({str(BALL)!r}, "python.h5")
+argil.plot.save(argil.plot.water(result), "water")
+print(argil.build())"""
+        said = run("/usr/bin/python3", "-c", script, cwd=self.folder.name,
+                   env={**os.environ, "MPLBACKEND": "Agg", "PYTHONDONTWRITEBYTECODE": "1"})
+        program = self.prefix / "bin/argil"
+        self.assertEqual(said.strip(), run(program, "--version").strip())
+        run(program, "run", BALL, "-o", "program.h5", "--quiet", cwd=self.folder.name)
+        self.assertIn("equal", run(program, "compare", "program.h5", "python.h5", cwd=self.folder.name))
+        self.assertTrue(Path(self.folder.name, "water.png").is_file())
+
     def test_the_man_page_names_every_command(self):
         page = Path(self.prefix, "share/man/man1/argil.1").read_text(encoding="utf-8")
         for command in ("run", "export", "sweep collect"):
@@ -73,5 +96,4 @@ class Installed(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    BUILD = os.path.abspath(sys.argv.pop(1))
     unittest.main()

@@ -15,7 +15,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-BUILD = None
+BUILD = os.path.abspath(sys.argv.pop(1))
+HAS_PYTHON = Path(BUILD, "python/argil").is_dir()
 TOOLS = ("cpack", "dpkg-deb", "dpkg-shlibdeps", "dpkg-query", "ldd")
 
 
@@ -77,14 +78,25 @@ class Package(unittest.TestCase):
             "--set", "/trace/duration_s=0.01")
         self.assertIn("outcome     done", run(self.root / "usr/bin/argil", "info", result))
 
+    @unittest.skipUnless(HAS_PYTHON, "built without the Python package")
+    def test_the_unpacked_python_package_reads_what_it_ran(self):
+        scene = self.root / "usr/share/argil/scenarios/demo_dino_dry.json"
+        script = f"""import argil
+settings = {{"/body/shape/target_tets": 300, "/trace/duration_s": 0.01}}
+print(argil.run({str(scene)!r}, {str(Path(self.folder.name, "python.h5"))!r}, set=settings).outcome)"""
+        said = run("/usr/bin/python3", "-c", script,
+                   env={**os.environ, "PYTHONPATH": str(self.root / "usr/lib/python3/dist-packages"),
+                        "PYTHONDONTWRITEBYTECODE": "1"})
+        self.assertEqual(said, "done\n")
+        self.assertIn("python3-numpy", self.field("Recommends"))
+
     def test_nothing_in_it_names_the_folder_that_it_was_built_in(self):
         for file in self.root.rglob("*"):
-            if file.is_file() and file.suffix in (".cmake", ".1", ".md", ".json", ""):
+            if file.is_file() and file.suffix in (".cmake", ".1", ".md", ".json", ".py", ".so", ""):
                 self.assertNotIn(str(Path(BUILD).resolve()).encode(), file.read_bytes(), file)
 
 
 if __name__ == "__main__":
-    BUILD = os.path.abspath(sys.argv.pop(1))
     missing = [tool for tool in TOOLS if not shutil.which(tool)]
     if missing:
         print(f"skipped: no {', '.join(missing)}")

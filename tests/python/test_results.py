@@ -35,8 +35,8 @@ class Results(unittest.TestCase):
         cls.addClassCleanup(folder.cleanup)
         cls.folder = Path(folder.name)
         cls.file = str(cls.folder / "ball.h5")
-        subprocess.run([ARGIL, "run", BALL, "--set", "/haptics/frame_period_ticks=28", "--set", "/haptics/physics_period_ticks=2",
-                        "--set", "/haptics/water_period_ticks=2", "-o", cls.file, "--quiet"], check=True)
+        subprocess.run([ARGIL, "run", BALL, "--set", "/haptics/frame_period_ticks=28", "--set",
+                        "/haptics/physics_period_ticks=2", "--set", "/haptics/water_period_ticks=2", "-o", cls.file, "--quiet"], check=True)
 
     def setUp(self):
         self.result = argil.open(self.file)
@@ -87,7 +87,8 @@ class Results(unittest.TestCase):
                 self.assertEqual(read, ["/frames/000003/position"])
                 result.torque  # pylint: disable=pointless-statement
                 self.assertEqual(read[1:], ["/haptic/torque"])
-                np.testing.assert_array_equal(result["haptic/force"][3:5], original(self.h5["haptic/force"], slice(3, 5)))
+                np.testing.assert_array_equal(result["haptic/force"][3:5],
+                                              original(self.h5["haptic/force"], slice(3, 5)))
         finally:
             h5py.Dataset.__getitem__ = original
 
@@ -116,13 +117,15 @@ class Results(unittest.TestCase):
         text.write_text("no HDF5")
         with h5py.File(self.folder / "other.h5", "w"):
             pass
-        for name, kind, words in (("none.h5", argil.IoError, "none.h5: cannot be read"), ("text.h5", argil.IoError, "cannot be read"),
+        for name, kind, words in (("none.h5", argil.IoError, "none.h5: cannot be read"),
+                                  ("text.h5", argil.IoError, "cannot be read"),
                                   ("other.h5", argil.InputError, "other.h5: is not a result file of argil run")):
             with self.assertRaisesRegex(kind, words):
                 argil.open(self.folder / name)
 
     def lines(self, figure, panel=0):
-        return {line.get_label(): line.get_xydata() for line in figure.axes[panel].lines if not line.get_label().startswith("_")}
+        return {line.get_label(): line.get_xydata() for line in figure.axes[panel].lines
+                if not line.get_label().startswith("_")}
 
     def test_figures_show_what_the_file_holds(self):
         style = dict(matplotlib.rcParams)
@@ -141,8 +144,10 @@ class Results(unittest.TestCase):
 
     def test_figures_of_tables(self):
         table = self.folder / "sweep.csv"
-        table.write_text("# argil sweep\nindex,id,a,peak_force_N,outcome\n" + "".join(f"{k},{k},{k},{3 * k},done\n" for k in range(4)))
-        np.testing.assert_array_equal(argil.plot.sweep(table).axes[0].lines[0].get_xydata(), [(k, 3 * k) for k in range(4)])
+        rows = "".join(f"{k},{k},{k},{3 * k},done\n" for k in range(4))
+        table.write_text("# argil sweep\nindex,id,a,peak_force_N,outcome\n" + rows)
+        drawn = argil.plot.sweep(table).axes[0].lines[0].get_xydata()
+        np.testing.assert_array_equal(drawn, [(k, 3 * k) for k in range(4)])
         for draw, name in ((argil.plot.chart, "chart/light_press.csv"), (argil.plot.stability, "stability/sliver.csv")):
             self.assertGreater(len(draw(ROOT / "results" / name).axes[0].lines), 2)
             with self.assertRaisesRegex(argil.InputError, "is not a table of argil"):
@@ -159,7 +164,8 @@ class Results(unittest.TestCase):
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
             argil.plot.force(short)
-        self.assertIn(f"{short}: the run did not reach its end; drawing what there is", [str(word.message) for word in said])
+        self.assertIn(f"{short}: the run did not reach its end; drawing what there is",
+                      [str(word.message) for word in said])
 
     def test_results_are_read_where_nothing_was_built(self):
         script = f"import sys; sys.path.insert(0, {str(ROOT / 'src/python')!r}); import argil, argil.plot; " \
@@ -168,12 +174,13 @@ class Results(unittest.TestCase):
         self.assertEqual((done.stdout, done.stderr), ("84\n", ""))
 
     def test_the_example_runs(self):
-        done = subprocess.run([sys.executable, "-B", ROOT / "examples/first_press.py"], cwd=self.folder, capture_output=True, text=True,
-                              env={**os.environ, "PYTHONPATH": PACKAGE, "MPLBACKEND": "Agg"})
+        done = subprocess.run([sys.executable, "-B", ROOT / "examples/first_press.py"], cwd=self.folder,
+                              capture_output=True, text=True, env={**os.environ, "PYTHONPATH": PACKAGE, "MPLBACKEND": "Agg"})
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn('did you mean "youngs_modulus_Pa"?', done.stdout)
         out = self.folder / "first_press"
-        peaks = {name: np.linalg.norm(argil.open(out / f"{name}.h5").force, axis=1).max() for name in ("dry", "wet", "own")}
+        peaks = {name: np.linalg.norm(argil.open(out / f"{name}.h5").force, axis=1).max()
+                 for name in ("dry", "wet", "own")}
         self.assertLess(peaks["wet"], 0.8 * peaks["dry"])
         self.assertLess(peaks["own"], 0.99 * peaks["dry"])
         for name in ("force", "energy", "own"):

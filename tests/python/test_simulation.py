@@ -2,7 +2,8 @@
 """The Python package computes what the program computes, to the same bits, and says what it refuses.
 
 Usage: test_simulation.py ARGIL PACKAGE        the program, and the folder that the package lies in
-Expected values: the files of `argil run`, read by h5py; the keys of scenarios; the motion that the trace was written with.
+Expected values: the files of `argil run`, read by h5py; the keys of scenarios; the motion that the trace was written
+with.
 """
 import json
 import os
@@ -71,7 +72,8 @@ class SameBits(Folder):
         self.expect_equal(self.file("a.h5"))
 
     def test_a_dict_is_the_scenario_of_a_file(self):
-        scene = argil.Scenario({**json.loads(BALL.read_text()), "haptics": {"frame_period_ticks": 28}}, folder=BALL.parent)
+        document = {**json.loads(BALL.read_text()), "haptics": {"frame_period_ticks": 28}}
+        scene = argil.Scenario(document, folder=BALL.parent)
         scene.run(self.file("a.h5"))
         self.expect_equal(self.file("a.h5"))
 
@@ -90,8 +92,9 @@ class SameBits(Folder):
     def test_arrays_are_those_of_the_file_in_its_order(self):
         sim = argil.load(BALL, set=SET).start()
         sim.run()
-        for ours, theirs in (("positions", "position"), ("saturation", "saturation"), ("plastic_strain", "plastic_strain"),
-                             ("skin_positions", "skin_position"), ("skin_saturation", "skin_saturation")):
+        for ours, theirs in (("positions", "position"), ("saturation", "saturation"),
+                             ("plastic_strain", "plastic_strain"), ("skin_positions", "skin_position"),
+                             ("skin_saturation", "skin_saturation")):
             np.testing.assert_array_equal(getattr(sim, ours), self.last[theirs], err_msg=ours)
         for name, array in sim.mesh.items():
             np.testing.assert_array_equal(array, self.mesh[name], err_msg=name)
@@ -176,8 +179,8 @@ class Refusals(Folder):
         self.assertIsInstance(caught.exception, ValueError)
 
     def test_a_key_that_is_not_known_is_named_with_its_place_and_the_nearest(self):
-        self.expect(f'{BALL}: /material/youngs_modulus: is not a known key; did you mean "youngs_modulus_Pa"?', argil.load,
-                    BALL, set={"/material/youngs_modulus": 1e5})
+        self.expect(f'{BALL}: /material/youngs_modulus: is not a known key; did you mean "youngs_modulus_Pa"?',
+                    argil.load, BALL, set={"/material/youngs_modulus": 1e5})
 
     def test_values_are_checked_as_the_program_checks_them(self):
         for pointer, value in (("/material/poissons_ratio", 0.7), ("/material/poissons_ratio", float("nan")),
@@ -277,6 +280,21 @@ class Manners(Folder):
         done.set()
         thread.join()
         self.assertGreater(counts[0] - before, 3)
+
+    def test_a_second_thread_is_kept_out_of_a_tick(self):
+        sim = argil.load(BALL).start()
+        thread = threading.Thread(target=sim.run)
+        refused = 0
+        thread.start()
+        while thread.is_alive():
+            try:
+                sim.time  # pylint: disable=pointless-statement
+            except RuntimeError as error:
+                self.assertEqual(str(error), "this simulation is in use by another thread")
+                refused += 1
+        thread.join()
+        self.assertGreater(refused, 0)
+        self.assertEqual(sim.ticks, 84)
 
     def test_ctrl_c_ends_a_run_with_a_file_that_goes_on(self):
         away = self.folder / "away.csv"  # long, and quick to compute: the tool stands beside the ball

@@ -16,8 +16,8 @@ from .result import Array, Frame, Result, open  # pylint: disable=redefined-buil
 
 # What simulates lies in a compiled module. It is loaded when it is first asked for, so that results are read and drawn
 # also where nothing was built.
-_SIMULATES = {"Scenario": "scenario", "load": "scenario", "run": "scenario", "schema": "scenario", "reference": "scenario",
-              "compare": "scenario", "build": "scenario", "Simulation": "simulation"}
+_SIMULATES = {"Scenario": "scenario", "load": "scenario", "run": "scenario", "schema": "scenario",
+              "reference": "scenario", "compare": "scenario", "build": "scenario", "Simulation": "simulation"}
 
 __all__ = ["Array", "Frame", "InputError", "IoError", "Result", "RunFailed", "open", *_SIMULATES]
 

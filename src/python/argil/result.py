@@ -51,8 +51,8 @@ def _read(dataset):
 
 
 class Group:
-    """A group of a result: its datasets are attributes, each read when it is asked for; [name] is h5py's dataset, of which a
-    part alone can be read."""
+    """A group of a result: its datasets are attributes, each read when it is asked for; [name] is h5py's dataset, of
+    which a part alone can be read."""
 
     def __init__(self, group):
         self._group = group
@@ -109,9 +109,10 @@ class _Frames:
 class Result:
     """A result file, open for reading.
 
-    `result.force` is /haptic/force, ticks × 3; `result.kinetic_energy` is /physics/kinetic_energy. A name that stands in
-    several groups is that of the ticks: `result.time`; for the others say `result.physics.time`. Every attribute is read when
-    it is asked for, an Array with `.units` and `.about`; nothing is kept. `result["haptic/force"][:100]` reads a part.
+    `result.force` is /haptic/force, ticks × 3; `result.kinetic_energy` is /physics/kinetic_energy. A name that stands
+    in several groups is that of the ticks: `result.time`; for the others say `result.physics.time`. Every attribute is
+    read when it is asked for, an Array with `.units` and `.about`; nothing is kept. `result["haptic/force"][:100]`
+    reads a part.
     """
 
     def __init__(self, file):
@@ -178,7 +179,8 @@ class Result:
     def __repr__(self):
         if not self._file:
             return "<argil.Result, closed>"
-        return f"<argil.Result {self.file}: {self.outcome}, {len(self._file['haptic/time'])} ticks, {len(self.frames)} frames>"
+        return (f"<argil.Result {self.file}: {self.outcome}, {len(self._file['haptic/time'])} ticks, "
+                f"{len(self.frames)} frames>")
 
 
 def open(file):  # pylint: disable=redefined-builtin

@@ -49,7 +49,7 @@ class Scenario:
 
     @property
     def resolved(self):
-        """All its keys with every default written out, a dict: `argil.Scenario(scene.resolved)` is the same scenario."""
+        """All its keys with every default written out, a dict; a Scenario of it is the same scenario."""
         return json.loads(self._loaded.resolved())
 
     def run(self, result, *, threads=1, resume=False, xdmf=True, quiet=True):
@@ -60,20 +60,20 @@ class Scenario:
         resume: go on from the result's last checkpoint, if there is one.
         quiet: print nothing, as --quiet; else notes and progress go to the terminal.
 
-        Returns the result, open for reading. Raises RunFailed, InputError, IoError. Ctrl-C ends it after the next step with
-        a file that can be resumed, and raises KeyboardInterrupt. Other threads of Python go on meanwhile.
+        Returns the result, open for reading. Raises RunFailed, InputError, IoError. Ctrl-C ends it after the next step
+        with a file that can be resumed, and raises KeyboardInterrupt. Other threads of Python go on meanwhile.
         """
         from .result import Result
         self._loaded.run(os.fspath(result), threads, resume, xdmf, quiet)
         return Result(result)
 
     def start(self, *, threads=1, record=None, position=None, orientation=None, mode=None):
-        """A simulation that stands before its first tick; see Simulation.
+        """A simulation that stands before its first tick; see Simulation. Of a live session as trace it takes the motion alone.
 
         threads: results do not depend on them.
         record: name of a result file that is written meanwhile.
-        position [m], orientation (unit quaternion x, y, z, w), mode: where a hand of one's own is. Without a position it is
-        where the scenario's motion begins.
+        position [m], orientation (unit quaternion x, y, z, w), mode: where a hand of one's own is. Without a position
+        it is where the scenario's motion begins.
         """
         from .simulation import Simulation
         return Simulation(self, threads=threads, record=record, position=position, orientation=orientation, mode=mode)

@@ -21,31 +21,32 @@ def _numbers(name, values, count):
 class Simulation:
     """A body and a tool between two ticks; Scenario.start makes it.
 
-    `tick()` goes along the scenario's motion, with the bits of `argil run`. `tick(position)` is a hand of one's own. The first
-    tick decides which of the two it is.
+    `tick()` goes along the scenario's motion, with the bits of `argil run`. `tick(position)` is a hand of one's own.
+    The first tick decides which of the two it is.
 
-    Arrays are of the moment at which they are asked for: a later tick does not change them, and they cannot be written to.
-    They hold one entity a row in the order of the result file, SI units. What is read is not copied once more: all arrays of
-    the body share the memory of one picture of it, which is made once a tick when it is asked for.
+    Arrays are of the moment at which they are asked for: a later tick does not change them, and they are read-only.
+    They hold one entity a row in the order of the result file, SI units. Those of the body are copies of it as it is,
+    made once a tick when the first of them is asked for; to read one again copies nothing.
 
-    As a context manager, or with close(), the record ends well. One thread at a time may use a simulation; while a tick is
-    made others go on. It is not to be used in a forked process.
+    As a context manager, or with close(), the record ends well. One thread at a time may use a simulation; while a tick
+    is made others go on. It is not to be used in a forked process.
     """
 
     def __init__(self, scene, *, threads=1, record=None, position=None, orientation=None, mode=None):
         if position is None and (orientation is not None or mode is not None):
             raise InputError("the hand's start: has no position; give it, too")
-        self._run = _argil.Simulation(scene._loaded, threads, os.fspath(record or ""), _numbers("position", position, 3),
-                                      _numbers("orientation", orientation, 4), mode)
+        self._run = _argil.Simulation(scene._loaded, threads, os.fspath(record or ""),
+                                      _numbers("position", position, 3), _numbers("orientation", orientation, 4), mode)
 
     def tick(self, position=None, orientation=None, mode=None):
         """One haptic tick; returns the force on the hand [N], 3.
 
-        Without arguments the tool follows the scenario's motion (and its simulated hand, if it has one). Else position [m],
-        orientation (unit quaternion x, y, z, w, tool to world) and mode ("push", "pull", "wet", "dry") are where the hand is
-        when the tick ends; what is left out stays as it was.
+        Without arguments the tool follows the scenario's motion (and its simulated hand, if it has one). Else position
+        [m], orientation (unit quaternion x, y, z, w, tool to world) and mode ("push", "pull", "wet", "dry") are where
+        the hand is when the tick ends; what is left out stays as it was.
 
-        Raises RunFailed, after which all is as before the tick; InputError for what is no pose and past the motion's end.
+        Raises RunFailed, after which all is as before the tick; InputError for what is no pose and past the motion's
+        end.
         """
         if position is None:
             if orientation is not None or mode is not None:
@@ -59,19 +60,22 @@ class Simulation:
         """Makes `ticks` ticks, without a number all that are left of the scenario's motion.
 
         hand: called before each as hand(time, force) with the time [s] at the tick's end and the force that the device
-        renders meanwhile [N]; returns what tick() takes: a position, or a tuple of position, orientation and mode. What it
-        raises ends the loop. Without it the tool follows the scenario's motion.
+        renders meanwhile [N]; returns what tick() takes: a position, or a tuple of position, orientation and mode. What
+        it raises ends the loop. Without it the tool follows the scenario's motion.
         """
         for _ in range(max(0, self.num_ticks - self.ticks) if ticks is None else ticks):
             if hand is None:
                 self._run.tick()
                 continue
             place = hand((self.ticks + 1) * self.period, self.device_force)
-            self.tick(*place) if isinstance(place, tuple) and np.ndim(place[0]) == 1 else self.tick(place)
+            if isinstance(place, tuple) and np.ndim(place[0]) == 1:
+                self.tick(*place)
+            else:
+                self.tick(place)
 
     def close(self):
-        """Ends the record: as `argil run` after the last tick of the scenario's motion; as an interrupted one before it. A
-        run with a hand of one's own is done when it is closed."""
+        """Ends the record: as `argil run` after the last tick of the scenario's motion; as an interrupted one before
+        it. A run with a hand of one's own is done when it is closed."""
         self._run.finish(False)
 
     def __enter__(self):
@@ -100,16 +104,16 @@ class Simulation:
                               doc="Of the skin's vertices [m], k×3; 0×3 without a skin.")
     skin_saturation = property(lambda self: self._run.skin_saturation, doc="At the skin's vertices [–].")
     physics = property(lambda self: self._run.physics(),
-                       doc="Energies [J], water [kg] and the solver's numbers of the last physics step, a dict with the names "
-                           "of /physics in a result.")
+                       doc="Energies [J], water [kg] and the solver's numbers of the last physics step, a dict with "
+                           "the names of /physics in a result.")
     notes = property(lambda self: self._run.notes(), doc="What there is to know of the scene, a list of texts.")
     state_hash = property(lambda self: self._run.state_hash(),
-                          doc="SHA-256 of all that a tick takes from earlier ones: equal hashes, equal bits from here on.")
+                          doc="SHA-256 of all that a tick takes from earlier ones: where equal, equal bits follow.")
 
     @functools.cached_property
     def mesh(self):
-        """What no tick changes, by the names of /mesh in a result: rest_position n×3 [m], tets m×4, surface_triangles and
-        skin_triangles ·×3 (vertex numbers from 0, outward), tool_vertices [m] and tool_triangles (tool's frame)."""
+        """What no tick changes, by the names of /mesh in a result: rest_position n×3 [m], tets m×4, surface_triangles
+        and skin_triangles ·×3 (vertex numbers from 0, outward), tool_vertices [m] and tool_triangles (tool's frame)."""
         return MappingProxyType(self._run.mesh())
 
     @property

@@ -26,7 +26,7 @@ SHORTENED = {  # as written → as typed
 INLINE = {  # outside of blocks, as written → as typed, or the test that types it
     "ctest --test-dir build -L quick": "ctest --test-dir build -L quick -N",
     "cmake --preset release": "cmake --list-presets | grep --quiet release",
-    "scripts/build argil viewer": "scripts/build argil viewer",
+    "scripts/build argil viewer python": "scripts/build argil viewer python",
     "scripts/reproduce": "scripts/reproduce page",  # of its items the one without runs; scripts.paper makes them
     "argil --version": "build/bin/argil --version",
     "cmake --install build": ("install.find_package",),

@@ -15,15 +15,16 @@ __all__ = ["COLOURS", "DASHES", "STYLE", "chart", "energy", "force", "save", "st
 def force(*results, labels=None, align_press=False, smooth=0.0, start=None):
     """The size of the force at the hand [N] against time [s], a line a run, and a closer look at the strongest press.
 
-    labels: one a result; by default the files' names. align_press: time counts from the first push or pull. smooth: draw the
-    moving mean over so long [s]. start: where the axis of time begins [s].
+    labels: one a result; by default the files' names. align_press: time counts from the first push or pull. smooth:
+    draw the moving mean over so long [s]. start: where the axis of time begins [s].
     """
     return force_figure.make_figure(results, labels, align_press, smooth, start)
 
 
 @styled
 def energy(*results, labels=None):
-    """What the hand and the contact give, what the body holds and what flow dissipates [J] against time [s], a panel a run."""
+    """What the hand and the contact give, what the body holds and what flow dissipates [J] against time [s], a panel a
+    run."""
     return energy_figure.make_figure(results, labels)
 
 
@@ -41,13 +42,14 @@ def chart(table, error=chart_figure.ERROR, title=""):
 
 @styled
 def stability(table, title="", forces=None):
-    """What became of each run of `argil stability`. forces: names of the method and the reference, whose largest forces a second
-    panel has then."""
+    """What became of each run of `argil stability`. forces: names of the method and the reference, whose largest forces
+    a second panel has then."""
     return map_figure.make_figure(table, title, forces)
 
 
 @styled
 def sweep(table, x=None, y=sweep_figure.FIRST_FIGURE, only=()):
-    """A figure of the table of `argil sweep collect` against one setting. x: the setting, by default the first that varies.
+    """A figure of the table of `argil sweep collect` against one setting. x: the setting, by default the first that
+    varies.
     y: the figure. only: texts "SETTING=VALUE", the points where they hold."""
     return sweep_figure.make_figure(table, x, y, only)

@@ -1,5 +1,5 @@
-"""A chart of `argil chart`: error against cost, a curve a method, the Pareto front marked. Every run has its mark: along the
-top those without an error, at the left those without a cost.
+"""A chart of `argil chart`: error against cost, a curve a method, the Pareto front marked. Every run has its mark:
+along the top those without an error, at the left those without a cost.
 """
 import csv
 import math
@@ -40,8 +40,9 @@ def find_front(points):
 
 
 def place_runs(rows, error, own_error):
-    """(row, kind, cost, error) of every run, where it is drawn: kind `good` and `shaky` by their error, those without any at the
-    bottom or at the reference's own error, below which none can be told; at the top, `ended` and `alone`, which reached its end but has nothing to be compared with. What has no cost is at the left."""
+    """(row, kind, cost, error) of every run, where it is drawn: kind `good` and `shaky` by their error, those without
+    any at the bottom or at the reference's own error, below which none can be told; at the top, `ended` and `alone`,
+    which reached its end but has nothing to be compared with. What has no cost is at the left."""
     def known(key):
         return [number(row, key) for row in rows if number(row, key) > 0.0]
     costs, errors = known("cpu_s_per_s") or [1.0], known(error) or [1.0]

@@ -1,8 +1,8 @@
 """Where the energy of runs goes: what the hand and the contact give, what the body holds, what flow dissipates.
 
-The hand's work counts while it pushes or pulls, for what it feels when it wets or dries deforms nothing. The rest is the contact's
-work less what the body holds more than at the first step and what flow dissipated: damping, the clay's kernel, moduli that water
-changed, and the work of weight and loads, which no file records.
+The hand's work counts while it pushes or pulls, for what it feels when it wets or dries deforms nothing. The rest is
+the contact's work less what the body holds more than at the first step and what flow dissipated: damping, the clay's
+kernel, moduli that water changed, and the work of weight and loads, which no file records.
 """
 from typing import NamedTuple
 

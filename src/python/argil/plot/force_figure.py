@@ -112,4 +112,5 @@ def make_figure(sources, labels=None, align_press=False, smooth=0.0, start=None)
     if not smooth >= 0.0:
         raise InputError(f"smooth {smooth:g}: give 0 or more seconds")
     labels = labels_for(sources, labels)
-    return draw([read_run(source, label, align_press, smooth) for source, label in zip(sources, labels)], align_press, smooth, start)
+    runs = [read_run(source, label, align_press, smooth) for source, label in zip(sources, labels)]
+    return draw(runs, align_press, smooth, start)

@@ -116,7 +116,8 @@ def draw(rows, provenance, title, force_names=None):
 
 
 def make_figure(table, title="", force_names=None):
-    """Of a table of `argil stability`. `force_names`: of the method and the reference in a second panel with their forces."""
+    """Of a table of `argil stability`. `force_names`: of the method and the reference, whose forces a second panel has
+    then."""
     rows, provenance = read_table(table)
     if not rows or "kind" not in rows[0]:
         raise InputError(f"{table}: is not a table of argil stability")

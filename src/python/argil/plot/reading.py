@@ -15,7 +15,8 @@ MODES = ("push", "pull", "wet", "dry")
 
 @contextlib.contextmanager
 def opened(source):
-    """h5py's file of a result: of its name, of an argil.Result or of itself. A warning where the run did not reach its end."""
+    """h5py's file of a result: of its name, of an argil.Result or of itself. Warns where the run did not reach its
+    end."""
     is_name = isinstance(source, (str, os.PathLike))
     file = open_file(source) if is_name else source.h5 if isinstance(source, Result) else source
     warn_of_end(file)

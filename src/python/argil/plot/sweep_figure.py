@@ -1,7 +1,7 @@
 """A figure of `argil sweep collect` against one setting, a line for each combination of the others.
 
-Colours tell the values of the other setting with the most, dashes those of one more. A setting that is text is an axis of names. What
-had no figure is counted in the picture.
+Colours tell the values of the other setting with the most, dashes those of one more. A setting that is text is an axis
+of names. What had no figure is counted in the picture.
 """
 import csv
 import warnings
@@ -127,8 +127,8 @@ def draw(rows, x, y, others, left_out):
 
 
 def make_figure(table, x=None, y=FIRST_FIGURE, only=()):
-    """Of a table of `argil sweep collect`: figure `y` against setting `x`, by default the first that varies, at the points where
-    each SETTING=VALUE of `only` holds. A warning says how many points have no such figure."""
+    """Of a table of `argil sweep collect`: figure `y` against setting `x`, by default the first that varies, at the
+    points where each SETTING=VALUE of `only` holds. A warning says how many points have no such figure."""
     rows, settings, figures = read_table(table)
     if not settings:
         raise InputError(f"{table}: no setting varies, so there is nothing to draw against")
