@@ -133,6 +133,7 @@ class SameBits(Folder):
             self.assertEqual(own.provenance.trace_sha256, "")
             self.assertIn("the hand was a program's own", own.provenance.notes)
             self.assertEqual(json.loads(own.provenance.scenario)["trace"]["file"], "")
+        self.assertIn("hand: was a program's own", call("info", self.file("a.h5")))
 
     def test_a_hand_feels_the_force_of_the_tick_before(self):
         felt = []
