@@ -97,6 +97,15 @@ class Checks(unittest.TestCase):
         self.write("src/solid/CMakeLists.txt", "argil_module(solid\n  DEPENDS base\n  LIBRARIES mesh)\n")
         self.expect_layer_breach("DEPENDS lacks mesh")
 
+    def test_a_missing_dependency_of_a_python_extension_is_seen(self):
+        self.write("src/view/bind.cpp", '#include "mesh/tets.h"\n#include "solid/element.h"\n')
+        self.write("src/view/CMakeLists.txt", "argil_extension(view\n  SOURCES bind.cpp\n  DEPENDS base mesh)\n")
+        self.expect_layer_breach("DEPENDS lacks solid")
+
+    def test_pybind11_is_pythons_alone(self):
+        self.write("src/view/bind.cpp", "#include <pybind11/numpy.h>\n")
+        self.expect_layer_breach("<pybind11/numpy.h>: only python includes it")
+
     def test_a_forbidden_dependency_is_seen(self):
         self.write("src/solid/CMakeLists.txt", "argil_module(solid DEPENDS base mesh sim)\n")
         self.expect_layer_breach("DEPENDS on sim")
