@@ -1,5 +1,5 @@
-# Which Python: Debian's own where there is one, for its packages are what scripts/setup installs; another that comes first
-# on the path may lack them. -DPython3_EXECUTABLE=… names another.
+# Which Python: Debian's own where there is one, for its packages are what scripts/setup installs; another that comes
+# first on the path may lack them. -DPython3_EXECUTABLE=… names another.
 if(NOT DEFINED Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python3_EXECUTABLE /usr/bin/python3)
 endif()
@@ -15,19 +15,22 @@ elseif(ARGIL_PYTHON)
   if(pybind11_FOUND AND Python3_Development.Module_FOUND)
     set(ARGIL_BUILDS_PYTHON ON)
   else()
-    message(STATUS "No Python package: pybind11 or Python's headers are missing (Debian: pybind11-dev, python3-dev)")
+    message(STATUS
+      "No Python package: pybind11 or Python's headers are missing (Debian: pybind11-dev, python3-dev)")
   endif()
 endif()
 
 # Where a build and an installation have the package; both are of use as PYTHONPATH.
 set(ARGIL_PYTHON_BUILD "${PROJECT_BINARY_DIR}/python")
-set(ARGIL_PYTHON_INSTALL "lib/python3/dist-packages" CACHE STRING "Where Python packages are installed, below the prefix")
-# Debian's Python looks there in /usr alone; elsewhere, as in /usr/local, in a folder of its version, which then names this one.
+set(ARGIL_PYTHON_INSTALL "lib/python3/dist-packages" CACHE STRING
+  "Where Python packages are installed, below the prefix")
+# Debian's Python looks there in /usr alone; elsewhere, as in /usr/local, in a folder of its version, which then names
+# this one.
 function(argil_install_python_path)
-  file(RELATIVE_PATH way "/lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages" "/${ARGIL_PYTHON_INSTALL}")
+  set(local "lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages")
+  file(RELATIVE_PATH way "/${local}" "/${ARGIL_PYTHON_INSTALL}")
   install(CODE "if(NOT CMAKE_INSTALL_PREFIX STREQUAL \"/usr\")
-    file(WRITE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages/argil.pth\"
-      \"${way}\\n\")
+    file(WRITE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${local}/argil.pth\" \"${way}\\n\")
   endif()" COMPONENT python)
 endfunction()
 
@@ -49,7 +52,8 @@ function(argil_extension name)
   set(copies "")
   foreach(script IN LISTS ARG_SCRIPTS)
     set(copy "${ARGIL_PYTHON_BUILD}/${script}")
-    add_custom_command(OUTPUT "${copy}" COMMAND "${CMAKE_COMMAND}" -E copy "${CMAKE_CURRENT_SOURCE_DIR}/${script}" "${copy}"
+    add_custom_command(OUTPUT "${copy}"
+      COMMAND "${CMAKE_COMMAND}" -E copy "${CMAKE_CURRENT_SOURCE_DIR}/${script}" "${copy}"
       DEPENDS "${script}" COMMENT "" VERBATIM)
     list(APPEND copies "${copy}")
     get_filename_component(folder "${script}" DIRECTORY)
