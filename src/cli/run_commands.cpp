@@ -137,6 +137,9 @@ void add_run_commands(CLI::App& app, int& code) {
         ->allow_extra_args(false);
     command->add_option("--trace", o->run.trace, "recorded motion in place of the scenario's");
   };
+  const auto add_strict = [o](CLI::App* command) {
+    command->add_flag("--strict", o->run.strict, "a step that cannot be made ends the run (exit code 3)");
+  };
   CLI::App* run = app.add_subcommand("run", "run a scenario and write its result");
   add_scenario(run);
   run->add_option("-o,--output", o->run.output, "result file (default: the scenario's name with .h5)");
@@ -144,6 +147,7 @@ void add_run_commands(CLI::App& app, int& code) {
       ->check(CLI::Range(1, run::kMostThreads));
   run->add_flag("--resume", o->run.resume, "go on from the result's last checkpoint, if there is one");
   run->add_flag("--dry-run", o->run.dry_run, "check and build everything, write nothing");
+  add_strict(run);
   run->add_flag("-q,--quiet", o->run.quiet, "print errors only");
   run->callback([o, &code] { code = run::run(o->run); });
 
@@ -157,6 +161,7 @@ void add_run_commands(CLI::App& app, int& code) {
   live->add_option("--threads", o->run.threads, "of the physics; results do not depend on them")
       ->check(CLI::Range(1, run::kMostThreads));
   live->add_option("--watch", o->live.watch, "HDF5 file that others may read while it grows (SWMR)");
+  add_strict(live);
   live->add_flag("-q,--quiet", o->run.quiet, "print errors only");
   live->callback([o, &code] {
     o->live.run = o->run;

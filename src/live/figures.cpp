@@ -39,6 +39,7 @@ void Figures::add(const BodyStep& step) {
   m_step_work.add(step.timing.work);
   if (step.timing.late > 0) ++m_late_steps;
   m_late_ticks += step.timing.late;
+  if (step.record.limited_tets > 0) ++m_limited;
   m_water = step.record.water_mass;
 }
 
@@ -62,6 +63,7 @@ std::vector<std::pair<std::string, double>> Figures::list() const {
   list.emplace_back("num_steps", static_cast<double>(m_step_work.total()));
   list.emplace_back("num_late_steps", static_cast<double>(m_late_steps));
   list.emplace_back("num_late_ticks", static_cast<double>(m_late_ticks));
+  list.emplace_back("num_limited_steps", static_cast<double>(m_limited));
   list.emplace_back("num_gated_ticks", static_cast<double>(m_gated));
   return list;
 }
@@ -80,12 +82,12 @@ std::string Figures::print() const {
   text += row("age of the surface", m_surface_age, 1.0, "ticks");
   if (m_picture_delay.total() > 0) text += row("from force to picture", m_picture_delay, 1e-3, "ms");
   text += format(
-      "  %lld ticks, %lld missed, %lld without a new sample; %lld steps, %lld late by %lld ticks in all; "
-      "%lld ticks gated\n",
+      "  %lld ticks, %lld missed, %lld without a new sample; %lld steps, %lld late by %lld ticks in all, "
+      "%lld of limited motion; %lld ticks gated\n",
       static_cast<long long>(m_wake_late.total()), static_cast<long long>(m_missed),
       static_cast<long long>(m_repeated), static_cast<long long>(m_step_work.total()),
       static_cast<long long>(m_late_steps), static_cast<long long>(m_late_ticks),
-      static_cast<long long>(m_gated));
+      static_cast<long long>(m_limited), static_cast<long long>(m_gated));
   return text;
 }
 

@@ -30,6 +30,7 @@ class Figures {
   Distribution m_force_age{1.0}, m_surface_age{1.0};                                       // [ticks]
   std::int64_t m_missed = 0;                                                               // periods
   std::int64_t m_late_steps = 0, m_late_ticks = 0;
+  std::int64_t m_limited = 0;   // steps whose motion was limited
   std::int64_t m_repeated = 0;  // ticks without a new sample
   std::int64_t m_gated = 0;     // ticks in which the gate had to do something
   Tick m_seen_step = 0, m_seen_begun_at = 0, m_begun_at = 0;

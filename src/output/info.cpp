@@ -197,6 +197,36 @@ void describe_provenance(std::ostream& out, const ResultHeader& header) {
 
 }  // namespace
 
+std::string describe_limits(const std::vector<sim::PhysicsRecord>& steps,
+                            const std::vector<sim::HapticRecord>& ticks, int num_tets) {
+  std::size_t limited = 0;
+  std::size_t held = 0;
+  int most = 0;
+  const sim::PhysicsRecord* first = nullptr;
+  for (const sim::PhysicsRecord& step : steps) {
+    if (step.limited_tets == 0) continue;
+    if (!first) first = &step;
+    const bool is_held = step.limited_tets == num_tets;
+    ++(is_held ? held : limited);
+    if (!is_held) most = std::max(most, step.limited_tets);
+  }
+  const auto let_go = static_cast<std::size_t>(std::count_if(ticks.begin(), ticks.end(), [](const auto& t) {
+    return (t.gate_events & device::kGateWatchdog) != 0;
+  }));
+  std::ostringstream out;
+  if (limited > 0)
+    out << "the motion of up to " << count(static_cast<std::size_t>(most), "tet") << " was limited in "
+        << count(limited, "step") << ", or they would have turned inside out";
+  if (held > 0) out << (limited > 0 ? "; " : "") << "the whole body was held back in " << count(held, "step");
+  if (first) {
+    out << ", first in tick " << first->tick;
+    if (first->limited_tet >= 0) out << " (tet " << first->limited_tet << ')';
+    out << "; force and shape are a bound there, not the clay's: a finer mesh or shorter steps help";
+  }
+  if (let_go > 0) out << (first ? "; " : "") << "the hand was let go in " << count(let_go, "tick");
+  return out.str();
+}
+
 std::string describe_result(const ResultReader& reader) {
   const ResultHeader header = reader.read_header();
   const std::vector<FrameInfo> frames = reader.read_frame_list();
@@ -207,7 +237,11 @@ std::string describe_result(const ResultReader& reader) {
   describe_outcome(out, reader);
   describe_body(out, header);
   describe_haptic(out, haptic, header.haptic_period);
-  describe_physics(out, reader.read_physics());
+  const std::vector<sim::PhysicsRecord> steps = reader.read_physics();
+  describe_physics(out, steps);
+  if (const std::string limits = describe_limits(steps, haptic, static_cast<int>(header.tets.cols()));
+      !limits.empty())
+    out << label("limits") << limits << '\n';
   if (const auto fidelity = reader.find_fidelity()) describe_fidelity(out, *fidelity);
   out << label("frames") << frames.size();
   if (!frames.empty())

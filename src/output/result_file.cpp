@@ -253,6 +253,8 @@ void ResultFile::append(const sim::PhysicsRecord& record) {
   table.put(record.active_nodes);
   table.put(record.min_volume_ratio);
   table.put(record.max_plastic_strain);
+  table.put(record.limited_tets);
+  table.put(record.limited_tet);
   if (table.end_row()) m_impl->guarded([&] { table.write(), m_impl->file.flush(); });
 }
 

@@ -210,6 +210,9 @@ std::vector<sim::PhysicsRecord> ResultReader::read_physics() const {
   read_counts("active_nodes", &Record::active_nodes);
   read_reals("min_volume_ratio", &Record::min_volume_ratio);
   read_reals("max_plastic_strain", &Record::max_plastic_strain);
+  if (!group.has("limited_tets")) return records;  // files from before
+  read_counts("limited_tets", &Record::limited_tets);
+  read_counts("limited_tet", &Record::limited_tet);
   return records;
 }
 

@@ -67,6 +67,13 @@ inline constexpr std::array kPhysics = {
     Column{"min_volume_ratio", real64, 1, {"1", "smallest det F over the tets"}},
     Column{
         "max_plastic_strain", real64, 1, {"1", "largest Frobenius norm of the plastic strain over the tets"}},
+    Column{
+        "limited_tets",
+        int32,
+        1,
+        {"1",
+         "tets whose motion was limited, or they would have turned inside out; all: the whole body's was"}},
+    Column{"limited_tet", int32, 1, {"1", "number of the worst of them; -1: none"}},
 };
 
 /// A step that may leave out parts of the model, and its error where a full run goes beside.

@@ -102,12 +102,14 @@ StepStatus RecordedTicks::make(const device::DeviceSample& sample) {
   ARGIL_TRY(status);
   if (m_full) ARGIL_TRY(m_full->tick(sample));
   const sim::HapticRecord haptic = m_simulation.haptic_record();
-  if (haptic.num_contacts > 0) m_has_touched = true;
+  m_has_touched |= haptic.num_contacts > 0;
+  m_is_limited |= (haptic.gate_events & device::kGateWatchdog) != 0;
   m_file.append(haptic);
   if (m_full) m_full->compare(m_simulation);
   if (m_simulation.physics_due_last_tick()) {
     sim::PhysicsRecord record = m_simulation.physics_record();
     if (m_full) record.fidelity.error = m_full->take_error();
+    m_is_limited |= record.limited_tets > 0;
     m_file.append(record);
   }
   if (m_simulation.frame_due_last_tick()) m_file.append(m_simulation.make_frame());
@@ -154,6 +156,7 @@ LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, 
   if (!status.is_ok()) end.failure = status.failure();
   end.is_interrupted = !end.failure && simulation.clock().tick < num_ticks;
   end.has_touched = ticks.has_touched();
+  end.is_limited = ticks.is_limited();
   end.seconds = ticks.end();
   return end;
 }

@@ -40,6 +40,7 @@ class RecordedTicks {
   /// One tick; appends the records and the frame that it gives. One that fails leaves none.
   StepStatus make(const device::DeviceSample& sample);
   /// Has the tool touched the body in one of them?
+  bool is_limited() const { return m_is_limited; }  ///< what output::describe_limits tells of
   bool has_touched() const { return m_has_touched; }
   /// Appends the last good state, where no frame shows it, and what the ticks cost. Returns seconds of wall
   /// clock.
@@ -52,6 +53,7 @@ class RecordedTicks {
   output::ResultFile& m_file;
   Tick m_first;
   bool m_has_touched = false;
+  bool m_is_limited = false;
   std::unique_ptr<Cost> m_cost;
 };
 
@@ -60,6 +62,7 @@ struct LoopEnd {
   std::optional<Failure> failure;
   bool is_interrupted = false;  ///< by SIGINT or SIGTERM
   bool has_touched = false;     ///< the tool, in one of these ticks
+  bool is_limited = false;      ///< what output::describe_limits tells of
   double seconds = 0.0;         ///< of wall clock
 };
 

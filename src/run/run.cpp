@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "output/info.h"
 #include "output/result_file.h"
 #include "output/result_reader.h"
 #include "run/files.h"
@@ -66,6 +67,16 @@ void print_miss(const std::string& result, const LoopEnd& end, Tick first, const
     for (const sim::HapticRecord& record : output::ResultReader(result).read_haptic())
       if (record.num_contacts > 0) return;
   std::fprintf(stderr, "argil: note: no tick had contact%s%s\n", miss.empty() ? "" : ": ", miss.c_str());
+}
+
+/// Says what the run could not compute.
+void print_limits(const std::string& result, const LoopEnd& end, const RunOptions& options) {
+  if (!end.is_limited || options.quiet) return;
+  const output::ResultReader reader(result);
+  std::fprintf(stderr, "argil: note: %s\n",
+               output::describe_limits(reader.read_physics(), reader.read_haptic(),
+                                       static_cast<int>(reader.read_header().tets.cols()))
+                   .c_str());
 }
 
 /// One equilibrium: a physics record and a frame, at the time 0 of an empty motion.
@@ -135,6 +146,7 @@ scenario::Scenario load(const RunOptions& options) {
     require_input_file(patch);
     for (scenario::Setting& setting : scenario::read_patch(patch)) settings.push_back(std::move(setting));
   }
+  if (options.strict) settings.push_back({"/dynamics/strict", "true"});
   for (const std::string& text : options.settings) settings.push_back(scenario::parse_setting(text));
   if (!options.trace.empty())
     settings.push_back({"/trace/file", "\"" + std::filesystem::absolute(options.trace).string() + "\""});
@@ -202,6 +214,7 @@ RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
   }
   if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
   print_miss(result, end, first, run.miss, options);
+  print_limits(result, end, options);
   return print_end(result, end, first, simulation.clock().tick, options);
 }
 

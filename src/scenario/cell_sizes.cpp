@@ -307,7 +307,7 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
   sizes.places =
       touched_places ? *touched_places : find_places(s, trace, tool_surface, make_touched_tree(s, body));
   if (sizes.places.empty() && sizes.regions.empty()) {
-    notes.push_back("cells: even, as the motion does not reach the body at rest");
+    notes.emplace_back("cells: even, as the motion does not reach the body at rest");
     return std::nullopt;
   }
   const bool has_target = s.body.kind != BodyKind::mesh && s.body.cage_file.empty() && !(sizes.near > 0.0);

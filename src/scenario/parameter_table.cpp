@@ -440,10 +440,15 @@ void bind_dynamics(Binder& b, Scenario& s) {
            "b in D = a M + b K.");
   b.boolean("/dynamics/implicit_contact", d.implicit_contact, "Contact stiffness enters the implicit solve.");
   b.number("/dynamics/energy_limit", s.params.energy_limit, not_negative(), "",
-           "Kinetic energy over what hand, loads and supports gave the body, at which the run stops; 0: no "
-           "limit.");
+           "Kinetic energy over what hand, loads and supports gave the body, above which a step counts as "
+           "wrong; 0: no limit.");
   b.number("/dynamics/min_volume_ratio", d.min_volume_ratio, {-1e300, 1, true, true}, "",
-           "det F of a tet at or below which the run stops.");
+           "det F of a tet at or below which no step takes it.");
+  b.boolean(
+      "/dynamics/strict", s.params.is_strict,
+      "A step that cannot be made, or a hand whose force chatters, ends the run. Else the motion of the "
+      "tets concerned is limited, or the whole body is held back, or the hand is let go, and the "
+      "run goes on; the result counts it.");
   b.number(
       "/dynamics/rest_speed_m_per_s", s.params.rest_speed, not_negative(), "m/s",
       "A body that nothing acts on and that is slower for two steps is stopped and not solved for; 0: only "
@@ -487,7 +492,7 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
       {{device::Passivity::none, "none"}, {device::Passivity::time_domain, "time_domain"}},
       "Damp the force at the hand where it would give back more energy than the hand gave [Hannaford2002].");
   b.number("/haptics/chatter_limit", s.params.chatter_limit, {0.0, 1.0, true, false}, "",
-           "The run stops when the force at the hand has trembled for 0.3 s: its rms above 50 Hz is "
+           "The force at the hand chatters when it has trembled for 0.3 s: its rms above 50 Hz is "
            "more than this share of its rms. 1: never.");
   device::DeviceLimits& l = s.params.device;
   b.number("/haptics/device/max_force_N", l.max_force, positive(), "N", "Largest force the device is sent.");

@@ -30,7 +30,7 @@ constexpr const char* kPaperPreset = R"({
   },
   "water": {"uptake": "increment"},
   "contact": {"law": "pairs", "face_blend": 0},
-  "dynamics": {"model": "linear", "implicit_contact": false},
+  "dynamics": {"model": "linear", "implicit_contact": false, "strict": true},
   "haptics": {"physics_period_ticks": 14, "water_period_ticks": 14, "frame_period_ticks": 98, "between_frames": "hold"}
 })";
 
@@ -432,6 +432,7 @@ Scenario::Scenario() {
   params.extent = sim::Extent::automatic;
   params.contact.law = contact::ContactLaw::pressure;
   params.contact_surface = sim::SurfaceKind::automatic;
+  params.is_strict = false;
 }
 
 Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings) {

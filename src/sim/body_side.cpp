@@ -22,7 +22,8 @@ BodySide::BodySide(Body body, const Params& params)
       m_loads{m_force.total()},
       m_materials(m_body, params, m_water, m_solid, m_region),
       m_flow(params, m_solid, m_region),
-      m_economy(params, m_body, m_solid, m_region) {
+      m_economy(params, m_body, m_solid, m_region),
+      m_limiter(m_solid) {
   m_loads.changed = &m_force.changed();
   m_state.solid = solid::make_rest_state(m_solid.model);
   StepStatus rest = solid::update_kinematics(m_solid, m_region, m_state.solid.x, 0);
@@ -54,6 +55,24 @@ BodyBetweenSteps BodySide::between_steps(Tick tick) {
 }
 
 StepStatus BodySide::step(const ContactLoad& load, StepResult& result) {
+  const StepStatus status = make_step(load, result);
+  if (status.is_ok() || m_params.is_strict) return status;
+  hold_still(load, status.failure(), result);
+  return StepStatus::ok();
+}
+
+/// In the place of a step that failed: the body, its water too, is as it was, without speed.
+void BodySide::hold_still(const ContactLoad& load, const Failure& failure, StepResult& result) {
+  roll_back();
+  begin_step(load, result);
+  result.is_held = true;
+  m_limit = {m_body.mesh.num_tets(), failure.element};
+  m_state.solid.v.setZero();
+  m_has_begun_solid = true;
+  solid::set_start(m_solid, m_region, m_state.solid);
+}
+
+StepStatus BodySide::make_step(const ContactLoad& load, StepResult& result) {
   begin_step(load, result);
   if (m_params.rates.moves_water(m_state.steps)) ARGIL_TRY(move_water(load, result));
   if (m_economy.rests(m_state, load, m_force.contacts())) return StepStatus::ok();
@@ -68,6 +87,8 @@ void BodySide::begin_step(const ContactLoad& load, StepResult& result) {
   m_force.set_contacts(load, m_surface);
   result.step = m_state.steps;
   result.has_moved = false;
+  result.is_held = false;
+  m_limit = {};
   result.felt = load.hand.felt;
   result.stiffness.clear();
   result.friction.setZero();

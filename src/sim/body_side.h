@@ -18,6 +18,7 @@
 #include "sim/state.h"
 #include "sim/step_result.h"
 #include "sim/surface_moduli.h"
+#include "solid/limit_motion.h"
 
 namespace argil::sim {
 
@@ -32,7 +33,7 @@ class BodySide {
 
   /// One physics step under `load`, after the water's when that is due. Called by Simulation::start_step and
   /// live::StepMailbox::make, which then commit it, or roll it back where it failed. Also a step that fails
-  /// has a result.
+  /// has a result. One that is not strict does not fail (`limited()`).
   StepStatus step(const ContactLoad& load, StepResult& result);
   void commit();
   /// Materials go back before the solid, which needs their moduli, sizes and masses; the rest in any order.
@@ -41,6 +42,8 @@ class BodySide {
   StepStatus find_equilibrium();
 
   const BodyState& state() const { return m_state; }
+  /// How the last step's motion was limited; all tets: the whole body's was, or the step was not made.
+  const solid::MotionLimit& limited() const { return m_limit; }
   const Body& body() const { return m_body; }
   const ContactSurface& surface() const { return m_surface; }
   const solid::Body& solid() const { return m_solid; }
@@ -81,6 +84,8 @@ class BodySide {
   double clay_factor(Eigen::Index node, const ContactPatch& patch) const;
 
   // body_side.cpp
+  StepStatus make_step(const ContactLoad& load, StepResult& result);
+  void hold_still(const ContactLoad& load, const Failure& failure, StepResult& result);
   void begin_step(const ContactLoad& load, StepResult& result);
   /// At the end of the present step [s].
   double time_at_end() const {
@@ -108,6 +113,8 @@ class BodySide {
   BodyMaterials m_materials;
   PlasticFlow m_flow;
   Economy m_economy;
+  solid::MotionLimiter m_limiter;
+  solid::MotionLimit m_limit;      // of the last step
   bool m_has_moved_water = false;  // since the last commit, as is the next
   bool m_has_begun_solid = false;
   StageObserver* m_observer = nullptr;

@@ -95,9 +95,9 @@ double BodySide::clay_factor(Eigen::Index node, const ContactPatch& patch) const
   return material::compute_clay_factor(r, m_params.kernel, m_params.rates.step_seconds());
 }
 
-/// Books what hand, loads and supports gave the body in the step just taken, and stops a run in which it
-/// moves with many times the energy that they ever gave it: no body does, a scheme past its limit does. Clay
-/// that swells is left alone: its water gives it energy, too, that no one books.
+/// Books what hand, loads and supports gave the body in the step just taken. Where it moves with many times
+/// the energy that they ever gave it, the run stops or the body is slowed down: no body does so, a scheme
+/// past its limit does. Clay that swells is left alone: its water gives it energy, too, that no one books.
 StepStatus BodySide::check_energy() {
   const StageScope scope(m_observer, Stage::kinematics);
   if (m_params.energy_limit == 0.0 || m_params.water.swelling > 0.0) return StepStatus::ok();
@@ -117,13 +117,24 @@ StepStatus BodySide::check_energy() {
   if (kinetic <= bound) return StepStatus::ok();
   bound += 0.5 * kSpeed * kSpeed * mass.sum();
   if (kinetic <= bound) return StepStatus::ok();
+  if (!m_params.is_strict) {
+    m_limiter.scale(m_region.part(), std::sqrt(bound / kinetic), m_state.solid);
+    m_limit.num_tets = m_body.mesh.num_tets();
+    return StepStatus::ok();
+  }
   return StepStatus::failed(
       {tick(), "solid", -1, "kinetic energy [J] of a body that was given less", kinetic, bound});
 }
 
 StepStatus BodySide::update_kinematics() {
   const StageScope scope(m_observer, Stage::kinematics);
-  ARGIL_TRY(solid::update_kinematics(m_solid, m_region, m_state.solid.x, tick()));
+  StepStatus status = solid::update_kinematics(m_solid, m_region, m_state.solid.x, tick());
+  if (!status.is_ok() && !m_params.is_strict) {
+    const solid::MotionLimit limit = m_limiter.apply(m_region.part(), m_state.solid);
+    m_limit = {std::max(limit.num_tets, m_limit.num_tets), limit.worst_tet};
+    status = solid::update_kinematics(m_solid, m_region, m_state.solid.x, tick());
+  }
+  ARGIL_TRY(status);
   solid::keep_start(m_solid, m_state.solid);
   for (const int n : m_force.contacts().nodes)
     m_state.contact_work +=

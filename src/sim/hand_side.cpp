@@ -73,7 +73,7 @@ void HandSide::prepare_detection(const Points& x) {
 }
 
 void HandSide::receive(StepResult& result) {
-  if (!m_state.has_felt_anew) {
+  if (!m_state.has_felt_anew && !result.is_held) {
     m_state.hand_force = result.felt.force;
     m_state.hand_torque = result.felt.torque;
   }
@@ -83,7 +83,7 @@ void HandSide::receive(StepResult& result) {
     m_pressure->exchange(result.stiffness);
     m_stiffness_before.swap(result.stiffness);
   }
-  if (m_between) m_between->receive(result.felt, result.friction);
+  if (m_between && !result.is_held) m_between->receive(result.felt, result.friction);
 }
 
 /// The device holds its last force on the way to where the hand is at the end of the tick, so that the work
@@ -181,7 +181,8 @@ void HandSide::hand_over(ContactLoad& load) {
   m_state.hand_torque = m_felt.torque;
 }
 
-/// The last force, old or new, less what would generate energy, through the device's limits.
+/// The last force, old or new, less what would generate energy, through the device's limits. A hand that
+/// chatters is let go until it does not.
 void HandSide::render(device::HandFeed feed) {
   if (m_between) feel_between_steps();
   m_state.chatter.add(m_state.hand_force);
@@ -190,12 +191,14 @@ void HandSide::render(device::HandFeed feed) {
   if (m_params.passivity == device::Passivity::time_domain)
     sent = device::damp_generated_energy(felt, m_state.motion, -m_state.port_energy);
   m_state.withheld = {felt.force - sent.force, felt.torque - sent.torque};
+  if (!m_params.is_strict && m_state.chatter.is_chattering() && feed == device::HandFeed::fresh)
+    feed = device::HandFeed::stale;
   m_state.gated = m_state.gate.apply(sent.force, sent.torque, feed);
   m_state.clock.advance();
 }
 
 StepStatus HandSide::status() const {
-  if (!m_state.chatter.is_chattering()) return StepStatus::ok();
+  if (!m_params.is_strict || !m_state.chatter.is_chattering()) return StepStatus::ok();
   return StepStatus::failed({m_state.clock.tick + 1, "hand", -1,
                              "share of the force that trembles above 50 Hz for 0.3 s",
                              m_state.chatter.share(), m_params.chatter_limit});

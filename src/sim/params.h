@@ -68,6 +68,9 @@ struct Params {
   /// Kinetic energy over the energy that hand, loads and supports gave the body since the start, each push
   /// counted and no recoil, beyond which the run stops. 0: no limit; none where clay swells.
   double energy_limit = 10.0;
+  /// A step that cannot be made ends the run. Else its motion is limited, or the body stands still for it,
+  /// and the run goes on.
+  bool is_strict = true;
   int threads = 1;
 
   /// The body gets the contacts of one detection a step, over the tool's whole motion since the last.

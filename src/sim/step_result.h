@@ -12,6 +12,7 @@ namespace argil::sim {
 struct StepResult {
   Tick step = 0;           ///< number of the step, from 1
   bool has_moved = false;  ///< the body has; else its surface is where it was
+  bool is_held = false;    ///< it could not be computed: the body stood still, the hand keeps its last force
   bool is_whole = true;    ///< all of its surface may have moved; else only these vertices have:
   std::vector<int> moved;
   Points surface_x;  ///< places of all vertices of the touched surface, or of these [m], where it has moved

@@ -324,6 +324,7 @@ run::RunOptions make_run_options(const std::string& scenario,
                                  const std::vector<scenario::Setting>& settings) {
   run::RunOptions options;
   options.scenario = scenario;
+  options.settings.emplace_back("/dynamics/strict=true");  // a study asks where methods fail
   for (const scenario::Setting& setting : settings)
     options.settings.push_back(setting.pointer + "=" + setting.value);
   return options;

@@ -59,6 +59,7 @@ std::vector<SweepPoint> load_points(const std::string& points) {
 run::RunOptions make_options(const SweepPoint& point, const std::string& points) {
   run::RunOptions options;
   options.scenario = (find_folder(points) / point.scenario).lexically_normal().string();
+  options.settings.emplace_back("/dynamics/strict=true");  // a figure of a table is the model's, or none
   for (const scenario::Setting& setting : point.settings)
     options.settings.push_back(setting.pointer + "=" + setting.value);
   options.quiet = true;

@@ -110,7 +110,8 @@ class Live(unittest.TestCase):
     def test_a_force_that_trembles_ends_it_and_its_replay_alike(self):
         # Contact that is held and not in the solve, stiffer than the clay: the body is thrown off the tool, step by step.
         self.write_scene("scene.json", {"between_frames": "hold"})
-        bare = ["--set", "/dynamics/implicit_contact=false", "--set", "/contact/vertex_face_stiffness_N_per_m=1000"]
+        bare = ["--set", "/dynamics/implicit_contact=false", "--set", "/contact/vertex_face_stiffness_N_per_m=1000",
+                "--strict"]
         done = self.call("live", "scene.json", "--device", "simulated", "-o", "live.h5", "--duration", "6", *bare)
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("trembles above 50 Hz", done.stderr)

@@ -70,6 +70,8 @@ inline sim::PhysicsRecord make_physics(Tick tick) {
   record.active_nodes = 11;
   record.min_volume_ratio = 0.5;
   record.max_plastic_strain = 0.125;
+  record.limited_tets = 12;
+  record.limited_tet = 7;
   return record;
 }
 

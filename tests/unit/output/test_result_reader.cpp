@@ -119,6 +119,8 @@ TEST(ResultReader, GivesBackEveryPhysicsRecord) {
     ASSERT_EQ(records[i].active_nodes, wanted.active_nodes);
     ASSERT_EQ(records[i].min_volume_ratio, wanted.min_volume_ratio);
     ASSERT_EQ(records[i].max_plastic_strain, wanted.max_plastic_strain);
+    ASSERT_EQ(records[i].limited_tets, wanted.limited_tets);
+    ASSERT_EQ(records[i].limited_tet, wanted.limited_tet);
   }
 }
 

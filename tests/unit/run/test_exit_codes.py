@@ -141,7 +141,7 @@ class ExitCodes(unittest.TestCase):
 
     def test_3_a_failed_run_keeps_the_last_good_state_and_the_failure(self):
         # A body whose tets may not lose a tenth of a thousandth of their volume, pressed.
-        code, _, error = self.call("run", "scene.json", "-o", "out.h5", "--set", "/dynamics/min_volume_ratio=0.9999")
+        code, _, error = self.call("run", "scene.json", "-o", "out.h5", "--strict", "--set", "/dynamics/min_volume_ratio=0.9999")
         self.assertEqual(code, 3, error)
         self.assertRegex(error, r"argil: run failed: .*tick \d+")
         self.assertIn("tet", error)
@@ -164,6 +164,28 @@ class ExitCodes(unittest.TestCase):
             self.assertEqual([frame.attrs["tick"] for frame in frames], [ticks, ticks])
             for name in ("position", "plastic_strain"):
                 self.assertTrue((frames[0][name][()] == frames[1][name][()]).all(), name)
+
+    def test_0_without_strict_the_run_goes_on_and_says_what_was_limited(self):
+        bound = ["--set", "/dynamics/min_volume_ratio=0.9"]
+        code, _, error = self.call("run", "scene.json", "-o", "out.h5", *bound)
+        self.assertEqual(code, 0, error)
+        self.assertRegex(error, r"argil: note: the motion of up to \d+ tets? was limited in \d+ steps?")
+        complete, last, _ = self.read_ends("out.h5")
+        self.assertTrue(complete)
+        with h5py.File(self.folder / "out.h5") as file:
+            limited = file["physics/limited_tets"][()]
+            self.assertGreater(file["physics/min_volume_ratio"][()].min(), 0.9)
+            self.assertGreaterEqual(file["physics/limited_tet"][()][limited > 0].min(), 0)
+            self.assertEqual(file["physics/limited_tet"][()][limited == 0].max(), -1)
+            self.assertEqual(limited[0], 0)
+            self.assertGreater(limited.max(), 0)
+            first = file["physics/tick"][limited.argmax()]
+        self.assertIn(f"first in tick {first} ", error)
+        code, out, _ = self.call("info", "out.h5")
+        self.assertIn(f"first in tick {first} ", out)
+        code, _, error = self.call("run", "scene.json", "-o", "strict.h5", "--strict", *bound)
+        self.assertEqual(code, 3, error)
+        self.assertIn(f"tick {first},", error)
 
     def test_4_a_place_that_cannot_be_written(self):
         code, _, error = self.call("run", "scene.json", "-o", "no/such/folder/out.h5")

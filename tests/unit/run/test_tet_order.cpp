@@ -88,7 +88,7 @@ TEST_F(TetOrder, OfTheFileLeavesARunAsItIs) {
 
 TEST_F(TetOrder, OfTheFileIsThatOfMessages) {
   const auto find_element = [&](const mesh::TetMesh& mesh, const std::string& name) {
-    const auto [code, text] = run(mesh, name, {"/dynamics/min_volume_ratio=0.97"});
+    const auto [code, text] = run(mesh, name, {"/dynamics/min_volume_ratio=0.97", "/dynamics/strict=true"});
     EXPECT_EQ(code, run::kRunFailed) << text;
     const std::size_t at = text.find("element ");
     return at == std::string::npos ? -1 : std::stoi(text.substr(at + 8));

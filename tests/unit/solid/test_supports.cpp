@@ -35,7 +35,7 @@ TEST(FindConstraints, HoldsTheSameByNumberAsByPlace) {
   Support by_number;
   by_number.region.kind = Region::Kind::nodes;
   by_number.region.nodes = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-  for (const auto [kind, count] : {std::pair(ElementKind::p1, 9), std::pair(ElementKind::p2, 25)}) {
+  for (const auto& [kind, count] : {std::pair(ElementKind::p1, 9), std::pair(ElementKind::p2, 25)}) {
     const Elements elements = make_elements(mesh, topology, kind);
     const Constraints number = find_constraints(elements, {&by_number, 1});
     EXPECT_EQ(number.support, find_constraints(elements, {&by_place, 1}).support);
