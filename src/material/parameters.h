@@ -86,6 +86,10 @@ struct Plasticity {
   double max = 0.0;          ///< cap on the plastic strain norm [–]; 0: none
   bool deviatoric = true;    ///< flow keeps the volume
   FlowForm form = FlowForm::rate;
+  /// j2: by how much of itself the strength rises with every tenfold shear strain rate, above the rate at
+  /// which it was measured, √2 ‖ε̇_p‖ [1/s] (1 % a minute of a triaxial test). About a tenth [Einav2005].
+  double rate_growth = 0.0;
+  double reference_rate = 3e-4;
   StrainNorm norm = StrainNorm::frobenius;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/lanes.h"
 #include "base/mandel.h"
@@ -45,11 +46,26 @@ FlowRule make_flow_rule(const Plasticity& law, double step_s) {
     case FlowForm::j2:
       break;
   }
-  return {1.0, true};
+  return {1.0, true, law.rate_growth, law.reference_rate * step_s / kSqrt2};
 }
 
 double FlowRule::find_share(double norm, double yield) const {
-  return stops_at_yield ? std::min(most, 1.0 - yield / norm) : most;
+  if (!stops_at_yield) return most;
+  const double beyond = norm - yield;
+  if (growth == 0.0 || !(beyond > reference_flow)) return std::min(most, 1.0 - yield / norm);
+  // Δ + y a log₁₀(Δ/Δ₀) = norm − y. In u = ln(Δ/Δ₀) the left side is convex and rises, so that Newton's steps
+  // from above fall to the root.
+  constexpr int kMostSteps = 50;
+  const double slope = growth * yield / std::numbers::ln10;
+  double u = std::log(beyond / reference_flow);
+  double flow = beyond;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double next = u - (flow + slope * u - beyond) / (flow + slope);
+    if (!(next < u)) break;
+    u = next;
+    flow = reference_flow * std::exp(u);
+  }
+  return std::min(most, flow / norm);
 }
 
 double compute_yield_strain(const Plasticity& law, const Elastic& dry) {

@@ -18,10 +18,12 @@ struct FlowPoint {
 double compute_yield_strain(const Plasticity& law, const Elastic& dry);
 
 /// How much of the elastic strain flows in a step: `most` of it, or, where that is less and `stops_at_yield`,
-/// what is beyond the yield.
+/// what is beyond the yield. That may rise with the rate, y (1 + a max(0, log₁₀(‖Δε_p‖/Δ₀))) [Einav2005].
 struct FlowRule {
   double most = 1.0;  ///< [–]
   bool stops_at_yield = true;
+  double growth = 0.0;          ///< a, a decade
+  double reference_flow = 0.0;  ///< Δ₀, ‖Δε_p‖ of a step at the rate from which it rises
   double find_share(double norm, double yield) const;
 };
 FlowRule make_flow_rule(const Plasticity& law, double step_s);
@@ -37,7 +39,8 @@ FlowRule make_flow_rule(const Plasticity& law, double step_s);
 ///                  stops there; independent of how the time is cut
 ///   literal        f = c h, sensible for c h ≤ 1 only
 ///   j2             f = 1 − yield/‖ε_e‖ with the deviator and the Frobenius norm: von Mises's law without
-///                  hardening, tensile strength σ_y = √6 μ·yield, whatever the step
+///                  hardening, tensile strength σ_y = √6 μ·yield, whatever the step; with `rate_growth` it
+///                  rises with the rate
 /// Norm: `frobenius` √(ε:ε), the same in every frame; `voigt6`, the original's
 /// √(ε₁₁²+ε₂₂²+ε₃₃²+ε₂₃²+ε₁₃²+ε₁₂²) with tensor shears, which counts a shear by 1/√2 of what it counts when
 /// the axes are turned by 45°. Flow with a `drive` ends where it reaches the cap.

@@ -247,6 +247,11 @@ void bind_material(Binder& b, sim::Params& p) {
                                "Flow of 1 − e^{−c h} of the elastic strain, whose last step may pass the "
                                "yield norm; the same no further than to it, whatever the step; the literal "
                                "c h; or j2: radial return to the yield norm, rate independent.");
+  b.number("/material/plasticity/rate_growth_per_decade", y.rate_growth, between(0, 10), "",
+           "j2: by how much of itself the strength rises with every tenfold shear strain rate above "
+           "reference_rate_per_s; clays: 0.05 to 0.2. 0: rate independent.");
+  b.number("/material/plasticity/reference_rate_per_s", y.reference_rate, positive(), "1/s",
+           "j2: shear strain rate at which the strength was measured; below it, it is the same.");
   b.choice<material::StrainNorm>(
       "/material/plasticity/norm", y.norm,
       {{material::StrainNorm::frobenius, "frobenius"}, {material::StrainNorm::voigt6, "voigt6"}},

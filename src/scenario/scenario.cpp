@@ -349,6 +349,10 @@ void check_strength(const Scenario& s) {
 
 void check_plasticity(Scenario& s) {
   const material::Plasticity& law = s.params.plasticity;
+  if (law.rate_growth > 0.0 && law.form != material::FlowForm::j2)
+    throw InputError(s.file, "/material/plasticity/rate_growth_per_decade",
+                     "is given, but only the strength of j2 rises with the rate",
+                     "set /material/plasticity/form to j2, or leave it out");
   if (!law.enabled) return;
   check_strength(s);
   check_flow_of_model(s);

@@ -56,11 +56,10 @@ double PlasticFlow::apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, Te
 /// Of a law that lets them flow itself. Shape alone is released: μ V of the squares.
 double PlasticFlow::flow_by_law(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain) {
   double released[kLanes];
-  unsigned flowed =
-      find_law(m_params.solid.model)
-          .flow({m_solid.kinematics.strain().data(), plastic_strain.data(), m_solid.materials.yield().data(),
-                 m_rule.most, m_rule.stops_at_yield, m_solid.elastic.arrays()},
-                begin, end, released);
+  unsigned flowed = find_law(m_params.solid.model)
+                        .flow({m_solid.kinematics.strain().data(), plastic_strain.data(),
+                               m_solid.materials.yield().data(), m_rule, m_solid.elastic.arrays()},
+                              begin, end, released);
   m_is_flowing[static_cast<std::size_t>(begin / kLanes)] = flowed != 0;
   double dissipated = 0.0;
   for (; flowed != 0; flowed &= flowed - 1) {

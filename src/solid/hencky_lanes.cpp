@@ -99,9 +99,11 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
   const Lanes flows = norm > yield ? one : zero;
   if (!any(flows)) return 0;
   const Lanes beyond = 1.0 - yield / (flows != 0.0 ? norm : one);
-  Lanes share = zero + points.most;
-  if (points.stops_at_yield) share = beyond < share ? beyond : share;
+  Lanes share = zero + points.rule.most;
+  if (points.rule.stops_at_yield) share = beyond < share ? beyond : share;
   share = flows != 0.0 ? share : zero;
+  for (int lane = 0; points.rule.growth > 0.0 && lane < kLanes; ++lane)
+    if (share[lane] > 0.0) share[lane] = points.rule.find_share(norm[lane], yield[lane]);
 
   // exp(−2 E_p) = S⁻¹ b S⁻¹ of the b that is left; its logarithm from what it is over 1, which keeps small
   // strains.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "material/plasticity.h"
 #include "solid/tet_lanes.h"
 
 namespace argil::solid {
@@ -17,8 +18,7 @@ struct FlowArrays {
   const double* strain = nullptr;    ///< S − 1, Mandel, 6 a point
   double* plastic_strain = nullptr;  ///< E_p, 6 a point
   const double* yield = nullptr;     ///< ‖dev ε‖ at which a point flows, 1 a point
-  double most = 1.0;                 ///< largest share of the deviator that flows
-  bool stops_at_yield = true;        ///< no more flows than what is beyond the yield
+  material::FlowRule rule = {};      ///< how much of the deviator flows
   ElasticArrays elastic = {};        ///< before the flow
 };
 

@@ -266,6 +266,20 @@ TEST(J2Flow, FollowsAUniaxialCycleBetweenPlusAndMinusTheTensileStrength) {
   }
 }
 
+TEST(J2Flow, StopsWhereTheStrengthOfItsOwnRateIsReached) {
+  // From the flow that is wanted to the norm that it takes: ‖ε_e‖ = Δ + y (1 + a log₁₀(Δ/Δ₀)).
+  const FlowRule rule{1.0, true, 0.15, 1e-7};
+  for (const double yield : {1e-6, 1e-3, 0.3})
+    for (const double flow : {1.001e-7, 1e-6, 1e-4, 0.02, 3.0}) {
+      const double norm = flow + yield * (1.0 + rule.growth * std::log10(flow / rule.reference_flow));
+      EXPECT_NEAR(norm * rule.find_share(norm, yield), flow, 1e-12 * (flow + yield)) << yield << ' ' << flow;
+    }
+  // Slower it is rate independent, to the bit, and the strength has no jump where the rate begins to count.
+  const FlowRule independent;
+  EXPECT_EQ(rule.find_share(0.1 + 0.5e-7, 0.1), independent.find_share(0.1 + 0.5e-7, 0.1));
+  EXPECT_NEAR(rule.find_share(0.1 + 1.0001e-7, 0.1), independent.find_share(0.1 + 1e-7, 0.1), 1e-9);
+}
+
 TEST(J2Flow, ASecondUpdateIsNone) {
   const Vec6 strain = make_strain(6, 0.3);
   const Vec6 once = compute_plastic_strain(strain, Vec6::Zero(), {kYield}, make_j2(), 0.0);

@@ -166,7 +166,7 @@ class ExitCodes(unittest.TestCase):
                 self.assertTrue((frames[0][name][()] == frames[1][name][()]).all(), name)
 
     def test_0_without_strict_the_run_goes_on_and_says_what_was_limited(self):
-        bound = ["--set", "/dynamics/min_volume_ratio=0.9"]
+        bound = ["--set", "/dynamics/min_volume_ratio=0.99"]
         code, _, error = self.call("run", "scene.json", "-o", "out.h5", *bound)
         self.assertEqual(code, 0, error)
         self.assertRegex(error, r"argil: note: the motion of up to \d+ tets? was limited in \d+ steps?")
@@ -174,7 +174,7 @@ class ExitCodes(unittest.TestCase):
         self.assertTrue(complete)
         with h5py.File(self.folder / "out.h5") as file:
             limited = file["physics/limited_tets"][()]
-            self.assertGreater(file["physics/min_volume_ratio"][()].min(), 0.9)
+            self.assertGreater(file["physics/min_volume_ratio"][()].min(), 0.99)
             self.assertGreaterEqual(file["physics/limited_tet"][()][limited > 0].min(), 0)
             self.assertEqual(file["physics/limited_tet"][()][limited == 0].max(), -1)
             self.assertEqual(limited[0], 0)

@@ -31,6 +31,7 @@ struct Point {
   double yield = 0.0;
   double dissipated = 0.0;  ///< [J/m³]
   double least_loss = 0.0;  ///< of any step
+  material::FlowRule rule;
 
   Point() {
     material::Plasticity law;
@@ -50,7 +51,7 @@ struct Point {
     const PointMotion m = motion();
     const Vec6 strain = compute_strain(m.F, m.R);
     double released[8] = {};
-    flow_by_hencky({strain.data(), plastic_strain.data(), &yield}, 0, 1, released);
+    flow_by_hencky({strain.data(), plastic_strain.data(), &yield, rule}, 0, 1, released);
     dissipated += kMu * released[0];
     least_loss = std::min(least_loss, released[0]);
   }
@@ -91,6 +92,28 @@ TEST(HenckyFlow, ShearedByThreeHundredPercentItBearsItsShearStrength) {
   const Mat3 F_p = from_mandel(point.plastic_strain).exp();
   EXPECT_NEAR(F_p.determinant(), 1.0, 1e-12);
   EXPECT_EQ(point.least_loss, 0.0);
+}
+
+TEST(HenckyFlow, ShearedFasterItIsAsMuchStrongerAsThereAreDecades) {
+  // [Einav2005]: c_u (1 + a log₁₀(γ̇/γ̇₀)) in steady shear, where all of γ̇ is plastic; c_u at γ̇₀ and below.
+  material::Plasticity law;
+  law.form = material::FlowForm::j2;
+  law.rate_growth = 0.12;
+  law.reference_rate = 0.02;
+  constexpr double kShear = 0.4, kPerStep = 1e-3;
+  for (const double decades : {-2.0, 0.0, 0.5, 1.0, 3.0, 6.0}) {
+    Point point;
+    const double step_s = kPerStep / (law.reference_rate * std::pow(10.0, decades));
+    point.rule = material::make_flow_rule(law, step_s);
+    Mat3 F = Mat3::Identity();
+    while (F(0, 1) < kShear) {
+      F(0, 1) += kPerStep;
+      point.move_to(F);
+    }
+    const double strength = kStrength * (1.0 + law.rate_growth * std::max(0.0, decades));
+    EXPECT_NEAR(point.true_stress()(0, 1), strength, 3e-3 * strength) << decades;  // elastic strain is finite
+    EXPECT_EQ(point.least_loss, 0.0);
+  }
 }
 
 TEST(HenckyFlow, DoesNotFeelATurnOfTheWhole) {

@@ -198,7 +198,7 @@ TEST(HenckyLanes, FlowTakesTheShareThatItIsGiven) {
   const TensorField before = tets.plastic;
   double released[kLanes];
   each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    flow_by_hencky({tets.strain.data(), tets.plastic.data(), tets.yield.data(), 0.3, false}, begin, end,
+    flow_by_hencky({tets.strain.data(), tets.plastic.data(), tets.yield.data(), {0.3, false}}, begin, end,
                    released);
   });
   for (int t = 0; t < kTets; ++t) {
