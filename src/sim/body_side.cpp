@@ -10,10 +10,22 @@
 
 namespace argil::sim {
 
+namespace {
+
+/// Of one linearisation: Newton's iteration asks for the forces at held plastic strain.
+solid::SolidParams make_solid_params(const Params& params) {
+  solid::SolidParams solid = params.solid;
+  solid.flows_in_solve = params.plasticity.enabled && params.plasticity.form == material::FlowForm::j2 &&
+                         solid.iteration == solid::Iteration::one;
+  return solid;
+}
+
+}  // namespace
+
 BodySide::BodySide(Body body, const Params& params)
     : m_params(params),
       m_body(std::move(body)),
-      m_solid(m_body.mesh, m_body.topology, m_body.supports, params.solid, params.threads),
+      m_solid(m_body.mesh, m_body.topology, m_body.supports, make_solid_params(params), params.threads),
       m_region(m_solid, restricts_to_region(params, m_body.supports, m_solid.model.num_free())),
       m_water(m_body.mesh, m_body.topology, params.water, m_body.initial_saturation, params.threads),
       m_surface(params.contact_surface, params.contact.law, m_body, m_solid.model.elements),

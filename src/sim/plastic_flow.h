@@ -22,9 +22,11 @@ class PlasticFlow {
   bool is_anywhere() const { return m_is_anywhere; }  ///< in the last step
   /// Of each run of kLanes points, in the last step.
   const std::vector<char>& is_flowing() const { return m_is_flowing; }
-  void commit() { m_was_anywhere = m_is_anywhere; }
-  void roll_back() { m_is_anywhere = m_was_anywhere; }
-  void serialize(Archive& archive) { archive.number("flow/is_anywhere", m_is_anywhere); }
+  /// The same, or in the step before.
+  const std::vector<char>& flows_or_did() const { return m_flows_or_did; }
+  void commit();
+  void roll_back();
+  void serialize(Archive& archive);
 
  private:
   bool is_flowing_anywhere() const;
@@ -40,7 +42,7 @@ class PlasticFlow {
   solid::PlasticSplit m_split;
   material::FlowRule m_rule;
   bool m_is_anywhere = false, m_was_anywhere = false;
-  std::vector<char> m_is_flowing;
+  std::vector<char> m_is_flowing, m_was_flowing, m_flows_or_did;
 };
 
 }  // namespace argil::sim

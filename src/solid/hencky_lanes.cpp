@@ -139,6 +139,35 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
   return flowed;
 }
 
+namespace {
+
+/// Perfectly plastic flow takes what a change of ε along dev ε_e would add to the stress, 2μ n nᵀ with n =
+/// dev ε_e over its norm: of tets at their yield. Not quite all of it, so that the tangent stays positive.
+ARGIL_INLINE void set_spent(const TangentArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end,
+                            const ElasticStretch<Lanes>& stretch, const Lanes& mu,
+                            PrincipalTangent<Lanes>& tangent) {
+  constexpr double kMost = 0.98;
+  constexpr double kAtYield = 1.0 - 1e-6;
+  const Lanes zero = {};
+  Lanes yield, squares = {}, deviator[3];
+  read_lanes<1>(tets.yield, begin, end - 1, &yield);
+  for (int i = 0; i < 3; ++i) {
+    deviator[i] = stretch.logarithm[i] - stretch.trace / 3.0;
+    squares += deviator[i] * deviator[i];
+  }
+  const Lanes flows = squares >= kAtYield * kAtYield * (yield * yield) ? zero + 1.0 : zero;
+  if (!any(flows)) return;
+  Lanes least = tangent.normal[0];
+  for (int i = 1; i < 3; ++i) least = tangent.normal[i] < least ? tangent.normal[i] : least;
+  least = least < zero ? zero : least;
+  least = 2.0 * mu < least ? 2.0 * mu : least;
+  Lanes size;
+  set_root(size, kMost * least / (flows != 0.0 ? squares : zero + 1.0));
+  for (int i = 0; i < 3; ++i) tangent.spent[i] = flows != 0.0 ? size * deviator[i] : zero;
+}
+
+}  // namespace
+
 ARGIL_EVERY_PROCESSOR void compute_hencky_stiffness(const TangentArrays& tets, std::ptrdiff_t begin,
                                                     std::ptrdiff_t end) {
   TangentLanes lanes;
@@ -151,6 +180,7 @@ ARGIL_EVERY_PROCESSOR void compute_hencky_stiffness(const TangentArrays& tets, s
   for (int i = 0; i < 3; ++i) tau[i] = 2.0 * lanes.mu * stretch.logarithm[i] + lanes.lambda * stretch.trace;
   PrincipalTangent<Lanes> tangent;
   set_principal_tangent(stretch, lanes.mu, tau, tangent);
+  if (tets.yield) set_spent(tets, begin, end, stretch, lanes.mu, tangent);
   write_pair_blocks(tets, begin, end, lanes, stretch.N, lanes.lambda, tangent);
 }
 

@@ -118,10 +118,20 @@ double Kinematics::find_least_of_groups(const std::vector<int>* batches) {
 
 void Kinematics::drop_frame(int tet) {
   if (m_frame.size() == 0) return;
+  keep_committed_frame(tet);
+  m_frame.middleCols<3>(3 * static_cast<Eigen::Index>(tet)).setZero();
+}
+
+void Kinematics::renew_frame(int tet) {
+  if (m_frame.size() == 0 || !m_has_deformed_frames) return;
+  keep_committed_frame(tet);
+  m_frame.middleCols<3>(3 * static_cast<Eigen::Index>(tet)) = at(tet).F;
+}
+
+void Kinematics::keep_committed_frame(int tet) {
   const Eigen::Index first = 3 * static_cast<Eigen::Index>(tet);
   if (has_lag() && m_changed_frames.set(static_cast<std::size_t>(tet)))
     m_committed_frame.middleCols<3>(first) = m_frame.middleCols<3>(first);
-  m_frame.middleCols<3>(first).setZero();
 }
 
 void Kinematics::roll_back(const Eigen::Matrix3Xd& gradient) {

@@ -32,6 +32,8 @@ class Kinematics {
   void update(const Elements& elements, const Eigen::Matrix3Xd& gradient, const Points& x, const Update& how);
   /// A tet's frame is made anew at the next update.
   void drop_frame(int tet);
+  /// A frame that is F becomes that of the last update.
+  void renew_frame(int tet);
 
   PointMotion at(int point) const;
   const Eigen::Matrix3Xd& rotation() const { return m_rotation; }  ///< R, 3 columns a point
@@ -58,6 +60,7 @@ class Kinematics {
                 const Update& how);
   void set_quadratic(const Elements& elements, const Eigen::Matrix3Xd& gradient, const Points& x,
                      bool keeps_frames);
+  void keep_committed_frame(int tet);
   double find_least_of_groups(const std::vector<int>* batches);
 
   StrainModel m_model;

@@ -31,8 +31,10 @@ void note_flow(Body& body, const std::vector<char>& is_flowing) {
     if (is_flowing[run] == 0) continue;
     body.elastic.forget(static_cast<std::ptrdiff_t>(run));
     const std::size_t first = kLanes * run;
-    for (std::size_t t = first; t < std::min(first + kLanes, num_tets); ++t)
+    for (std::size_t t = first; t < std::min(first + kLanes, num_tets); ++t) {
       body.system.is_tet_changed[t] = 1;
+      if (body.model.params.flows_in_solve) body.kinematics.renew_frame(static_cast<int>(t));
+    }
   }
 }
 

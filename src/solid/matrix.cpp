@@ -47,7 +47,8 @@ void set_pairs(Body& body, const Part& part, bool all) {
                            body.materials.mu().data(),
                            share.exact,
                            share.kept,
-                           system.pairs.data()};
+                           system.pairs.data(),
+                           body.model.params.flows_in_solve ? body.materials.yield().data() : nullptr};
   const auto set = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     const auto first = system.is_tet_changed.begin() + begin, last = system.is_tet_changed.begin() + end;
     if (all || std::find(first, last, char{1}) != last)

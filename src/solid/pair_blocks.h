@@ -57,6 +57,7 @@ ARGIL_INLINE void write_blocks(const Lanes* blocks, std::ptrdiff_t begin, std::p
 struct PairBlock {
   const PrincipalTangent<Lanes>& tangent;
   const Lanes& lambda;
+  bool flows;
   bool has_kept;
   const Lanes& kept_lambda;
   const Lanes& kept_mu;
@@ -73,6 +74,9 @@ struct PairBlock {
       block.m[3 * b + a] += tangent.coupling[k] * (gi[b] * gj[a]);
       block.m[3 * a + b] += tangent.coupling[k] * (gi[a] * gj[b]);
     }
+    for (int s = 0; flows && s < 3; ++s)
+      for (int r = 0; r < 3; ++r)
+        block.m[3 * s + r] -= (tangent.spent[r] * gi[r]) * (tangent.spent[s] * gj[s]);
     if (!has_kept) return;
     const Lanes dot = kept_mu * (ci[0] * cj[0] + ci[1] * cj[1] + ci[2] * cj[2]);
     for (int s = 0; s < 3; ++s)
@@ -127,7 +131,14 @@ ARGIL_INLINE void write_pair_blocks(const TangentArrays& tets, std::ptrdiff_t be
   turn(inverse, gradient, moved);
   turn_back(N, moved, g);
   turn_back(N, gradient, c);
-  const PairBlock pair{tangent, exact_lambda, tets.kept != 0.0, kept_lambda, kept_mu};
+  bool flows = false;
+  Lanes root;
+  set_root(root, exact);
+  for (int k = 0; k < 3; ++k) {
+    tangent.spent[k] *= root;
+    flows = flows || any(tangent.spent[k]);
+  }
+  const PairBlock pair{tangent, exact_lambda, flows, tets.kept != 0.0, kept_lambda, kept_mu};
   Lanes blocks[9 * kPairBlocks];
   int place = 0;
   for (int i = 0; i < 3; ++i)

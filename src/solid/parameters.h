@@ -42,7 +42,9 @@ struct SolidParams {
   linear::SolverParams solver;
   double region_tolerance =
       1e-3;  ///< of an active region: speed over the fastest node's below which nodes stay where they are
-  bool implicit_contact = true;   ///< contact stiffness enters the implicit solve
+  bool implicit_contact = true;  ///< contact stiffness enters the implicit solve
+  /// Tets whose law splits flow off by logarithms and that are at their yield resist a step as they flow.
+  bool flows_in_solve = false;
   double min_volume_ratio = 0.0;  ///< det F at or below which the run stops
   /// Does a step in time solve for its contacts' forces?
   bool solves_contact() const { return implicit_contact && integrator != Integrator::symplectic_euler; }

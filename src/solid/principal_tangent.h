@@ -26,6 +26,7 @@ struct PrincipalTangent {
   Real normal[3];  ///< what is added to λ on the diagonal: the shear part of ∂τᵢ/∂ln λᵢ, less τᵢ
   Real own[3], next[3];  ///< w + τ_b and w + τ_a of the planes (a, b) = 23, 13, 12
   Real coupling[3];      ///< w = ½(bᵢ + bⱼ)(τᵢ − τⱼ)/(bᵢ − bⱼ) − ½(τᵢ + τⱼ)
+  Real spent[3] = {};    ///< s: flow takes s sᵀ off the diagonal's 3×3
 
   void set_plane(int k, const Real& w, const Real& tau_a, const Real& tau_b) {
     coupling[k] = w;

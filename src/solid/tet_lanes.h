@@ -114,6 +114,7 @@ struct TangentArrays {
   double exact = 1.0;                      ///< how often ∂²W/∂x² enters, its negative modes left out
   double kept = 0.0;                       ///< and the stiffness of the shape at rest, turned by R
   double* blocks = nullptr;                ///< kPairBlocks 3×3 a tet, of the pairs of its corners
+  const double* yield = nullptr;           ///< ‖dev ε_e‖ at which a tet flows; null: none does
 };
 
 /// What rows of the matrix are gathered from where each tet's stiffness is known.

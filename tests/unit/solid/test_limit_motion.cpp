@@ -45,7 +45,7 @@ struct Scene {
 TEST(MotionLimiter, LeavesToTheBitAMotionThatTurnsNothingInsideOut) {
   Scene scene(make_tet());
   scene.state.x.array() += 1e3;
-  scene.state.x(2, 3) -= 0.94;
+  scene.state.x(2, 3) -= 0.49;
   scene.state.v.setConstant(7.0);
   const SolidState before = scene.state;
   const MotionLimit limit = scene.limit();
@@ -56,10 +56,9 @@ TEST(MotionLimiter, LeavesToTheBitAMotionThatTurnsNothingInsideOut) {
 }
 
 TEST(MotionLimiter, HalvesTheWayUntilTheTetIsThickEnough) {
-  // Height 1 − d s ≥ 0.05 with s = ½, ¼, …
-  for (const auto& [way, share] :
-       {std::pair(0.96, 0.5), std::pair(1.5, 0.5), std::pair(1.89, 0.5), std::pair(1.91, 0.25),
-        std::pair(3.0, 0.25), std::pair(100.0, 1.0 / 128.0)}) {
+  // The way down is the deformation of the step: d s ≤ ½ with s = ½, ¼, …
+  for (const auto& [way, share] : {std::pair(0.51, 0.5), std::pair(0.99, 0.5), std::pair(1.01, 0.25),
+                                   std::pair(1.9, 0.25), std::pair(100.0, 1.0 / 256.0)}) {
     Scene scene(make_tet());
     scene.state.x(2, 3) -= way;
     scene.state.v(2, 3) = -8.0;
@@ -75,9 +74,22 @@ TEST(MotionLimiter, HalvesTheWayUntilTheTetIsThickEnough) {
 
 TEST(MotionLimiter, KeepsToTheBoundOfTheParameters) {
   Scene scene(make_tet(), {}, 0.6);
-  scene.state.x(2, 3) -= 0.6;  // a quarter of it leaves 0.85, a half 0.7, all of it 0.4
+  scene.state.x(2, 3) -= 0.6;  // a half of it leaves 0.7, all of it 0.4
   scene.limit();
   EXPECT_DOUBLE_EQ(scene.state.x(2, 3), 0.7);
+}
+
+TEST(MotionLimiter, LetsAFlatTetGrowNoFlatterThanATwentieth) {
+  Scene scene(make_tet());
+  for (const double height : {0.6, 0.4, 0.3, 0.2, 0.14, 0.1, 0.08}) {
+    scene.state.x(2, 3) = height;  // each by less than a half
+    scene.limit();
+    EXPECT_EQ(scene.state.x(2, 3), height);
+    set_start(scene.body, scene.region, scene.state);
+  }
+  scene.state.x(2, 3) = 0.045;
+  scene.limit();
+  EXPECT_DOUBLE_EQ(scene.state.x(2, 3), 0.0625);
 }
 
 TEST(MotionLimiter, KeepsNodesWhereTheyWereWhoseMotionIsNoNumberOrTooLong) {
@@ -102,16 +114,16 @@ TEST(MotionLimiter, HoldsNoPrescribedComponentBack) {
   Scene scene(test::make_block(1, 1, 2, Vec3(1, 1, 2)), {top});
   Points& x = scene.state.x;
   for (Eigen::Index n = 0; n < x.cols(); ++n) {
-    if (x(2, n) == 2.0) x(2, n) = 1.5;
+    if (x(2, n) == 2.0) x(2, n) = 1.8;
     if (x(2, n) == 1.0) x(2, n) = 1.6;
   }
   EXPECT_GT(scene.limit().num_tets, 0);
   for (Eigen::Index n = 0; n < x.cols(); ++n) {
     if (scene.body.committed.x(2, n) == 2.0) {
-      EXPECT_EQ(x(2, n), 1.5);
+      EXPECT_EQ(x(2, n), 1.8);
     }
     if (scene.body.committed.x(2, n) == 1.0) {
-      EXPECT_EQ(x(2, n), 1.3);
+      EXPECT_DOUBLE_EQ(x(2, n), 1.3);
     }
   }
 }
