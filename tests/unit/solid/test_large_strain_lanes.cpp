@@ -182,6 +182,7 @@ TEST(HenckyStiffness, OfTetsAtTheirYieldIsThatOfClayThatFlows) {
     tets.F.middleCols<3>(3 * t) = make_motion_of(rng, 0.04);
     tets.plastic.col(t).setZero();
     tets.yield(t) = 0.02;
+    tets.lambda(t) = tets.mu(t);
     Vec6 plastic = tets.plastic.col(t);
     ASSERT_TRUE(flow(t, tets.F.middleCols<3>(3 * t), plastic));
     tets.plastic.col(t) = plastic;
