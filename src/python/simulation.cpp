@@ -154,7 +154,8 @@ py::dict list_physics(const sim::PhysicsRecord& r) {
                   "newton_iterations"_a = r.newton_iterations, "iterations"_a = r.iterations,
                   "factorisations"_a = r.factorisations, "residual"_a = r.residual,
                   "active_nodes"_a = r.active_nodes, "min_volume_ratio"_a = r.min_volume_ratio,
-                  "max_plastic_strain"_a = r.max_plastic_strain);
+                  "max_plastic_strain"_a = r.max_plastic_strain, "limited_tets"_a = r.limited_tets,
+                  "limited_tet"_a = r.limited_tet);
 }
 
 /// As in /mesh of a result.

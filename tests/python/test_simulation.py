@@ -226,12 +226,12 @@ class Failures(Folder):
     def setUp(self):
         super().setUp()
         # The tool goes through the ball: some tet is crushed below nine tenths of its volume.
-        self.scene = argil.load(BALL, set={"/dynamics/min_volume_ratio": 0.9})
+        self.scene = argil.load(BALL, set={"/dynamics/min_volume_ratio": 0.9, "/dynamics/strict": True})
 
     def test_a_run_that_fails_says_where(self):
         with self.assertRaises(argil.RunFailed) as caught:
             self.scene.run(self.file("a.h5"))
-        said = call("run", BALL, "--set", "/dynamics/min_volume_ratio=0.9", "-o", self.file("b.h5"), "--quiet", code=3)
+        said = call("run", BALL, "--strict", "--set", "/dynamics/min_volume_ratio=0.9", "-o", self.file("b.h5"), "--quiet", code=3)
         self.assertEqual(f"argil: {caught.exception}\n", said)
         self.assertEqual((caught.exception.stage, caught.exception.bound), ("solid", 0.9))
         with argil.open(self.file("a.h5")) as result:
