@@ -33,7 +33,8 @@ class BodySide {
 
   /// One physics step under `load`, after the water's when that is due. Called by Simulation::start_step and
   /// live::StepMailbox::make, which then commit it, or roll it back where it failed. Also a step that fails
-  /// has a result. One that is not strict does not fail (`limited()`).
+  /// has a result. One that is not strict does not fail, but may be limited
+  /// (PhysicsRecord::limited_tets).
   StepStatus step(const ContactLoad& load, StepResult& result);
   void commit();
   /// Materials go back before the solid, which needs their moduli, sizes and masses; the rest in any order.
@@ -42,8 +43,6 @@ class BodySide {
   StepStatus find_equilibrium();
 
   const BodyState& state() const { return m_state; }
-  /// How the last step's motion was limited; all tets: the whole body's was, or the step was not made.
-  const solid::MotionLimit& limited() const { return m_limit; }
   const Body& body() const { return m_body; }
   const ContactSurface& surface() const { return m_surface; }
   const solid::Body& solid() const { return m_solid; }
@@ -114,7 +113,7 @@ class BodySide {
   PlasticFlow m_flow;
   Economy m_economy;
   solid::MotionLimiter m_limiter;
-  solid::MotionLimit m_limit;      // of the last step
+  solid::MotionLimit m_limit;      // of the last step; all tets: of the whole body, or the step was not made
   bool m_has_moved_water = false;  // since the last commit, as is the next
   bool m_has_begun_solid = false;
   StageObserver* m_observer = nullptr;
