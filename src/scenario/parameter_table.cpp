@@ -257,11 +257,13 @@ void bind_material(Binder& b, sim::Params& p) {
       {{material::StrainNorm::frobenius, "frobenius"}, {material::StrainNorm::voigt6, "voigt6"}},
       "Norm of strain; voigt6 depends on the axes.");
   material::ClayKernel& k = p.kernel;
-  b.choice<material::KernelForm>("/material/clay_kernel/form", k.form,
-                                 {{material::KernelForm::rate, "rate"},
-                                  {material::KernelForm::per_step, "per_step"},
-                                  {material::KernelForm::off, "off"}},
-                                 "G_d^{h/h_ref} (step independent), G_d a step (the paper), or none; eq. 9.");
+  b.choice<material::KernelForm>(
+      "/material/clay_kernel/form", k.form,
+      {{material::KernelForm::rate, "rate"},
+       {material::KernelForm::per_step, "per_step"},
+       {material::KernelForm::off, "off"}},
+      "G_d^{h/h_ref} (step independent), G_d a step (the paper), or none; eq. 9. Where it is not given: rate "
+      "if one of its constants is.");
   b.number("/material/clay_kernel/k1_per_m", k.k1, not_negative(), "1/m", "k₁ of eq. 9.");
   b.number("/material/clay_kernel/k2_per_m", k.k2, not_negative(), "1/m", "k₂ of eq. 9.");
   b.number("/material/clay_kernel/radius_m", k.radius, not_negative(), "m",

@@ -79,6 +79,9 @@ void choose_model(Scenario& s, const Json& document) {
   const bool has_pairs = document.value(Json::json_pointer("/contact/law"), Json()) == "pairs";
   const bool has_cells =
       s.body.kind == BodyKind::mesh || document.contains(Json::json_pointer("/body/surface/cage"));
+  const Json kernel = document.value(Json::json_pointer("/material/clay_kernel"), Json::object());
+  for (const char* key : {"k1_per_m", "k2_per_m", "radius_m"})  // whose constants are given, it is meant
+    if (kernel.is_object() && kernel.contains(key)) s.params.kernel.form = material::KernelForm::rate;
   if (has_strength) s.params.plasticity.form = material::FlowForm::j2;
   if (has_strength) s.params.solid.model = solid::StrainModel::hencky;
   if (has_cells || s.mode != Mode::dynamic || has_pairs) return;
@@ -437,6 +440,7 @@ Scenario::Scenario() {
   params.contact.law = contact::ContactLaw::pressure;
   params.contact_surface = sim::SurfaceKind::automatic;
   params.is_strict = false;
+  params.kernel.form = material::KernelForm::off;
 }
 
 Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings) {

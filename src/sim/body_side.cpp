@@ -68,6 +68,7 @@ BodyBetweenSteps BodySide::between_steps(Tick tick) {
 
 StepStatus BodySide::step(const ContactLoad& load, StepResult& result) {
   const StepStatus status = make_step(load, result);
+  result.is_limited = m_limit.num_tets > 0;
   if (status.is_ok() || m_params.is_strict) return status;
   hold_still(load, status.failure(), result);
   return StepStatus::ok();

@@ -2,6 +2,8 @@
 
 #include "sim/hand_side.h"
 
+#include <numbers>
+
 #include "sim/body_side.h"
 
 namespace argil::sim {
@@ -38,6 +40,9 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
       params.rates.physics_period_ticks > 1)
     m_between.emplace(params.rates, params.solid.takes_contact_at_end() ? 0.0 : 0.5);
   m_unpressed.with_touched = false;
+  const Field& moduli = body.body().youngs_modulus;
+  const double modulus = moduli.size() > 0 ? moduli.maxCoeff() : params.elastic.youngs_modulus;
+  m_most_force = modulus * std::numbers::pi * tool.vertices.colwise().squaredNorm().maxCoeff();
   begin_at(start);
 }
 
@@ -72,7 +77,17 @@ void HandSide::prepare_detection(const Points& x) {
     m_detector.prepare(x, m_state.tool);
 }
 
+/// No tool is pressed back with more than the clay's modulus over all that it shows.
+void HandSide::limit_force(device::Wrench& felt) const {
+  if (!felt.force.allFinite() || !felt.torque.allFinite()) felt = {};
+  if (felt.force.norm() <= m_most_force) return;
+  const double share = m_most_force / felt.force.norm();
+  felt.force *= share;
+  felt.torque *= share;
+}
+
 void HandSide::receive(StepResult& result) {
+  if (result.is_limited) limit_force(result.felt);
   if (!m_state.has_felt_anew && !result.is_held) {
     m_state.hand_force = result.felt.force;
     m_state.hand_torque = result.felt.torque;

@@ -108,6 +108,7 @@ class HandSide {
   void find_contacts(int ticks);
   bool finds_same_contacts();
   void gather_contact_forces();
+  void limit_force(device::Wrench& felt) const;
   // snapshot.cpp, as serialize()
   void serialize_contacts(Archive& archive);
   void serialize_springs(Archive& archive);
@@ -128,6 +129,7 @@ class HandSide {
   contact::Contacts m_unpressed;                       // with the surface as if it had kept its shape
   contact::Pose m_told_tool;                           // where the present detection began
   device::Wrench m_felt;                               // in the present tick, where a step begins
+  double m_most_force = 0.0;                           // [N] from a step of limited motion
   bool m_has_met_surface = false;                      // m_pressure knows where the surface is now
   int m_still_detections = 0;  // in a row, in which neither tool nor surface had moved
   LoadCollector m_collector;

@@ -18,6 +18,8 @@ struct StepResult {
   Points surface_x;  ///< places of all vertices of the touched surface, or of these [m], where it has moved
   device::Wrench felt;  ///< what the hand felt, less what the body's deflection has taken from it
 
+  bool is_limited = false;  ///< motion was held back: `felt` is that of the step that was solved for
+
   Vec3 friction = Vec3::Zero();  ///< [N] part of that force: of a pressure's friction
 
   std::vector<contact::StiffnessOfTriangle> stiffness;  ///< where the water has changed it: pressure law

@@ -84,6 +84,9 @@ ARGIL_EVERY_PROCESSOR double compute_hencky_energy(const ForceArrays& tets, std:
 
 ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptrdiff_t begin,
                                               std::ptrdiff_t end, double* released) {
+  // Stretches of F_p are e^±8 then, whose squares are as far apart as numbers have digits. Clay is elastic
+  // beyond.
+  constexpr double kMostPlastic = 8.0;
   const std::ptrdiff_t last = end - 1;
   const Lanes zero = {};
   const Lanes one = zero + 1.0;
@@ -128,6 +131,10 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
   set_half_logarithm(excess, plastic);
   const Lanes trace = (plastic[0] + plastic[1] + plastic[2]) / 3.0;  // what rounding left
   for (int k = 0; k < 6; ++k) plastic[k] = -(k < 3 ? plastic[k] - trace : kSqrt2 * plastic[k]);
+  Lanes plastic_squares = {};
+  for (int k = 0; k < 6; ++k) plastic_squares += plastic[k] * plastic[k];
+  const Lanes is_written = plastic_squares <= kMostPlastic * kMostPlastic ? one : zero;
+  share = is_written != 0.0 ? share : zero;
   const Lanes loss = squares - (1.0 - share) * (1.0 - share) * squares;
   unsigned flowed = 0;
   for (int lane = 0; lane < static_cast<int>(end - begin); ++lane) {

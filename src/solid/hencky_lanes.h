@@ -23,7 +23,7 @@ struct FlowArrays {
 };
 
 /// Radial return of points begin … end−1, at most kLanes of them, at held F; bit p − begin is set where p
-/// flowed. released: ‖dev ε‖² that each loses.
+/// flowed. released: ‖dev ε‖² that each loses. No point flows to ‖E_p‖ > 8.
 unsigned flow_by_hencky(const FlowArrays& points, std::ptrdiff_t begin, std::ptrdiff_t end, double* released);
 
 /// Their stiffness.

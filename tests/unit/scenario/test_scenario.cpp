@@ -152,6 +152,13 @@ TEST_F(ScenarioFile, SetTakesNumbersWordsAndLists) {
   EXPECT_FALSE(s.params.solid.implicit_contact);
 }
 
+TEST_F(ScenarioFile, HasNoClayKernelUnlessOneIsAskedFor) {
+  EXPECT_EQ(load({"/material/clay_kernel={}"}).params.kernel.form, material::KernelForm::off);
+  EXPECT_EQ(load({R"(/material/clay_kernel={"k1_per_m": 2, "radius_m": 0.04})"}).params.kernel.form,
+            material::KernelForm::rate);
+  expect_refused(R"(/material/clay_kernel={"k1_per_m": 2})", {"/material/clay_kernel/radius_m: is 0"});
+}
+
 TEST_F(ScenarioFile, LaterSetWins) {
   EXPECT_EQ(load({"/water/porosity=0.3", "/water/porosity=0.35"}).params.water.porosity, 0.35);
 }

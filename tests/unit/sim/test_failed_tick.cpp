@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "contact/tool_shape.h"
 #include "sim/simulation.h"
@@ -152,6 +153,24 @@ TEST_P(FailedTick, IsMadeAsFarAsItCanBeWhereTheRunIsNotStrict) {
   for (; tick < kBefore + kAfter; ++tick) ASSERT_TRUE(simulation.tick(hand_at(tick)).is_ok()) << tick;
   const water::WaterLedger ledger = simulation.pore_water().ledger();
   EXPECT_NEAR(simulation.pore_water().mass(), water + ledger.added - ledger.removed, 1e-12 * water);
+}
+
+TEST(LimitedMotion, OfThePressureLawIsFeltWithTheModulusOverTheToolsSectionAtMost) {
+  Params params = make_params();
+  params.is_strict = false;
+  params.contact.law = contact::ContactLaw::pressure;
+  params.contact.round_tool = contact::RoundTool{kToolRadius, 0.0, kToolRadius, false};
+  Simulation simulation(test::make_block_body(4, 4, 2, Vec3(0.04, 0.04, 0.02), 0.2),
+                        contact::make_sphere_tool(kToolRadius, 2), params, stab(-0.001));
+  const double most = params.elastic.youngs_modulus * std::numbers::pi * kToolRadius * kToolRadius;
+  double largest = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(simulation.tick(stab(0.015)).is_ok()) << i;
+    if (simulation.physics_record().limited_tets == 0) continue;
+    largest = std::max(largest, simulation.haptic_record().force.norm());
+    EXPECT_LE(largest, (1.0 + 1e-12) * most);
+  }
+  EXPECT_GT(largest, 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(

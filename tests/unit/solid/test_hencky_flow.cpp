@@ -116,6 +116,19 @@ TEST(HenckyFlow, ShearedFasterItIsAsMuchStrongerAsThereAreDecades) {
   }
 }
 
+TEST(HenckyFlow, EndsWhereItsStrainCanNotBeWrittenAnyMore) {
+  // A shear of 10⁹ has logarithms of ±21, whose exponentials no number holds beside 1.
+  Point point;
+  Mat3 F = Mat3::Identity();
+  for (double shear = 1e-2; shear < 1e9; shear *= 1.02) {
+    F(0, 1) = shear;
+    point.move_to(F);
+    ASSERT_TRUE(point.plastic_strain.allFinite()) << shear;
+    ASSERT_LE(point.plastic_strain.norm(), 8.0) << shear;
+  }
+  EXPECT_GT(point.plastic_strain.norm(), 7.9);
+}
+
 TEST(HenckyFlow, DoesNotFeelATurnOfTheWhole) {
   Point still, turned;
   Rng rng(9);
