@@ -5,7 +5,6 @@
 Usage: between_table.py ARGIL [-o FILE.csv]      writes results/contact/between.csv
 """
 import argparse
-import csv
 import math
 import tempfile
 from pathlib import Path
@@ -13,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ball_on_block import EDGE, PERIOD, find_force
+from table_file import write_table
 
 ROOT = Path(__file__).resolve().parent.parent
 RADIUS, DEPTH, GAP = 0.01, 0.002, 0.0003  # of the ball, deepest place, way before the touch [m]
@@ -49,12 +49,8 @@ def main():
                     jump = np.linalg.norm(np.diff(force, axis=0), axis=1).max() / peak
                     rows.append([hertz, sideways, friction, period, between, f"{off:.4f}", f"{jump:.4f}"])
                     print(*rows[-1], flush=True)
-    options.output.parent.mkdir(parents=True, exist_ok=True)
-    with open(options.output, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["motion_Hz", "sideways_m_per_s", "friction", "physics_period_ticks", "between_frames", "rms_over_peak",
-                         "largest_change_over_peak"])
-        writer.writerows(rows)
+    write_table(options.output, ["motion_Hz", "sideways_m_per_s", "friction", "physics_period_ticks", "between_frames",
+                                 "rms_over_peak", "largest_change_over_peak"], rows)
 
 
 if __name__ == "__main__":

@@ -8,13 +8,13 @@ Columns: triangles, speed, mean force, its range over the mean, largest change i
 speed is no jump.
 """
 import argparse
-import csv
 import tempfile
 from pathlib import Path
 
 import numpy as np
 
 from ball_on_block import PERIOD, run_along
+from table_file import write_table
 
 ROOT = Path(__file__).resolve().parent.parent
 BODY, TOOL, DEPTH = 0.04, 0.006, 0.0015  # radii, and depth below the innermost facet [m]
@@ -88,10 +88,8 @@ def main():
                 change = np.linalg.norm(np.diff(force, axis=0), axis=1).max() / size.max()
                 rows.append([len(faces), speed, f"{size.mean():.4f}", f"{np.ptp(size) / size.mean():.4f}", f"{change:.5f}"])
                 print(*rows[-1], flush=True)
-    with open(options.output, "w", newline="", encoding="ascii") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["triangles", "speed_m_per_s", "mean_force_N", "range_over_mean", "largest_change_in_a_tick_over_peak"])
-        writer.writerows(rows)
+    write_table(options.output, ["triangles", "speed_m_per_s", "mean_force_N", "range_over_mean",
+                                 "largest_change_in_a_tick_over_peak"], rows)
 
 
 if __name__ == "__main__":

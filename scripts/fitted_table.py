@@ -5,7 +5,6 @@ enclosing, for plain shapes that this script writes and for the OBJ, PLY and STL
 Usage: fitted_table.py ARGIL [FOLDER …] [--tets 2000 10000 50000] [-o FILE.csv]      writes results/fitted/fitted.csv
 """
 import argparse
-import csv
 import re
 import resource
 import subprocess
@@ -14,6 +13,8 @@ import time
 from pathlib import Path
 
 import numpy as np
+
+from table_file import write_table
 
 ROOT = Path(__file__).resolve().parent.parent
 LONGEST = 300  # [s] for a body
@@ -92,12 +93,9 @@ def main():
                     rows.append([surface.name, fit, number, *measure(argil, surface, number, fit, folder)])
                     print(*rows[-1], flush=True)
     print(f"largest memory of a body: {resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024:.0f} MiB")
-    options.output.parent.mkdir(parents=True, exist_ok=True)
-    with open(options.output, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["surface", "fit", "wanted_tets", "tets_or_refusal", "volume_over_surface", "median_distance_over_cell",
-                         "largest_distance_over_cell", "surface_off_boundary_over_cell", "smallest_angle_deg", "largest_angle_deg", "seconds"])
-        writer.writerows(rows)
+    write_table(options.output, ["surface", "fit", "wanted_tets", "tets_or_refusal", "volume_over_surface",
+                                 "median_distance_over_cell", "largest_distance_over_cell", "surface_off_boundary_over_cell",
+                                 "smallest_angle_deg", "largest_angle_deg", "seconds"], rows)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ Columns: side force over normal force, mean over the way, over the coefficient; 
 back and forth (second difference); both forces are those at the hand.
 """
 import argparse
-import csv
 import itertools
 import tempfile
 from pathlib import Path
@@ -16,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ball_on_block import EDGE, find_force
+from table_file import write_table
 
 ROOT = Path(__file__).resolve().parent.parent
 RADIUS, DEPTH, GAP, OFF = 0.008, 0.002, 0.0002, 0.001  # of the ball, below the top, above it at first, off the middle [m]
@@ -45,11 +45,8 @@ def main():
             buzz = np.abs(np.diff(ratio, 2)).max()
             rows.append([tets, modulus, step, friction, f"{ratio.mean():.4f}", f"{buzz:.4f}", f"{force[:, 2].mean():.4f}"])
             print(*rows[-1], flush=True)
-    with open(options.output, "w", newline="", encoding="ascii") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["target_tets", "modulus_Pa", "ticks_of_step", "friction", "side_over_normal_over_friction", "largest_buzz",
-                         "normal_N"])
-        writer.writerows(rows)
+    write_table(options.output, ["target_tets", "modulus_Pa", "ticks_of_step", "friction", "side_over_normal_over_friction",
+                                 "largest_buzz", "normal_N"], rows)
 
 
 if __name__ == "__main__":

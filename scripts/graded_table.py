@@ -6,7 +6,6 @@ press of scenarios/demo_dino_dry.json on elastic clay.
 Usage: graded_table.py ARGIL [-o FILE.csv]      writes results/contact/graded.csv
 """
 import argparse
-import csv
 import json
 import subprocess
 import tempfile
@@ -14,6 +13,8 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+
+from table_file import write_table
 
 ROOT = Path(__file__).resolve().parent.parent
 EDGE, MODULUS, POISSON = 0.2, 1e5, 0.3  # of the block [m, Pa, –]
@@ -99,10 +100,7 @@ def main():
                 add("demonstration", cells, tets, f"{force / limit:.3f}")
         for force, tets in finest:
             add("demonstration", "graded", tets, f"{force / limit:.3f}")
-    with open(options.output, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["scene", "cells", "tets", "force_over_limit"])
-        writer.writerows(rows)
+    write_table(options.output, ["scene", "cells", "tets", "force_over_limit"], rows)
 
 
 if __name__ == "__main__":

@@ -5,11 +5,12 @@ stiffness that argil chooses and with twice that.
 Usage: pressure_table.py ARGIL [-o FILE.csv] [--quick]      writes results/contact/pressure.csv
 """
 import argparse
-import csv
 import tempfile
 from pathlib import Path
 
 import plot_hertz
+
+from table_file import write_table
 
 CHOSEN = 80  # kappa is so many times E* over the cell
 CELL = (6 * 2**0.5 / 6) ** (1 / 3)  # edge of a regular tet that has a sixth of a cube's volume, over the cube's edge
@@ -38,10 +39,8 @@ def main():
                     force = [press(options.argil, Path(folder), tool, cells, times, steepness)[0] for times in (1, 2)]
                     rows.append([tool, cells, steepness, f"{force[0]:.4f}", f"{force[1] / force[0] - 1:.4f}"])
                     print(*rows[-1], flush=True)
-    with open(options.output, "w", encoding="ascii", newline="") as out:
-        table = csv.writer(out, lineterminator="\n")
-        table.writerow(["tool", "cells_per_contact_radius", "slope", "force_over_closed_form", "change_when_stiffness_doubles"])
-        table.writerows(rows)
+    write_table(options.output, ["tool", "cells_per_contact_radius", "slope", "force_over_closed_form",
+                                 "change_when_stiffness_doubles"], rows)
 
 
 if __name__ == "__main__":

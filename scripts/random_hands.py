@@ -8,7 +8,6 @@ A seed also draws the clay (modulus, strength or none), the ball, friction, the 
 seed, exit code, clay, ticks of a step, method, steps, steps whose motion was limited, of these the whole body's, least det F, peak force.
 """
 import argparse
-import csv
 import json
 import subprocess
 import sys
@@ -17,6 +16,8 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+
+from table_file import write_table
 
 EDGE = 0.04  # of the block [m]
 MODES = ("push", "pull", "wet", "dry")
@@ -103,11 +104,8 @@ def main():
             rows.append(run(options.argil.resolve(), Path(folder), seed, options.seconds))
             print(*rows[-1], flush=True)
     if options.output:
-        with open(options.output, "w", newline="", encoding="ascii") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(["seed", "exit_code", "clay", "ticks_of_step", "between_frames", "steps", "limited_steps",
-                             "limited_as_a_whole", "least_volume_ratio", "peak_N"])
-            writer.writerows(rows)
+        write_table(options.output, ["seed", "exit_code", "clay", "ticks_of_step", "between_frames", "steps", "limited_steps",
+                                     "limited_as_a_whole", "least_volume_ratio", "peak_N"], rows)
     return int(any(row[1] != 0 for row in rows))
 
 

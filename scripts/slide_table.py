@@ -8,7 +8,6 @@ Columns, in percent: half the range of the normal force over its mean; the mean 
 largest change in a tick over the peak.
 """
 import argparse
-import csv
 import itertools
 import tempfile
 from pathlib import Path
@@ -16,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ball_on_block import EDGE, find_force
+from table_file import write_table
 
 ROOT = Path(__file__).resolve().parent.parent
 RADIUS, DEPTH, GAP, OFF = 0.010, 0.002, 0.0002, 0.0007  # of the ball, below the top, above it at first, off the middle [m]
@@ -47,11 +47,8 @@ def main():
             figures = (np.ptp(normal) / 2, np.hypot(*force[:, :2].mean(axis=0)), side.max(), jump * normal.mean())
             rows.append([tets, cells, f"{normal.mean():.4f}", *(f"{100 * figure / normal.mean():.3f}" for figure in figures)])
             print(*rows[-1], flush=True)
-    with open(options.output, "w", newline="", encoding="ascii") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["target_tets", "cells", "normal_N", "half_range_percent", "mean_side_percent", "largest_side_percent",
-                         "largest_change_percent"])
-        writer.writerows(rows)
+    write_table(options.output, ["target_tets", "cells", "normal_N", "half_range_percent", "mean_side_percent",
+                                 "largest_side_percent", "largest_change_percent"], rows)
 
 
 if __name__ == "__main__":

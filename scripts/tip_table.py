@@ -8,7 +8,6 @@ Usage: tip_table.py ARGIL [-o FILE.csv]      writes results/contact/tip.csv
 Columns: what is pressed, cells to the radius of contact, force over each place [N], its range over its mean.
 """
 import argparse
-import csv
 import tempfile
 from pathlib import Path
 
@@ -16,6 +15,7 @@ import h5py
 import numpy as np
 
 from ball_on_block import run_along
+from table_file import write_table
 
 ROOT = Path(__file__).resolve().parent.parent
 EDGE, TIP, DEPTH, GAP = 0.02, 0.001, 0.00025, 0.00005  # of the block; radius, how deep, above it at first [m]
@@ -67,10 +67,7 @@ def main():
             rows.append(["rigid" if rigid else "clay", cells, *(f"{force:.5f}" for force in forces),
                          f"{np.ptp(forces) / np.mean(forces):.4f}"])
             print(*rows[-1], flush=True)
-    with open(options.output, "w", newline="", encoding="ascii") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["body", "cells_to_contact_radius", "node_N", "edge_N", "face_N", "range_over_mean"])
-        writer.writerows(rows)
+    write_table(options.output, ["body", "cells_to_contact_radius", "node_N", "edge_N", "face_N", "range_over_mean"], rows)
 
 
 if __name__ == "__main__":

@@ -70,13 +70,11 @@ void print_miss(const std::string& result, const LoopEnd& end, Tick first, const
 }
 
 /// Says what the run could not compute.
-void print_limits(const std::string& result, const LoopEnd& end, const RunOptions& options) {
+void print_limits(const std::string& result, const LoopEnd& end, int num_tets, const RunOptions& options) {
   if (!end.is_limited || options.quiet) return;
   const output::ResultReader reader(result);
   std::fprintf(stderr, "argil: note: %s\n",
-               output::describe_limits(reader.read_physics(), reader.read_haptic(),
-                                       static_cast<int>(reader.read_header().tets.cols()))
-                   .c_str());
+               output::describe_limits(reader.read_physics(), reader.read_haptic(), num_tets).c_str());
 }
 
 /// One equilibrium: a physics record and a frame, at the time 0 of an empty motion.
@@ -214,7 +212,7 @@ RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
   }
   if (options.writes_xdmf) output::write_xdmf(result, name_xdmf(result));
   print_miss(result, end, first, run.miss, options);
-  print_limits(result, end, options);
+  print_limits(result, end, simulation.body().mesh.num_tets(), options);
   return print_end(result, end, first, simulation.clock().tick, options);
 }
 

@@ -145,7 +145,7 @@ StepStatus BodySide::update_kinematics() {
 void BodySide::flow() {
   const StageScope scope(m_observer, Stage::plasticity);
   m_state.plastic_dissipation += m_flow.apply(m_state.solid.plastic_strain);
-  solid::note_flow(m_solid, m_flow.flows_or_did());
+  solid::note_flow(m_solid, m_flow.is_flowing(), m_flow.was_flowing());
   m_region.put_to_sleep(m_state.solid, m_flow.is_flowing());
 }
 

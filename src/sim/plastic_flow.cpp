@@ -14,7 +14,7 @@ PlasticFlow::PlasticFlow(const Params& params, const solid::Body& solid, const s
   m_split = find_law(params.solid.model).plastic_split;
   m_rule = material::make_flow_rule(params.plasticity, params.rates.step_seconds());
   m_is_flowing.resize(static_cast<std::size_t>(solid.model.elements.num_points() / kLanes + 1), 0);
-  m_was_flowing = m_flows_or_did = m_is_flowing;
+  m_was_flowing = m_is_flowing;
 }
 
 void PlasticFlow::commit() {
@@ -39,8 +39,6 @@ double PlasticFlow::apply(TensorField& plastic_strain) {
       m_solid.model.elements.num_points(),
       [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return apply_to_points(begin, end, plastic_strain); });
   m_is_anywhere = is_flowing_anywhere();
-  for (std::size_t i = 0; i < m_is_flowing.size(); ++i)
-    m_flows_or_did[i] = static_cast<char>(m_is_flowing[i] | m_was_flowing[i]);
   return dissipated;
 }
 

@@ -22,8 +22,8 @@ class PlasticFlow {
   bool is_anywhere() const { return m_is_anywhere; }  ///< in the last step
   /// Of each run of kLanes points, in the last step.
   const std::vector<char>& is_flowing() const { return m_is_flowing; }
-  /// The same, or in the step before.
-  const std::vector<char>& flows_or_did() const { return m_flows_or_did; }
+  /// Likewise, in the step before.
+  const std::vector<char>& was_flowing() const { return m_was_flowing; }
   void commit();
   void roll_back();
   void serialize(Archive& archive);
@@ -42,7 +42,7 @@ class PlasticFlow {
   solid::PlasticSplit m_split;
   material::FlowRule m_rule;
   bool m_is_anywhere = false, m_was_anywhere = false;
-  std::vector<char> m_is_flowing, m_was_flowing, m_flows_or_did;
+  std::vector<char> m_is_flowing, m_was_flowing;
 };
 
 }  // namespace argil::sim

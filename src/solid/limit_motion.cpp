@@ -48,14 +48,18 @@ void MotionLimiter::find_tets_around(const std::vector<int>& nodes) {
   for (const int tet : m_tets) m_is_listed[static_cast<std::size_t>(tet)] = 0;
 }
 
-Vec3 MotionLimiter::find_place(const SolidState& state, int node) const {
-  const double share = m_share[static_cast<std::size_t>(node)];
+Vec3 MotionLimiter::find_place(const SolidState& state, Eigen::Index node, double share) const {
   const Vec3 from = m_body.committed.x.col(node);
   const Vec3 to = state.x.col(node);
   if (share == 1.0) return to;
   const auto is_prescribed = m_body.model.constraints.support.col(node).array() >= 0;
   const Vec3 place = share == 0.0 ? from : Vec3(from + share * (to - from));  // also where `to` is no number
   return is_prescribed.select(to, place);
+}
+
+void MotionLimiter::hold_back(Eigen::Index node, double share, SolidState& state) const {
+  state.x.col(node) = find_place(state, node, share);
+  state.v.col(node) = share == 0.0 ? Vec3::Zero() : Vec3(share * state.v.col(node));
 }
 
 double MotionLimiter::find_margin(const SolidState& state, int tet) const {
@@ -73,7 +77,7 @@ double MotionLimiter::find_margin(const SolidState& state, int tet) const {
       const int node = elements.nodes(i, tet);
       const auto at = gradient.col(static_cast<Eigen::Index>(p) * elements.nodes_per_tet + i).transpose();
       before += m_body.committed.x.col(node) * at;
-      after += find_place(state, node) * at;
+      after += find_place(state, node, m_share[static_cast<std::size_t>(node)]) * at;
     }
     const double kept = (1.0 - kRounding) * (before.determinant() - bound);
     const double margin = after.determinant() - bound - std::min(kept, kFlattest);
@@ -121,9 +125,8 @@ MotionLimit MotionLimiter::apply(const Part& part, SolidState& state) {
     find_tets_around(m_nodes);
   }
   for (const int node : m_held_nodes) {
-    state.x.col(node) = find_place(state, node);
     double& share = m_share[static_cast<std::size_t>(node)];
-    state.v.col(node) = share == 0.0 ? Vec3::Zero() : Vec3(share * state.v.col(node));
+    hold_back(node, share, state);
     share = 1.0;
   }
   std::fill(m_is_held.begin(), m_is_held.end(), char{0});
@@ -131,14 +134,7 @@ MotionLimit MotionLimiter::apply(const Part& part, SolidState& state) {
 }
 
 void MotionLimiter::scale(const Part& part, double share, SolidState& state) const {
-  const auto& support = m_body.model.constraints.support;
-  part.nodes.each(state.x.cols(), [&](std::ptrdiff_t n) {
-    const Vec3 from = m_body.committed.x.col(n);
-    const Vec3 to = state.x.col(n);
-    const Vec3 place = from + share * (to - from);
-    state.x.col(n) = (support.col(n).array() >= 0).select(to, place);
-    state.v.col(n) *= share;
-  });
+  part.nodes.each(state.x.cols(), [&](std::ptrdiff_t n) { hold_back(n, share, state); });
 }
 
 }  // namespace argil::solid

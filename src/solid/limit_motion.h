@@ -33,7 +33,8 @@ class MotionLimiter {
  private:
   void find_tets(const Part& part);
   void find_tets_around(const std::vector<int>& nodes);
-  Vec3 find_place(const SolidState& state, int node) const;
+  Vec3 find_place(const SolidState& state, Eigen::Index node, double share) const;
+  void hold_back(Eigen::Index node, double share, SolidState& state) const;
   /// Least over the tet's points by how much the bounds are kept; NaN where a place is not finite.
   double find_margin(const SolidState& state, int tet) const;
 

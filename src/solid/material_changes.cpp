@@ -24,11 +24,11 @@ void set_swelling(Body& body, int tet, double volume_ratio) {
   body.system.is_tet_changed[static_cast<std::size_t>(tet)] = 1;
 }
 
-void note_flow(Body& body, const std::vector<char>& is_flowing) {
+void note_flow(Body& body, const std::vector<char>& is_flowing, const std::vector<char>& was_flowing) {
   if (body.elastic.is_empty()) return;
   const auto num_tets = static_cast<std::size_t>(body.model.elements.num_tets());
   for (std::size_t run = 0; run < is_flowing.size(); ++run) {
-    if (is_flowing[run] == 0) continue;
+    if (is_flowing[run] == 0 && was_flowing[run] == 0) continue;
     body.elastic.forget(static_cast<std::ptrdiff_t>(run));
     const std::size_t first = kLanes * run;
     for (std::size_t t = first; t < std::min(first + kLanes, num_tets); ++t) {
