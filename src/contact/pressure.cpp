@@ -71,6 +71,20 @@ void PressureContact::find_faces(const Points& x) {
   }
   m_candidates.clear();
   m_tree->find_overlaps(box.grown(m_tool.radius() + m_margin), x, x, m_candidates);
+  // Most of them lie outside the ball that holds all that the tool sweeps and what is near that.
+  const Vec3 middle = 0.5 * (box.low + box.high);
+  const double radius = 0.5 * (box.high - box.low).norm() + m_tool.radius() + m_margin;
+  const auto is_far = [&](int number) {
+    const Eigen::Vector3i v = m_surface.col(number);
+    const std::array<Vec3, 3> corner = {x.col(v(0)), x.col(v(1)), x.col(v(2))};
+    const Vec3 centre = centre_of(corner);
+    double squared_reach = 0.0;
+    for (const Vec3& p : corner) squared_reach = std::max(squared_reach, (p - centre).squaredNorm());
+    const double reach = std::sqrt(squared_reach);  // no edge is longer than twice that
+    const double most = radius + reach + find_band_of_side(2.0 * reach);
+    return (centre - middle).squaredNorm() > most * most;
+  };
+  std::erase_if(m_candidates, is_far);
   std::sort(m_candidates.begin(), m_candidates.end());
   m_faces.clear();
   for (const int number : m_candidates) {
@@ -112,7 +126,10 @@ PressureContact::Cover& PressureContact::Cover::operator+=(const Cover& other) {
 /// the tool slides.
 double PressureContact::find_band(const Face& face, int level) const {
   if (m_yielding == Yielding::no || m_passage) return 0.0;
-  const double side = std::ldexp(face.size, -level);
+  return find_band_of_side(std::ldexp(face.size, -level));
+}
+
+double PressureContact::find_band_of_side(double side) const {
   return std::min(0.5 * side * side / m_tool.radius(), 0.3 * side);
 }
 

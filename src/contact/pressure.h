@@ -136,6 +136,7 @@ class PressureContact {
   void find_faces(const Points& x);
   double find_patch_radius();
   double find_band(const Face& face, int level) const;
+  double find_band_of_side(double side) const;
   Cover measure_cover(const Face& face, const Piece& piece, int level, double band = 0.0);
   Cover measure_cover(const Face& face, int level) {
     return level == 0 ? face.whole : measure_cover(face, kWhole, level, find_band(face, level));

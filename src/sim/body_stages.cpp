@@ -136,7 +136,7 @@ StepStatus BodySide::update_kinematics() {
   }
   ARGIL_TRY(status);
   solid::keep_start(m_solid, m_state.solid);
-  for (const int n : m_force.contacts().nodes)
+  for (const int n : m_force.contacts().nodes())
     m_state.contact_work +=
         m_force.contacts().at.col(n).dot(m_state.solid.x.col(n) - m_solid.committed.x.col(n));
   return StepStatus::ok();

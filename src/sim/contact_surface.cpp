@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "base/check.h"
+#include "base/lanes.h"
 #include "embed/fine_skin.h"
 #include "mesh/quadratic.h"
 
@@ -79,14 +80,27 @@ void ContactSurface::take_skin(const Triangles& triangles, const embed::Embeddin
       m_tets.push_back(embedding.tet[static_cast<std::size_t>(m_triangles(k, t))]);
 }
 
-void ContactSurface::find_positions(const Points& x, Points& out) const {
+ARGIL_EVERY_PROCESSOR void ContactSurface::find_positions(const Points& x, Points& out) const {
   out.resize(3, num_vertices());
+  // A quad reads and writes a number beyond its point: the next vertex writes its own over it, and the last
+  // node and the last vertex have none.
+  const int last_node = static_cast<int>(x.cols()) - 1;
   for (int v = 0; v < num_vertices(); ++v) {
-    Vec3 sum = Vec3::Zero();
+    Quad sum = {};
     const auto i = static_cast<std::size_t>(v);
-    for (auto k = static_cast<std::size_t>(m_begin[i]); k < static_cast<std::size_t>(m_begin[i + 1]); ++k)
-      sum += m_weight[k] * x.col(m_node[k]);
-    out.col(v) = sum;
+    for (auto k = static_cast<std::size_t>(m_begin[i]); k < static_cast<std::size_t>(m_begin[i + 1]); ++k) {
+      const double* from = x.data() + 3 * static_cast<std::ptrdiff_t>(m_node[k]);
+      Quad node;
+      if (m_node[k] < last_node)
+        read(from, node);
+      else
+        node = Quad{from[0], from[1], from[2], 0.0};
+      sum += m_weight[k] * node;
+    }
+    if (v + 1 < num_vertices())
+      write(sum, out.col(v).data());
+    else
+      out.col(v) = Vec3(sum[0], sum[1], sum[2]);
   }
 }
 
@@ -139,7 +153,8 @@ void ContactSurface::add_stiffness(const contact::Contact& contact, const Vec3& 
   bool fits = true;
   for (std::size_t c = 0; c < 3 && contact.vertex[c] >= 0; ++c)
     fits = fits && add_nodes(contact.vertex[c], contact.weight[c], whole);
-  if (fits && shares_tet(whole, elements)) {
+  const bool is_vertex = contact.vertex[1] < 0;  // whose nodes are those of one tet
+  if (fits && (is_vertex || shares_tet(whole, elements))) {
     list.push_back(whole);
     return;
   }

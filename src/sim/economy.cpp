@@ -67,7 +67,7 @@ bool Economy::sleeps_on(BodyState& state, const ContactLoad& load, const NodalFo
     return false;
   }
   double squares = m_held_back_squares;
-  for (const int n : contacts.nodes) {
+  for (const int n : contacts.nodes()) {
     const Vec3 force = solid::find_free_part(m_solid.model, contacts.at.col(n), n);
     squares += force.dot(2.0 * m_held_back.col(n) + force);
   }
@@ -95,7 +95,7 @@ bool Economy::stops(BodyState& state, const solid::StepLoads& loads, const Nodal
                          solid::find_free_part(m_solid.model, contacts.at.col(n), n);
     return m_held_back.col(n).squaredNorm();
   });
-  for (const int n : contacts.nodes) {  // in balance where the body slept before
+  for (const int n : contacts.nodes()) {  // in balance where the body slept before
     if (m_region.is_awake(n)) continue;
     m_held_back.col(n) = -solid::find_free_part(m_solid.model, contacts.at.col(n), n);
     m_held_back_squares += m_held_back.col(n).squaredNorm();

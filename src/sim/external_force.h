@@ -23,19 +23,17 @@ class ExternalForce {
     m_contacts.clear();
     for (const SurfaceForce& force : load.forces) surface.add_force(force, m_contacts);
     for (const solid::PointStiffness& entry : load.stiffness)  // a step may make these press, too
-      if (entry.is_near)
-        m_contacts.nodes.insert(m_contacts.nodes.end(), entry.vertex.begin(),
-                                entry.vertex.begin() + static_cast<std::ptrdiff_t>(entry.count()));
-    m_contacts.list();
+      for (std::size_t i = 0; entry.is_near && i < entry.count(); ++i) m_contacts.list(entry.vertex[i]);
+    m_contacts.sort();
     if (load.scale == 1.0) return;
-    for (const int n : m_contacts.nodes) m_contacts.at.col(n) *= load.scale;
+    for (const int n : m_contacts.nodes()) m_contacts.at.col(n) *= load.scale;
   }
   /// That step is solved.
   void update_total() {
     m_changed = m_forced;
-    m_changed.insert(m_changed.end(), m_contacts.nodes.begin(), m_contacts.nodes.end());
+    m_changed.insert(m_changed.end(), m_contacts.nodes().begin(), m_contacts.nodes().end());
     for (const int n : m_changed) m_total.col(n) = m_contacts.at.col(n) + m_loads.col(n);
-    m_forced = m_contacts.nodes;
+    m_forced = m_contacts.nodes();
   }
 
   const Points& loads() const { return m_loads; }
