@@ -21,6 +21,11 @@ class SurfaceFriction {
   void stretch(const Points& x_t0, const Points& x_t1, const Pose& pose_t0, const Pose& pose_t1,
                Contacts& contacts);
 
+  /// Of a surface that had these vertices and others.
+  void go_on_from(const SurfaceFriction& before) {
+    m_state = before.m_state;
+    commit();
+  }
   void commit() { m_committed = m_state; }
   void roll_back() { m_state = m_committed; }
   void serialize(Archive& archive);

@@ -60,6 +60,14 @@ void write_outcome(Group& root, Outcome outcome) {
   root.write_attribute("complete", std::int64_t{outcome == Outcome::done});
 }
 
+void write_touched_places(const Group& mesh, const std::vector<sim::TouchedPlace>& list) {
+  if (list.empty()) return;
+  Eigen::Matrix4Xd places(4, static_cast<Eigen::Index>(list.size()));
+  for (std::size_t i = 0; i < list.size(); ++i)
+    places.col(static_cast<Eigen::Index>(i)) << list[i].position, list[i].radius;
+  write_entities(mesh, "touched_places", places, schema::kTouchedPlaces);
+}
+
 void write_mesh(const Group& mesh, const ResultHeader& header) {
   write_entities(mesh, "rest_position", header.rest_position, schema::kRestPosition);
   write_entities(mesh, "tets", header.tets, schema::kTets);
@@ -67,12 +75,7 @@ void write_mesh(const Group& mesh, const ResultHeader& header) {
   write_entities(mesh, "skin_triangles", header.skin_triangles, schema::kSkinTriangles);
   write_entities(mesh, "tool_vertices", header.tool.vertices, schema::kToolVertices);
   write_entities(mesh, "tool_triangles", header.tool.triangles, schema::kToolTriangles);
-  if (header.touched_places.empty()) return;
-  Eigen::Matrix4Xd places(4, static_cast<Eigen::Index>(header.touched_places.size()));
-  for (std::size_t i = 0; i < header.touched_places.size(); ++i)
-    places.col(static_cast<Eigen::Index>(i)) << header.touched_places[i].position,
-        header.touched_places[i].radius;
-  write_entities(mesh, "touched_places", places, schema::kTouchedPlaces);
+  write_touched_places(mesh, header.touched_places);
 }
 
 void write_provenance(const Group& provenance, const ResultHeader& header) {
@@ -118,6 +121,7 @@ struct ResultFile::Impl {
   Table haptic;
   Table physics;
   std::uint64_t num_frames = 0;
+  int epoch = 0;
   std::optional<Table> fidelity = {};
   bool is_checked = false;  // fidelity has errors
   std::optional<Table> session = {}, tick_timing = {}, step_timing = {};
@@ -170,6 +174,23 @@ ResultFile::ResultFile(const std::string& name, const ResultHeader& header) {
   m_impl->file.flush();
 }
 
+namespace {
+
+/// Returns the number of those that are left.
+int drop_epochs_after(const Group& root, Tick last_tick) {
+  if (!root.has(schema::kEpochs)) return 0;
+  const Group epochs = root.open_group(schema::kEpochs);
+  int left = 0;
+  for (const std::string& number : epochs.names())
+    if (epochs.open_group(number).read_integer("tick") > last_tick)
+      epochs.remove(number);
+    else
+      ++left;
+  return left;
+}
+
+}  // namespace
+
 ResultFile::ResultFile(const std::string& name, Tick last_tick, std::uint64_t num_frames) {
   File file = File::open_for_writing(name);
   Group root = file.root();
@@ -192,12 +213,13 @@ ResultFile::ResultFile(const std::string& name, Tick last_tick, std::uint64_t nu
     throw IoError(
         name, "has lost frames up to tick " + std::to_string(last_tick) + "; it cannot be continued there");
   for (std::size_t i = num_frames; i < frame_names.size(); ++i) frames.remove(frame_names[i]);
+  const int epoch = drop_epochs_after(root, last_tick);
   if (root.has("failure")) root.remove("failure");
   write_outcome(root, Outcome::running);
   Group timing = root.open_group("timing");
   file.flush();
   m_impl = std::make_unique<Impl>(Impl{std::move(file), std::move(root), std::move(frames), std::move(timing),
-                                       std::move(haptic), std::move(physics), num_frames});
+                                       std::move(haptic), std::move(physics), num_frames, epoch});
   if (!m_impl->root.has(schema::kFidelity)) return;
   const Group group = m_impl->root.open_group(schema::kFidelity);
   m_impl->is_checked = group.has(schema::kFidelityError.name);
@@ -255,6 +277,7 @@ void ResultFile::append(const sim::PhysicsRecord& record) {
   table.put(record.max_plastic_strain);
   table.put(record.limited_tets);
   table.put(record.limited_tet);
+  table.put(record.epoch);
   if (table.end_row()) m_impl->guarded([&] { table.write(), m_impl->file.flush(); });
 }
 
@@ -276,6 +299,7 @@ void ResultFile::append(const sim::Frame& frame) {
     group.write_attribute("tick", frame.tick);
     group.write_attribute("time", frame.time);
     group.write_attribute("state_hash", frame.state_hash);
+    if (m_impl->epoch > 0) group.write_attribute(schema::kEpoch, std::int64_t{m_impl->epoch});
     write_entities(group, "position", frame.position, schema::kPosition);
     write_field(group, "saturation", frame.saturation, schema::kSaturation);
     write_entities(group, "plastic_strain", frame.plastic_strain, schema::kPlasticStrain, true);
@@ -286,6 +310,34 @@ void ResultFile::append(const sim::Frame& frame) {
     write_field(group, "skin_influence", frame.skin_influence, schema::kSkinInfluence);
     ++m_impl->num_frames;
     m_impl->file.flush();
+  });
+}
+
+void ResultFile::begin_epoch(const sim::Body& body) {
+  ARGIL_ASSERT(m_impl, "append after finish");
+  m_impl->epoch = body.epoch;
+  m_impl->guarded([&] {
+    Group& root = m_impl->root;
+    const Group epochs =
+        root.has(schema::kEpochs) ? root.open_group(schema::kEpochs) : root.create_group(schema::kEpochs);
+    Group epoch = epochs.create_group(frame_name(static_cast<std::uint64_t>(body.epoch)));
+    epoch.write_attribute("tick", body.epoch_tick);
+    const Group mesh = epoch.create_group("mesh");
+    write_entities(mesh, "rest_position", body.mesh.vertices, schema::kRestPosition);
+    write_entities(mesh, "tets", body.mesh.tets, schema::kTets);
+    write_entities(mesh, "surface_triangles", body.topology.boundary, schema::kSurfaceTriangles);
+    write_entities(mesh, "skin_rest_position", body.skin.vertices, schema::kSkinRestPosition);
+    write_entities(mesh, "touched_position", body.touched.vertices, schema::kTouchedPosition);
+    write_entities(mesh, "touched_triangles", body.touched.triangles, schema::kTouchedTriangles);
+    write_touched_places(mesh, body.touched_places);
+    if (body.youngs_modulus.size() > 0)
+      write_field(mesh, "youngs_modulus", body.youngs_modulus, schema::kYoungsModulus);
+    write_field(mesh, "rest_volume_ratio", body.rest_volume_ratio, schema::kRestVolumeRatio);
+    for (std::size_t i = 0; i < body.supports.size(); ++i) {
+      const std::vector<int>& held = body.supports[i].region.nodes;
+      mesh.write_array(("held_" + std::to_string(i)).c_str(), held.data(), Shape{held.size()}, true,
+                       schema::kHeld);
+    }
   });
 }
 

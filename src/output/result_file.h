@@ -98,6 +98,8 @@ class ResultFile {
   void append(const sim::HapticRecord& record);
   void append(const sim::PhysicsRecord& record);
   void append(const sim::Frame& frame);
+  /// The body has got new cells, of which the frames that follow are.
+  void begin_epoch(const sim::Body& body);
   /// From here on a session: a SessionTick before each haptic record. `is_timed`: with a TickTiming each, and
   /// a StepTiming before each physics record.
   void begin_session(const SessionHead& head, bool is_timed);

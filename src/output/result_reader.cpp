@@ -109,6 +109,17 @@ std::optional<Failure> ResultReader::read_failure() const {
 
 namespace {
 
+std::string name_epoch(int epoch) {
+  const std::string number = std::to_string(epoch);
+  return std::string(6 - std::min<std::size_t>(6, number.size()), '0') + number;
+}
+
+/// Of its cells.
+Group open_mesh(const Group& root, int epoch) {
+  if (epoch == 0) return root.open_group("mesh");
+  return root.open_group(schema::kEpochs).open_group(name_epoch(epoch)).open_group("mesh");
+}
+
 std::vector<sim::TouchedPlace> read_touched_places(const Group& mesh) {
   std::vector<sim::TouchedPlace> places;
   if (!mesh.has("touched_places")) return places;
@@ -135,6 +146,50 @@ ResultHeader ResultReader::read_header() const {
   for (const std::string& name : provenance.names())
     header.provenance.emplace_back(name, provenance.open_dataset(name).read_string());
   return header;
+}
+
+int ResultReader::num_epochs() const {
+  return m_root.has(schema::kEpochs) ? static_cast<int>(m_root.open_group(schema::kEpochs).names().size())
+                                     : 0;
+}
+
+CellMesh ResultReader::read_cells(int epoch) const {
+  const Group mesh = open_mesh(m_root, epoch);
+  CellMesh cells;
+  cells.rest_position = read_entities<Points>(mesh, "rest_position");
+  cells.tets = read_elements<Tets>(mesh, "tets", cells.rest_position.cols());
+  cells.surface_triangles = read_elements<Triangles>(mesh, "surface_triangles", cells.rest_position.cols());
+  return cells;
+}
+
+std::optional<sim::Body> ResultReader::find_last_cells(Tick until) const {
+  const auto begin_of = [this](int epoch) {
+    return m_root.open_group(schema::kEpochs).open_group(name_epoch(epoch)).read_integer("tick");
+  };
+  int epoch = num_epochs();
+  while (epoch > 0 && begin_of(epoch) > until) --epoch;
+  if (epoch == 0) return std::nullopt;
+  const CellMesh cells = read_cells(epoch);
+  const Group mesh = open_mesh(m_root, epoch);
+  sim::Body body;
+  body.epoch = epoch;
+  body.epoch_tick = begin_of(epoch);
+  body.mesh = {cells.rest_position, cells.tets, {}};
+  body.topology = mesh::make_topology(body.mesh);
+  body.skin = {read_entities<Points>(mesh, "skin_rest_position"),
+               read_entities<Triangles>(m_root.open_group("mesh"), "skin_triangles")};
+  body.touched.vertices = read_entities<Points>(mesh, "touched_position");
+  body.touched.triangles = read_elements<Triangles>(mesh, "touched_triangles", body.touched.vertices.cols());
+  body.touched_places = read_touched_places(mesh);
+  body.rest_volume_ratio = read_field(mesh, "rest_volume_ratio");
+  if (mesh.has("youngs_modulus")) body.youngs_modulus = read_field(mesh, "youngs_modulus");
+  for (std::string name = "held_0"; mesh.has(name); name = "held_" + std::to_string(body.supports.size())) {
+    solid::Support support;
+    support.region.kind = solid::Region::Kind::nodes;
+    support.region.nodes = mesh.open_dataset(name).read<std::int32_t>();
+    body.supports.push_back(std::move(support));
+  }
+  return body;
 }
 
 std::optional<std::string> ResultReader::find_provenance(const std::string& name) const {
@@ -213,6 +268,7 @@ std::vector<sim::PhysicsRecord> ResultReader::read_physics() const {
   if (!group.has("limited_tets")) return records;  // files from before
   read_counts("limited_tets", &Record::limited_tets);
   read_counts("limited_tet", &Record::limited_tet);
+  if (group.has("epoch")) read_counts("epoch", &Record::epoch);
   return records;
 }
 
@@ -246,6 +302,8 @@ std::vector<FrameInfo> ResultReader::read_frame_list() const {
     const Group frame = frames.open_group(name);
     list.push_back(
         {name, frame.read_integer("tick"), frame.read_real("time"), frame.read_text("state_hash")});
+    if (frame.has_attribute(schema::kEpoch))
+      list.back().epoch = static_cast<int>(frame.read_integer(schema::kEpoch));
   }
   std::stable_sort(list.begin(), list.end(),
                    [](const FrameInfo& a, const FrameInfo& b) { return a.tick < b.tick; });
@@ -261,7 +319,7 @@ sim::Frame ResultReader::read_frame(const FrameInfo& info) const {
   frame.position = read_entities<Points>(group, "position");
   frame.saturation = read_field(group, "saturation");
   frame.plastic_strain = read_entities<TensorField>(group, "plastic_strain");
-  const Group mesh = m_root.open_group("mesh");
+  const Group mesh = open_mesh(m_root, info.epoch);
   check_count(group, "position", frame.position.cols(), mesh.open_dataset("rest_position"));
   check_count(group, "saturation", frame.saturation.size(), mesh.open_dataset("tets"));
   check_count(group, "plastic_strain", frame.plastic_strain.cols(), mesh.open_dataset("tets"));

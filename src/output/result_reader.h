@@ -16,6 +16,14 @@ struct FrameInfo {
   Tick tick = 0;
   double time = 0.0;       ///< [s]
   std::string state_hash;  ///< SHA-256, of what sim::Frame says
+  int epoch = 0;           ///< how often the body had got new cells
+};
+
+/// Cells of an epoch: those at the start, or those that the body got while the run went on.
+struct CellMesh {
+  Points rest_position;  ///< 3×n [m]
+  Tets tets;
+  Triangles surface_triangles;
 };
 
 /// A result file opened for reading, complete or not. Throws IoError when it cannot be read, InputError when
@@ -29,6 +37,11 @@ class ResultReader {
   Outcome outcome() const;
   std::optional<Failure> read_failure() const;
   ResultHeader read_header() const;
+  int num_epochs() const;  ///< how often the body got new cells
+  CellMesh read_cells(int epoch) const;
+  /// A body of the last new cells that it got up to a tick, with what ResultFile::begin_epoch writes of it:
+  /// for its supports, the vertices that they hold. Nothing where there are none.
+  std::optional<sim::Body> find_last_cells(Tick until) const;
   /// Text of /provenance by its name; nothing when it is not there.
   std::optional<std::string> find_provenance(const std::string& name) const;
   std::vector<sim::HapticRecord> read_haptic() const;

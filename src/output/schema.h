@@ -74,6 +74,7 @@ inline constexpr std::array kPhysics = {
         {"1",
          "tets whose motion was limited, or they would have turned inside out; all: the whole body's was"}},
     Column{"limited_tet", int32, 1, {"1", "number of the worst of them; -1: none"}},
+    Column{"epoch", int32, 1, {"1", "how often the body has got new cells before the step: in /epochs"}},
 };
 
 /// A step that may leave out parts of the model, and its error where a full run goes beside.
@@ -127,6 +128,16 @@ inline constexpr std::array kStepTiming = {
     Column{"work", real64, 1, {"s", "that the step took"}},
     Column{"late", int32, 1, {"1", "ticks beyond the planned ones that the step had to wait for"}},
 };
+
+/// Cells that the body got while the run went on, in groups by number, from 000001.
+inline constexpr const char* kEpochs = "epochs";
+inline constexpr const char* kEpoch = "epoch";  ///< attribute of a frame; none in the first
+inline constexpr hdf5::Label kTouchedPosition{"m", "what the tool meets: positions of its vertices, at rest"};
+inline constexpr hdf5::Label kTouchedTriangles{"1", "what the tool meets: vertex numbers, outward"};
+inline constexpr hdf5::Label kSkinRestPosition{"m", "rest positions of the skin's vertices"};
+inline constexpr hdf5::Label kRestVolumeRatio{"1", "volume of each tet without pressure, over that of its mesh"};
+inline constexpr hdf5::Label kHeld{"1", "vertices that a support of the scenario holds"};
+inline constexpr hdf5::Label kYoungsModulus{"Pa", "Young's modulus of each tet, dry"};
 
 /// Haptic ticks and physics steps that are kept in memory before they are written: about a second and about
 /// two kB a column; a killed run loses at most these.

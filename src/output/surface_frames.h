@@ -7,7 +7,9 @@
 
 namespace argil::output {
 
-/// The surface of a body as one looks at it: its skin, or the boundary of its cage.
+/// The surface of a body as one looks at it: its skin, or the boundary of its cage. Where that gets new
+/// cells, the list of triangles has those of all epochs, so that it is one for all frames; those of the
+/// others shrink to a point.
 class SurfaceFrames {
  public:
   /// Takes the skin where there is one, unless `wants_cage`. Throws InputError when there are no frames.
@@ -32,18 +34,27 @@ class SurfaceFrames {
   Shot read(const FrameInfo& info) const;
 
  private:
-  Field average_at_vertices(const Field& per_tet) const;
-  void number_surface_vertices(const Triangles& boundary);
+  /// What the body was made of for some of the frames.
+  struct Epoch {
+    CellMesh cells;
+    std::vector<int> cage_vertices;  ///< of the surface; none with a skin
+    int first_vertex = 0;            ///< among those of all epochs, that of these
+    std::vector<int> skin_tets;      ///< containing tet of each skin vertex; none without a skin
+  };
+
+  static Field average_at_vertices(const Epoch& epoch, const Field& per_tet);
+  void add_cage(Epoch& epoch);
+  void add_skin(Epoch& epoch, const FrameInfo& info);
+  Shot place_among_all(const Epoch& epoch, const Shot& shot) const;
+  const FrameInfo* find_first_frame(int epoch) const;
 
   const ResultReader& m_reader;
-  Tets m_tets;
+  std::vector<Epoch> m_epochs;
   std::vector<FrameInfo> m_frames;
   bool m_is_skin = false;
   int m_num_vertices = 0;
   Points m_rest_position;
   Triangles m_triangles;
-  std::vector<int> m_cage_vertices;  // of the surface; none with a skin
-  std::vector<int> m_skin_tets;      // containing tet of each skin vertex; none without a skin
 };
 
 }  // namespace argil::output

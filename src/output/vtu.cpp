@@ -69,8 +69,9 @@ class Grid {
   std::string m_bytes;
 };
 
-Grid make_cage(const ResultHeader& header, const sim::Frame& frame, const Points& first) {
-  Grid grid(frame.position, header.tets, kVtkTetra);
+/// Displacement: from `first`.
+Grid make_cage(const Tets& tets, const sim::Frame& frame, const Points& first) {
+  Grid grid(frame.position, tets, kVtkTetra);
   const Points displacement = frame.position - first;
   const Eigen::RowVectorXd norm = frame.plastic_strain.colwise().norm();
   grid.open("PointData");
@@ -126,9 +127,13 @@ std::size_t write_vtu_series(const std::string& result_file, const std::string& 
     list << "    <DataSet timestep=\"" << frame.time << "\" part=\"" << part << "\" file=\""
          << escape_xml((folder.filename() / file).generic_string()) << "\"/>\n";
   };
+  CellMesh cells = reader.read_cells(0);
+  cells.rest_position = first.position;
+  int epoch = 0;
   for (const FrameInfo& info : frames) {
     const sim::Frame frame = reader.read_frame(info);
-    write(make_cage(header, frame, first.position), info, "cage", 0);
+    if (info.epoch != epoch) cells = reader.read_cells(epoch = info.epoch);
+    write(make_cage(cells.tets, frame, cells.rest_position), info, "cage", 0);
     if (header.skin_triangles.cols() > 0)
       write(make_skin(header, frame, first.skin_position), info, "skin", 1);
   }

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <fstream>
 #include <locale>
+#include <optional>
 #include <ostream>
 #include <span>
 #include <string_view>
@@ -8,6 +9,7 @@
 
 #include "hdf5/file.h"
 #include "output/result_file.h"
+#include "output/schema.h"
 #include "output/text.h"
 
 namespace argil::output {
@@ -20,7 +22,8 @@ using hdf5::Group;
 constexpr std::string_view kEnd = "</Xdmf>\n";
 
 // Whole datasets only: a part of a dataset (HyperSlab) is not opened by ParaView's readers. Arrays of a name
-// have the same shape in all frames, so only those of the first are opened: opening costs memory that stays.
+// have the same shape in all frames of an epoch, so only those of its first are opened: opening costs memory
+// that stays.
 struct Writer {
   std::ostream& text;
   std::string file;  // as the XDMF names it, escaped
@@ -60,22 +63,38 @@ constexpr Picture::Attribute kOnSkin[] = {{"saturation", "skin_saturation"}, {"i
 constexpr Picture kCage = {"cage", "tets", "Tetrahedron", "position", "Cell", kOnCage};
 constexpr Picture kSkin = {"skin", "skin_triangles", "Triangle", "skin_position", "Node", kOnSkin};
 
+/// Only the cage's are others in every epoch.
+Dataset open_elements(const Group& root, const Picture& picture, std::int64_t epoch) {
+  if (epoch == 0 || &picture == &kSkin) return root.open_group("mesh").open_dataset(picture.elements);
+  char number[24];
+  std::snprintf(number, sizeof number, "%06lld", static_cast<long long>(epoch));
+  return root.open_group(schema::kEpochs)
+      .open_group(number)
+      .open_group("mesh")
+      .open_dataset(picture.elements);
+}
+
 void write_collection(Writer& out, const Picture& picture, const Group& root) {
-  const Dataset elements = root.open_group("mesh").open_dataset(picture.elements);
   const Group frames = root.open_group("frames");
   out.text << "    <Grid Name=\"" << picture.name
            << "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  std::vector<Dataset> first;  // position, then the attributes
+  std::vector<Dataset> first;  // of an epoch: position, then the attributes
+  std::optional<Dataset> elements;
+  std::int64_t epoch = 0;
   for (const std::string& number : frames.names()) {
     const Group frame = frames.open_group(number);
-    if (first.empty()) {
+    const std::int64_t now = frame.has_attribute(schema::kEpoch) ? frame.read_integer(schema::kEpoch) : 0;
+    if (first.empty() || now != epoch) {
+      epoch = now;
+      first.clear();
+      elements = open_elements(root, picture, epoch);
       first.push_back(frame.open_dataset(picture.position));
       for (const auto& attribute : picture.attributes) first.push_back(frame.open_dataset(attribute.dataset));
     }
     out.text << "      <Grid Name=\"" << picture.name << "\" GridType=\"Uniform\">\n        <Time Value=\""
              << frame.read_real("time") << "\"/>\n        <Topology TopologyType=\"" << picture.topology
-             << "\" NumberOfElements=\"" << elements.shape()[0] << "\">";
-    out.data_item(elements, elements.path());
+             << "\" NumberOfElements=\"" << elements->shape()[0] << "\">";
+    out.data_item(*elements, elements->path());
     out.text << "</Topology>\n        <Geometry GeometryType=\"XYZ\">";
     out.data_item(first[0], frame.path() + "/" + picture.position);
     out.text << "</Geometry>\n";

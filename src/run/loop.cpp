@@ -81,10 +81,12 @@ struct RecordedTicks::Cost {
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 
-RecordedTicks::RecordedTicks(sim::Simulation& simulation, FullModel* full, output::ResultFile& file)
+RecordedTicks::RecordedTicks(const scenario::Scenario& s, sim::Simulation& simulation, FullModel* full,
+                             output::ResultFile& file, bool is_quiet)
     : m_simulation(simulation),
       m_full(full),
       m_file(file),
+      m_remesher(s, &file, is_quiet),
       m_first(simulation.clock().tick),
       m_cost(std::make_unique<Cost>()) {
   m_simulation.observe_stages(&m_cost->stages);
@@ -113,6 +115,7 @@ StepStatus RecordedTicks::make(const device::DeviceSample& sample) {
     m_file.append(record);
   }
   if (m_simulation.frame_due_last_tick()) m_file.append(m_simulation.make_frame());
+  m_remesher.renew_if_spoilt(m_simulation);
   return StepStatus::ok();
 }
 
@@ -132,7 +135,7 @@ LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, 
                  FullModel* full, output::ResultFile& file, bool shows_progress) {
   watch_signals();
   Progress progress(num_ticks, shows_progress);
-  RecordedTicks ticks(simulation, full, file);
+  RecordedTicks ticks(s, simulation, full, file, !shows_progress);
   StepStatus status = StepStatus::ok();
   Tick last_checkpoint = simulation.clock().tick;
   for (Tick k = simulation.clock().tick + 1; k <= num_ticks; ++k) {

@@ -7,6 +7,7 @@
 #include "output/result_file.h"
 #include "run/full_model.h"
 #include "run/hand_motion.h"
+#include "run/remesher.h"
 #include "scenario/scenario.h"
 #include "sim/simulation.h"
 
@@ -32,12 +33,14 @@ class RecordedTicks {
  public:
   /// From the simulation's present tick on; at the first, with the frame before it. `full`, if any, goes
   /// beside. All are kept by reference.
-  RecordedTicks(sim::Simulation& simulation, FullModel* full, output::ResultFile& file);
+  RecordedTicks(const scenario::Scenario& s, sim::Simulation& simulation, FullModel* full,
+                output::ResultFile& file, bool is_quiet);
   ~RecordedTicks();
   RecordedTicks(const RecordedTicks&) = delete;
   RecordedTicks& operator=(const RecordedTicks&) = delete;
 
-  /// One tick; appends the records and the frame that it gives. One that fails leaves none.
+  /// One tick, and new cells where they are due; appends the records and the frame that it gives. One that
+  /// fails leaves none.
   StepStatus make(const device::DeviceSample& sample);
   /// Has the tool touched the body in one of them?
   bool is_limited() const { return m_is_limited; }  ///< what output::describe_limits tells of
@@ -51,6 +54,7 @@ class RecordedTicks {
   sim::Simulation& m_simulation;
   FullModel* m_full;
   output::ResultFile& m_file;
+  Remesher m_remesher;
   Tick m_first;
   bool m_has_touched = false;
   bool m_is_limited = false;

@@ -19,10 +19,11 @@ ResumePoint find_resume_point(const std::string& result, const Identity& identit
   require("scenario_sha256", "another scenario or with other settings", identity.scenario);
   require("inputs_sha256", "a run that read other files (trace, body or tool)", identity.inputs);
   require("build", "another build of argil, whose bits may differ", identity.build);
-  if (reader.outcome() == output::Outcome::done) return {ResumePoint::Kind::done, {}};
+  if (reader.outcome() == output::Outcome::done) return {ResumePoint::Kind::done, {}, {}};
   std::optional<Snapshot> state = reader.find_checkpoint();
   if (!state) return {};
-  return {ResumePoint::Kind::checkpoint, std::move(*state)};
+  const auto tick = static_cast<Tick>(state->at("tick")(0, 0));
+  return {ResumePoint::Kind::checkpoint, std::move(*state), reader.find_last_cells(tick)};
 }
 
 }  // namespace argil::run

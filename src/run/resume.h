@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "base/archive.h"
 #include "run/identity.h"
+#include "sim/state.h"
 
 namespace argil::run {
 
@@ -16,6 +18,7 @@ struct ResumePoint {
   };
   Kind kind = Kind::none;
   Snapshot state;
+  std::optional<sim::Body> cells;  ///< that the body had got before it, of ResultReader::find_last_cells
 };
 
 /// Looks for it in RESULT. Throws InputError, naming what differs, when RESULT is of another scenario, other

@@ -19,6 +19,7 @@
 #include "run/start.h"
 #include "scenario/build.h"
 #include "scenario/patch.h"
+#include "scenario/renew_cells.h"
 #include "scenario/scenario_text.h"
 #include "sim/simulation.h"
 
@@ -189,6 +190,7 @@ RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
   if (options.resume) from = find_resume_point(result, identity);
   if (from.kind == ResumePoint::Kind::done) return end_done_before(result, options);
   if (from.kind == ResumePoint::Kind::checkpoint) {
+    if (from.cells) simulation.restore_cells(scenario::complete_cells(s, std::move(*from.cells)));
     simulation.restore(from.state, result);
     if (full) full->restore(from.state, result);
     Archive archive = Archive::make_restoring(from.state, result);

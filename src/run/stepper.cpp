@@ -29,6 +29,7 @@ bool is_unit(const Quat& q) {
 Stepper::Stepper(const scenario::Scenario& s, const StepperOptions& options)
     : m_options(options),
       m_run(require_ticks(s), options.given_trace, "", options.start),
+      m_remesher(m_run.s, nullptr, true),
       m_num_ticks(count_ticks(m_run.s, m_run.scene.trace)),
       m_hand(options.start ? *options.start : sample_at(m_run.s, m_run.scene.trace, 0)) {
   if (!m_options.record.empty()) check_result_name(m_run.s, m_options.record, "the record");
@@ -76,6 +77,7 @@ StepStatus Stepper::make(Mover mover, const device::DeviceSample& sample) {
   if (!m_ticks && !m_options.record.empty()) begin_record(mover);
   m_mover = mover;
   const StepStatus status = m_ticks ? m_ticks->make(sample) : m_run.simulation.tick(sample);
+  if (!m_ticks && status.is_ok()) m_remesher.renew_if_spoilt(m_run.simulation);
   m_failure.reset();
   if (status.is_ok()) {
     m_hand = sample;
@@ -101,7 +103,7 @@ void Stepper::begin_record(Mover mover) {
   } else {
     m_file.emplace(m_options.record, m_run.make_header(find_identity(m_run.s)));
   }
-  m_ticks.emplace(m_run.simulation, m_run.full.get(), *m_file);
+  m_ticks.emplace(m_run.s, m_run.simulation, m_run.full.get(), *m_file, true);
 }
 
 void Stepper::finish(bool is_interrupted) {

@@ -53,6 +53,7 @@ class Stepper {
 
   StepperOptions m_options;
   ReadyRun m_run;
+  Remesher m_remesher;  // of ticks without a record
   Tick m_num_ticks;
   device::DeviceSample m_hand;
   Mover m_mover = Mover::none;

@@ -156,6 +156,11 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
   b.objects("/body/cells/regions", body.cells.regions, describe_cell_region,
             "graded: balls with small cells, whether the tool comes there or not.")
       .applies = is_graded;
+  b.choice<RemeshWhen>(
+      "/body/cells/remesh", body.cells.remesh,
+      {{RemeshWhen::never, "never"}, {RemeshWhen::when_spoilt, "when_spoilt"}},
+      "New cells between two steps where flow has spoilt those there are: of hencky clay with a strength, by "
+      "the pressure law, in four-node tets and backward_euler's steps; not live.");
   b.number("/body/initial_saturation", p.water.initial_saturation, between(0, 1), "",
            "Saturation of every tet at the start.");
   b.objects("/body/fixed", body.fixed, describe_support,

@@ -29,6 +29,12 @@ enum class Preset {
           ///< hold
 };
 
+/// Whether a body gets new cells while the run goes on.
+enum class RemeshWhen {
+  never,
+  when_spoilt,  ///< by the flow of the clay
+};
+
 enum class CellKind {
   even,    ///< all of one size
   graded,  ///< small where the tool comes
@@ -43,6 +49,7 @@ struct CellRegion {
 
 struct CellSpec {
   CellKind kind = CellKind::even;
+  RemeshWhen remesh = RemeshWhen::when_spoilt;
   double near_tool = 0.0;           ///< graded: size where the tool comes [m]; 0: chosen
   double growth = 0.0;              ///< graded: of the size per distance from there [–]; 0: chosen
   std::vector<CellRegion> regions;  ///< graded

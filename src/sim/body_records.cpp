@@ -29,6 +29,7 @@ PhysicsRecord BodySide::make_record() {
   record.active_nodes = is_at_rest ? 0 : m_region.num_active();
   record.min_volume_ratio = m_solid.kinematics.min_volume_ratio();
   record.max_plastic_strain = strain.largest_plastic_strain;
+  record.epoch = m_body.epoch;
   record.limited_tets = m_limit.num_tets;
   record.limited_tet = m_limit.worst_tet;
   record.fidelity = m_economy.record();

@@ -1,10 +1,13 @@
 #include "sim/body_side.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/check.h"
 #include "sim/extent.h"
 #include "solid/committed.h"
+#include "solid/material_changes.h"
 #include "solid/statics.h"
 #include "solid/step_solver.h"
 
@@ -42,7 +45,10 @@ BodySide::BodySide(Body body, const Params& params)
   ARGIL_ASSERT(rest.is_ok());
   m_economy.begin(m_state, params.solid.gravity.norm() > 0.0 || m_force.loads().norm() > 0.0);
   m_materials.set_all();
-  const bool is_swollen = params.water.swelling > 0.0 && (m_water.saturation().array() != 0.0).any();
+  for (Eigen::Index t = 0; t < m_body.rest_volume_ratio.size(); ++t)
+    solid::set_swelling(m_solid, static_cast<int>(t), m_body.rest_volume_ratio(t));
+  const bool is_swollen = m_body.rest_volume_ratio.size() > 0 ||
+                          (params.water.swelling > 0.0 && (m_water.saturation().array() != 0.0).any());
   if (is_swollen) {  // dry clay has the size that it came with
     m_state.is_at_rest = false;
     rest = solid::update_kinematics(m_solid, m_region, m_state.solid.x, 0);
@@ -52,6 +58,69 @@ BodySide::BodySide(Body body, const Params& params)
   solid::make_ready(m_solid, m_region, m_state.solid, m_force.total());
   solid::commit(m_solid, m_region, m_state.solid);
   commit();
+}
+
+void BodySide::go_on_from(const BodySide& before, const RemappedState& clay) {
+  static_cast<BodyProgress&>(m_state) = before.m_state;
+  m_state.is_at_rest = false;
+  m_state.solid.v = clay.v;
+  water::WaterState water = m_water.state();
+  water.initial = before.m_water.state().initial;
+  water.added = before.m_water.state().added;
+  water.removed = before.m_water.state().removed;
+  m_water.restore(water);
+  m_region.wake_all();
+  begin_strained(clay.elastic);
+}
+
+/// In the shape of its mesh, F = J^⅓ 1 of the volume J over that at rest, so that C_p = J^⅔ b⁻¹.
+void BodySide::begin_strained(const TensorField& elastic) {
+  const int points_per_tet = m_solid.model.elements.points_per_tet;
+  for (int point = 0; point < m_solid.model.elements.num_points(); ++point) {
+    const int tet = point / points_per_tet;
+    m_state.solid.plastic_strain.col(point) = -elastic.col(tet);
+    m_state.solid.plastic_strain.col(point).head<3>().array() -= std::log(m_body.rest_volume_ratio(tet)) / 3.0;
+  }
+  m_state.solid.x = m_solid.model.elements.rest;
+  solid::forget(m_solid, m_region);
+  const StepStatus status = solid::update_kinematics(m_solid, m_region, m_state.solid.x, m_state.hand.ticks);
+  ARGIL_ASSERT(status.is_ok());
+  solid::set_start(m_solid, m_region, m_state.solid);
+  solid::commit(m_solid, m_region, m_state.solid);
+  commit();
+}
+
+/// By turns to the elastic equilibrium, which is the nearest stress in balance, and to the nearest within the
+/// strength; both sets are convex, so that the turns lead to a stress in both, where there is one.
+void BodySide::balance(const Points& contact_force) {
+  constexpr int kTurns = 6;
+  constexpr double kEnough = 1e-3;  // past the strength
+  const Points v = m_state.solid.v;
+  const Points force = m_force.loads() + contact_force;
+  const TensorField before = find_elastic_strain(m_solid);
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const StepStatus status = solid::find_equilibrium(m_solid, m_region.whole(), {force}, m_state.solid);
+    TensorField elastic = status.is_ok() ? find_elastic_strain(m_solid) : before;
+    const double beyond = status.is_ok() && turn + 1 < kTurns ? limit_to_strength(elastic) : 0.0;
+    m_state.solid.v = v;
+    begin_strained(elastic);
+    if (beyond < kEnough) return;
+  }
+}
+
+/// Returns by what share the farthest was beyond.
+double BodySide::limit_to_strength(TensorField& elastic) const {
+  double farthest = 0.0;
+  for (Eigen::Index t = 0; t < elastic.cols(); ++t) {
+    Vec6 deviator = elastic.col(t);
+    deviator.head<3>().array() -= elastic.col(t).head<3>().mean();
+    const double yield = m_solid.materials.yield()(t * m_solid.model.elements.points_per_tet);
+    const double norm = deviator.norm();
+    if (!(norm > yield)) continue;
+    farthest = std::max(farthest, norm / yield - 1.0);
+    elastic.col(t) -= (1.0 - yield / norm) * deviator;
+  }
+  return farthest;
 }
 
 StepStatus BodySide::find_equilibrium() {

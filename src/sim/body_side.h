@@ -14,6 +14,7 @@
 #include "sim/params.h"
 #include "sim/plastic_flow.h"
 #include "sim/record.h"
+#include "sim/remap.h"
 #include "sim/stage.h"
 #include "sim/state.h"
 #include "sim/step_result.h"
@@ -41,6 +42,14 @@ class BodySide {
   void roll_back();
   /// To the elastic equilibrium under the loads, without the tool.
   StepStatus find_equilibrium();
+
+  /// Goes on from where another with other cells in the same shape has come to; `clay`: remapped from there.
+  void go_on_from(const BodySide& before, const RemappedState& clay);
+
+  /// Changes the clay's stress, in the shape that it has, until it is in balance with the loads and these
+  /// forces of contacts, 3×n [N], and within its strength; by about as little as that takes. Nothing changes
+  /// where supports alone do not hold the body.
+  void balance(const Points& contact_force);
 
   const BodyState& state() const { return m_state; }
   const Body& body() const { return m_body; }
@@ -83,6 +92,8 @@ class BodySide {
   double clay_factor(Eigen::Index node, const ContactPatch& patch) const;
 
   // body_side.cpp
+  void begin_strained(const TensorField& elastic);
+  double limit_to_strength(TensorField& elastic) const;
   StepStatus make_step(const ContactLoad& load, StepResult& result);
   void hold_still(const ContactLoad& load, const Failure& failure, StepResult& result);
   void begin_step(const ContactLoad& load, StepResult& result);

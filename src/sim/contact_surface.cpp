@@ -32,18 +32,21 @@ bool shares_tet(const solid::PointStiffness& s, const solid::Elements& elements)
 ContactSurface::ContactSurface(SurfaceKind kind, contact::ContactLaw law, const Body& body,
                                const solid::Elements& elements) {
   m_begin.push_back(0);
-  if (kind == SurfaceKind::cage) {
+  const bool has_own = body.touched.num_triangles() > 0;
+  if (kind == SurfaceKind::cage && !has_own) {
     take_boundary(body, elements);
     return;
   }
-  ARGIL_ASSERT(body.skin_embedding.num_points() > 0);
+  const mesh::TriangleMesh& surface = has_own ? body.touched : body.skin;
+  const embed::Embedding& embedding = has_own ? body.touched_embedding : body.skin_embedding;
+  ARGIL_ASSERT(embedding.num_points() > 0);
   if (law == contact::ContactLaw::pairs) {
-    take_skin(body.skin.triangles, body.skin_embedding, elements);
+    take_skin(surface.triangles, embedding, elements);
     return;
   }
   const double nodes_per_edge = elements.nodes_per_tet == 4 ? 1.0 : 2.0;
   const embed::FineSkin fine =
-      embed::split_to_cells(body.skin, body.skin_embedding, body.mesh, kSkinOverCell / nodes_per_edge);
+      embed::split_to_cells(surface, embedding, body.mesh, kSkinOverCell / nodes_per_edge);
   take_skin(fine.triangles, fine.embedding, elements);
 }
 

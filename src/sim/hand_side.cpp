@@ -69,6 +69,30 @@ void HandSide::place_surface(const Points& x) {
   prepare_detection(x);
 }
 
+void HandSide::go_on_from(const HandSide& before, const Points& x) {
+  m_state = before.m_state;
+  m_grip = before.m_grip;
+  if (m_friction) m_friction->go_on_from(*before.m_friction);
+  m_pressure->stiffness() = m_body.find_surface_stiffness();
+  place_surface(x);
+  commit();
+}
+
+Points HandSide::find_contact_force() {
+  NodalForce force(m_body.solid().model.elements.num_nodes());
+  if (!m_pressure || keeps_shape() || m_state.num_contacts == 0) return force.at;
+  const contact::Pose& tool = m_state.contact_tool;
+  if (m_grip.holds())
+    m_grip.find_contacts(m_touched.x_t1(), tool, tool, m_contacts);
+  else
+    m_pressure->find_contacts(m_touched.x_t1(), tool, tool, m_state.yielding, m_contacts);
+  const double found = m_contacts.force_on_tool.norm();
+  const double share = found > 0.0 ? m_state.hand_force.norm() / found : 0.0;
+  for (const contact::Contact& c : m_contacts.contacts)
+    m_surface.add_force({c.vertex, c.weight, share * c.force}, force);
+  return force.at;
+}
+
 /// Of the contact law: a surface at x.
 void HandSide::prepare_detection(const Points& x) {
   if (m_pressure)

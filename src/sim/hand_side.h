@@ -67,6 +67,10 @@ class HandSide {
   StepStatus update_compliance();
   /// The surface stands at `x` (3×vertices), as if it had always.
   void place_surface(const Points& x);
+  /// Goes on as the hand of a body whose surface, now at `x`, has other vertices besides those it had.
+  void go_on_from(const HandSide& before, const Points& x);
+  /// On the body, 3×n nodes [N]: pressures where the tool is now, scaled to the force that the hand feels.
+  Points find_contact_force();
   /// Does the tool touch or lie in a body whose surface is at x?
   bool overlaps(const Points& x) const { return m_detector.overlaps(x, m_state.tool); }
 

@@ -43,6 +43,7 @@ struct PhysicsRecord {
   int active_nodes = 0;              ///< vertices that were solved for
   double min_volume_ratio = 1.0;     ///< smallest det F
   double max_plastic_strain = 0.0;   ///< largest ‖ε_p‖_F
+  int epoch = 0;                     ///< how often the body has got new cells before the step
   int limited_tets = 0;              ///< whose motion was limited in the step; all: the whole body's was
   int limited_tet = -1;     ///< the worst of them, as the mesh file numbers it; −1: none, or no tet's
   FidelityRecord fidelity;  ///< but in `full`

@@ -3,16 +3,40 @@
 #include <utility>
 
 #include "base/check.h"
+#include "sim/remap.h"
 
 namespace argil::sim {
 
 Simulation::Simulation(Body body, const mesh::TriangleMesh& tool, const Params& params,
                        const device::DeviceSample& start)
     : m_params(params),
-      m_body_side(std::move(body), m_params),
-      m_hand(tool, m_params, m_body_side.surface(), m_body_side, start),
-      m_result(m_body_side.surface().num_vertices()) {
-  m_hand.place_surface(surface_now());
+      m_tool(tool),
+      m_sides(std::make_unique<Sides>(std::move(body), m_tool, m_params, start)),
+      m_result(body_side().surface().num_vertices()) {
+  hand().place_surface(surface_now());
+}
+
+void Simulation::set_sides(std::unique_ptr<Sides> sides) {
+  m_sides = std::move(sides);
+  m_result = StepResult(body_side().surface().num_vertices());
+  observe_stages(m_observer);
+}
+
+void Simulation::renew_cells(Body body) {
+  const RemappedState clay =
+      remap(this->body(), solid(), body_state().solid.x, pore_water().saturation(), body);
+  auto sides = std::make_unique<Sides>(std::move(body), m_tool, m_params, device::DeviceSample{});
+  sides->body.go_on_from(body_side(), clay);
+  Points x;
+  sides->body.surface().find_positions(sides->body.state().solid.x, x);
+  sides->hand.go_on_from(hand(), x);
+  set_sides(std::move(sides));
+  body_side().balance(hand().find_contact_force());
+}
+
+void Simulation::restore_cells(Body body) {
+  set_sides(std::make_unique<Sides>(std::move(body), m_tool, m_params, device::DeviceSample{}));
+  hand().place_surface(surface_now());
 }
 
 StepStatus Simulation::tick(const device::DeviceSample& sample) {
@@ -23,17 +47,17 @@ StepStatus Simulation::tick(const device::DeviceSample& sample) {
 StepStatus Simulation::tick(const device::DeviceSample& sample, const TickPlan& plan) {
   ARGIL_ASSERT(plan.begins_step == plan.waits_for_result ||
                m_params.rates.between_frames != BetweenFrames::compliant);
-  return sim::tick(m_hand, *this, sample, plan, plan.waits_for_result ? &m_load : nullptr);
+  return sim::tick(hand(), *this, sample, plan, plan.waits_for_result ? &m_load : nullptr);
 }
 
 void Simulation::start_step(HandSide& hand) {
   hand.hand_over(m_load);
-  m_step_status = m_body_side.step(m_load, m_result);
+  m_step_status = body_side().step(m_load, m_result);
   if (m_step_status.is_ok() && m_result.has_moved) m_step_status = hand.update_compliance();
   if (m_step_status.is_ok())
-    m_body_side.commit();
+    body_side().commit();
   else
-    m_body_side.roll_back();
+    body_side().roll_back();
 }
 
 StepStatus Simulation::receive_step(HandSide& hand) {
@@ -42,25 +66,25 @@ StepStatus Simulation::receive_step(HandSide& hand) {
 }
 
 Frame Simulation::make_frame() {
-  Frame frame = m_body_side.make_frame(m_hand.pose());
+  Frame frame = body_side().make_frame(hand().pose());
   frame.state_hash = state_hash();
   return frame;
 }
 
 StepStatus Simulation::find_equilibrium() {
-  ARGIL_TRY(m_body_side.find_equilibrium());
-  m_hand.place_surface(surface_now());
+  ARGIL_TRY(body_side().find_equilibrium());
+  hand().place_surface(surface_now());
   return StepStatus::ok();
 }
 
 Points Simulation::surface_now() const {
   Points x;
-  m_body_side.surface().find_positions(m_body_side.state().solid.x, x);
+  body_side().surface().find_positions(body_side().state().solid.x, x);
   return x;
 }
 
 bool Simulation::tool_overlaps_body() const {
-  return m_hand.overlaps(surface_now());
+  return hand().overlaps(surface_now());
 }
 
 }  // namespace argil::sim

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "sim/body_side.h"
@@ -23,6 +24,15 @@ class Simulation final : private BodySteps {
   /// `plan` says. A step that failed is told then.
   StepStatus tick(const device::DeviceSample& sample, const TickPlan& plan);
 
+  /// Vertices of the touched surface, where they are after the last step (3×n) [m].
+  Points surface_now() const;
+  /// Between two steps: the body gets new cells in the shape that it has now. `body`: these, with skin,
+  /// embedding and topology; what its clay is like, water, speed and strain, is taken over from the old ones
+  /// (remap). The hand feels what it felt; contacts are found anew in the next tick.
+  void renew_cells(Body body);
+  /// The body has these cells, of which a snapshot was taken that is restored next.
+  void restore_cells(Body body);
+
   /// Of the last step, also when its result has not been received.
   const StepStatus& step_status() const { return m_step_status; }
 
@@ -33,26 +43,27 @@ class Simulation final : private BodySteps {
   bool tool_overlaps_body() const;
 
   /// The two sides, for a loop that runs each in a thread of its own.
-  HandSide& hand() { return m_hand; }
-  const HandSide& hand() const { return m_hand; }
-  BodySide& body_side() { return m_body_side; }
-  const BodySide& body_side() const { return m_body_side; }
-  const HandState& hand_state() const { return m_hand.state(); }
-  const BodyState& body_state() const { return m_body_side.state(); }
-  const Body& body() const { return m_body_side.body(); }
-  const Clock& clock() const { return m_hand.clock(); }
-  const water::PoreWater& pore_water() const { return m_body_side.pore_water(); }
-  const solid::Body& solid() const { return m_body_side.solid(); }
-  const contact::Contacts& contacts() const { return m_hand.contacts(); }
+  HandSide& hand() { return m_sides->hand; }
+  const HandSide& hand() const { return m_sides->hand; }
+  BodySide& body_side() { return m_sides->body; }
+  const BodySide& body_side() const { return m_sides->body; }
+  const HandState& hand_state() const { return hand().state(); }
+  const BodyState& body_state() const { return body_side().state(); }
+  const Body& body() const { return body_side().body(); }
+  const Clock& clock() const { return hand().clock(); }
+  const water::PoreWater& pore_water() const { return body_side().pore_water(); }
+  const solid::Body& solid() const { return body_side().solid(); }
+  const contact::Contacts& contacts() const { return hand().contacts(); }
   const Params& params() const { return m_params; }
+  const mesh::TriangleMesh& tool() const { return m_tool; }  ///< its surface in its own frame
   /// Batch only, where the hand waits for every step: did the last tick make one?
   bool physics_due_last_tick() const {
     return clock().tick > 0 && clock().tick % m_params.rates.physics_period_ticks == 0;
   }
   bool frame_due_last_tick() const { return clock().tick % m_params.rates.frame_period_ticks == 0; }
 
-  HapticRecord haptic_record() const { return m_hand.make_record(); }   ///< of the last tick
-  PhysicsRecord physics_record() { return m_body_side.make_record(); }  ///< of the last physics step
+  HapticRecord haptic_record() const { return hand().make_record(); }   ///< of the last tick
+  PhysicsRecord physics_record() { return body_side().make_record(); }  ///< of the last physics step
   Frame make_frame();                                                   ///< the body as it is now
   /// SHA-256 of all that a tick takes from earlier ones: from equal hashes, equal samples lead to equal bits.
   std::string state_hash();
@@ -67,22 +78,33 @@ class Simulation final : private BodySteps {
   void restore_without_history(const Snapshot& snapshot, const std::string& origin);
 
   void observe_stages(StageObserver* observer) {
-    m_hand.observe_stages(observer);
-    m_body_side.observe_stages(observer);
+    m_observer = observer;
+    hand().observe_stages(observer);
+    body_side().observe_stages(observer);
   }
 
  private:
   void start_step(HandSide& hand) override;
   StepStatus receive_step(HandSide& hand) override;
   void serialize(Archive& archive);
-  Points surface_now() const;  // 3×vertices of the touched surface
+  struct Sides;
+  void set_sides(std::unique_ptr<Sides> sides);
+
+  /// Body and hand, who know each other.
+  struct Sides {
+    Sides(Body of, const mesh::TriangleMesh& tool, const Params& params, const device::DeviceSample& start)
+        : body(std::move(of), params), hand(tool, params, body.surface(), body, start) {}
+    BodySide body;
+    HandSide hand;
+  };
 
   Params m_params;
-  BodySide m_body_side;
-  HandSide m_hand;
+  mesh::TriangleMesh m_tool;
+  std::unique_ptr<Sides> m_sides;
   ContactLoad m_load;  // of the last step
   StepResult m_result;
   StepStatus m_step_status = StepStatus::ok();
+  StageObserver* m_observer = nullptr;
 };
 
 }  // namespace argil::sim

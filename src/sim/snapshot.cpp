@@ -32,8 +32,8 @@ std::string Simulation::state_hash() {
 }
 
 void Simulation::serialize(Archive& archive) {
-  m_hand.serialize(archive);
-  m_body_side.serialize(archive);
+  hand().serialize(archive);
+  body_side().serialize(archive);
 }
 
 void HandSide::serialize(Archive& archive) {

@@ -17,14 +17,14 @@ namespace argil::sim {
 
 struct Params;
 
-/// The body as a scene gives it; nothing in it changes during a run. Steps change BodyState and what water,
-/// materials, economy and flow keep.
 /// A place of the body at rest that the tool's motion takes it into.
 struct TouchedPlace {
   Vec3 position = Vec3::Zero();  ///< on the surface, nearest to the middle of the tool [m]
   double radius = 0.0;           ///< √(R d) of a ball of radius R that is d deep: Hertz's patch [m]
 };
 
+/// The body as a scene gives it, or as it got new cells; nothing in it changes until it does. Steps change
+/// BodyState and what water, materials, economy and flow keep.
 struct Body {
   mesh::TetMesh mesh;
   mesh::Topology topology;
@@ -35,7 +35,13 @@ struct Body {
   solid::Loads loads;
   mesh::TriangleMesh skin;  ///< empty without a skin
   embed::Embedding skin_embedding;
+  mesh::TriangleMesh touched;  ///< what the tool meets, where that is finer than the skin; else empty
+  embed::Embedding touched_embedding;
+  /// Of each tet: volume at rest over that of the mesh, where cells were made of clay under pressure; empty: 1.
+  Field rest_volume_ratio;
   std::vector<TouchedPlace> touched_places;  ///< by which its cells were graded; empty: they are even
+  int epoch = 0;                             ///< how often it has got new cells
+  Tick epoch_tick = 0;                       ///< after which it got these
 };
 
 /// The hand at the end of some tick, as it is known outside: what a picture and its hash take from it.

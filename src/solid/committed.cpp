@@ -82,6 +82,11 @@ void commit(Body& body, ActiveRegion& region, const SolidState& state, const std
   body.is_state_changed = false;
 }
 
+void forget(Body& body, ActiveRegion& region) {
+  region.forget();
+  mark_all_changed(body);
+}
+
 StepStatus roll_back(Body& body, ActiveRegion& region, SolidState& state, Tick tick) {
   state = body.committed;
   if (!body.history.committed.has_nodal_blocks) drop_nodal_stiffness(body.model, body.materials, body.system);
@@ -102,10 +107,7 @@ void serialize(Archive& archive, Body& body, ActiveRegion& region, SolidState& s
   const Archive::History of_solves(archive);
   serialize_solvers(archive, body);
   region.serialize(archive);
-  if (archive.is_restoring()) {
-    region.forget();
-    mark_all_changed(body);
-  }
+  if (archive.is_restoring()) forget(body, region);
   FrameLag& lag = body.history.frame_lag;
   archive.number("solid/frame_slack", lag.slack);
   archive.number("solid/frame_error", lag.left);

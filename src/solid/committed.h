@@ -28,6 +28,9 @@ void commit(Body& body, ActiveRegion& region, const SolidState& state,
 /// as they were then. Moduli, sizes and masses are to be those of then already.
 [[nodiscard]] StepStatus roll_back(Body& body, ActiveRegion& region, SolidState& state, Tick tick);
 
+/// The state is set from outside: nothing is known of what led to it.
+void forget(Body& body, ActiveRegion& region);
+
 /// `state` and all that steps take from earlier ones besides moduli, sizes and masses, which come first.
 /// After a return kinematics are to be restored.
 void serialize(Archive& archive, Body& body, ActiveRegion& region, SolidState& state);

@@ -129,8 +129,12 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
                            0.5 * (whole.m[6] + whole.m[2]),
                            0.5 * (whole.m[3] + whole.m[1])};
   set_half_logarithm(excess, plastic);
-  const Lanes trace = (plastic[0] + plastic[1] + plastic[2]) / 3.0;  // what rounding left
-  for (int k = 0; k < 6; ++k) plastic[k] = -(k < 3 ? plastic[k] - trace : kSqrt2 * plastic[k]);
+  // Flow keeps the volume: what else changes the trace is rounding.
+  Lanes before[6];
+  read_tensor(points.plastic_strain, begin, last, before);
+  const Lanes mean_before = (before[0] + before[1] + before[2]) / 3.0;
+  const Lanes trace = (plastic[0] + plastic[1] + plastic[2]) / 3.0;
+  for (int k = 0; k < 6; ++k) plastic[k] = k < 3 ? mean_before - (plastic[k] - trace) : -kSqrt2 * plastic[k];
   Lanes plastic_squares = {};
   for (int k = 0; k < 6; ++k) plastic_squares += plastic[k] * plastic[k];
   const Lanes is_written = plastic_squares <= kMostPlastic * kMostPlastic ? one : zero;

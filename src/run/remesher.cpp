@@ -1,0 +1,70 @@
+#include "run/remesher.h"
+
+#include <cstdio>
+#include <utility>
+
+#include "base/error.h"
+#include "mesh/quality.h"
+#include "scenario/renew_cells.h"
+
+namespace argil::run {
+namespace {
+
+constexpr Tick kStepsBetweenLooks = 8;
+constexpr double kShortestEpoch = 0.05;  // [s]
+// Of the worst tet, mesh::find_worst_shape: below which cells are renewed while nothing touches the body,
+// and while something does.
+constexpr double kWorn = 0.12;
+constexpr double kSpoilt = 0.1;
+
+}  // namespace
+
+Remesher::Remesher(const scenario::Scenario& s, output::ResultFile* file, bool is_quiet)
+    : m_scenario(s),
+      m_file(file),
+      m_is_quiet(is_quiet),
+      m_can_renew(scenario::find_remesh_obstacle(s).empty()) {}
+
+bool Remesher::is_due(const sim::Simulation& simulation) const {
+  const sim::RateParams& rates = m_scenario.params.rates;
+  const Tick tick = simulation.clock().tick;
+  if (tick % (kStepsBetweenLooks * rates.physics_period_ticks) != 0) return false;
+  const sim::Body& body = simulation.body();
+  if (static_cast<double>(tick - body.epoch_tick) * rates.haptic_period < kShortestEpoch) return false;
+  if (simulation.body_state().is_at_rest && simulation.body_state().plastic_dissipation == 0.0) return false;
+  const double worst = mesh::find_worst_shape(simulation.body_state().solid.x, body.mesh.tets);
+  return worst < (simulation.hand_state().num_contacts == 0 ? kWorn : kSpoilt);
+}
+
+bool Remesher::renew_if_spoilt(sim::Simulation& simulation) {
+  if (!m_can_renew || !is_due(simulation)) return false;
+  const sim::Body& before = simulation.body();
+  const Points& x = simulation.body_state().solid.x;
+  const sim::HandState& hand = simulation.hand_state();
+  sim::Body body;
+  try {
+    body = scenario::make_new_cells(
+        m_scenario, {before,
+                     x,
+                     {simulation.surface_now(), simulation.body_side().surface().triangles()},
+                     simulation.tool(),
+                     hand.num_contacts > 0 ? std::optional(hand.contact_tool) : std::nullopt});
+  } catch (const InputError& error) {
+    if (!m_is_quiet)
+      std::fprintf(stderr, "argil: note: the clay's shape gives no new cells: %s\n", error.what());
+    m_can_renew = false;
+    return false;
+  }
+  body.epoch = before.epoch + 1;
+  body.epoch_tick = simulation.clock().tick;
+  const double worst = mesh::find_worst_shape(x, before.mesh.tets);
+  if (!m_is_quiet)
+    std::fprintf(
+        stderr, "argil: note: tick %lld: new cells, %d tets for %d whose worst had the quality %.2g\n",
+        static_cast<long long>(body.epoch_tick), body.mesh.num_tets(), before.mesh.num_tets(), worst);
+  simulation.renew_cells(std::move(body));
+  if (m_file) m_file->begin_epoch(simulation.body());
+  return true;
+}
+
+}  // namespace argil::run

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "output/result_file.h"
+#include "scenario/scenario.h"
+#include "sim/simulation.h"
+
+namespace argil::run {
+
+/// Gives a body new cells between two steps where flow has spoilt those that it has. When, and which, is a
+/// function of the committed state alone, so that equal runs get equal cells.
+class Remesher {
+ public:
+  /// `file`: gets the new cells, if there is one. Both are kept by reference.
+  Remesher(const scenario::Scenario& s, output::ResultFile* file, bool is_quiet);
+
+  /// After a tick. True when the body has got new cells.
+  bool renew_if_spoilt(sim::Simulation& simulation);
+
+ private:
+  bool is_due(const sim::Simulation& simulation) const;
+
+  const scenario::Scenario& m_scenario;
+  output::ResultFile* m_file;
+  bool m_is_quiet;
+  bool m_can_renew;
+};
+
+}  // namespace argil::run

@@ -1,0 +1,175 @@
+#include "sim/remap.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/mandel.h"
+#include "embed/tet_locator.h"
+#include "mesh/topology.h"
+
+namespace argil::sim {
+namespace {
+
+constexpr int kSamples = 8;     // of a tet
+constexpr double kHeld = 0.85;  // of a node's place, by weight, that held nodes carry
+
+/// Barycentric coordinates of the places of a tet over which its mean is taken: four points of equal weight
+/// [Keast1986, degree 2], and those of the four corners' quarters.
+std::array<Vec4, kSamples> list_samples() {
+  std::array<Vec4, kSamples> samples;
+  for (int k = 0; k < 4; ++k) {
+    samples[static_cast<std::size_t>(k)] = Vec4::Constant(0.1381966011250105);
+    samples[static_cast<std::size_t>(k)](k) = 0.5854101966249685;
+    samples[static_cast<std::size_t>(4 + k)] = Vec4::Constant(0.0625);
+    samples[static_cast<std::size_t>(4 + k)](k) = 0.8125;
+  }
+  return samples;
+}
+
+Mat3 apply_to_modes(const Mat3& symmetric, double (*function)(double)) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> modes(symmetric);
+  return modes.eigenvectors() * modes.eigenvalues().unaryExpr(function).asDiagonal() *
+         modes.eigenvectors().transpose();
+}
+
+double half_logarithm(double x) {
+  return 0.5 * std::log(x);
+}
+double exp_of_minus_double(double x) {
+  return std::exp(-2.0 * x);
+}
+
+/// Finds tets of a mesh for places of another.
+class Places {
+ public:
+  explicit Places(const mesh::TetMesh& mesh) : m_inside(mesh), m_boundary(mesh) {}
+  embed::TetLocator::Place find(const Vec3& x) const {
+    embed::TetLocator::Place place = m_inside.find(x);
+    if (place.tet < 0) {
+      place = m_boundary.find(x, std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::infinity());
+      place.weights = place.weights.cwiseMax(0.0);
+      place.weights /= place.weights.sum();
+    }
+    return place;
+  }
+
+ private:
+  embed::TetLocator m_inside;
+  embed::BoundaryTets m_boundary;
+};
+
+/// Calls visit(tet, place) for all.
+template <class Visit>
+void for_samples(const mesh::TetMesh& mesh, const Visit& visit) {
+  const std::array<Vec4, kSamples> samples = list_samples();
+  for (int t = 0; t < mesh.num_tets(); ++t)
+    for (const Vec4& weights : samples) {
+      Vec3 x = Vec3::Zero();
+      for (Eigen::Index k = 0; k < 4; ++k) x += weights(k) * mesh.vertices.col(mesh.tets(k, t));
+      visit(t, x);
+    }
+}
+
+/// For each tet the old tets at its samples.
+using Origins = Eigen::Matrix<int, kSamples, Eigen::Dynamic>;
+
+Origins find_origins(const Places& places, const mesh::TetMesh& mesh) {
+  Origins origins(kSamples, mesh.num_tets());
+  Eigen::Index i = 0;
+  for_samples(mesh, [&](int, const Vec3& x) { origins(i++) = places.find(x).tet; });
+  return origins;
+}
+
+/// Mean over the places of each tet.
+template <class Columns>
+Columns take_means(const Origins& origins, const Columns& from) {
+  Columns to(from.rows(), origins.cols());
+  for (Eigen::Index t = 0; t < origins.cols(); ++t) {
+    to.col(t).setZero();
+    for (const int tet : origins.col(t)) to.col(t) += from.col(tet) / kSamples;
+  }
+  return to;
+}
+Field take_means(const Origins& origins, const Field& from) {
+  const Eigen::RowVectorXd row = from.transpose();
+  return take_means(origins, row).transpose();
+}
+
+void take_supports(const Body& from, const solid::Body& solid,
+                   const std::vector<embed::TetLocator::Place>& of_node, Body& to) {
+  to.supports = from.supports;
+  for (std::size_t s = 0; s < to.supports.size(); ++s) {
+    solid::Region& region = to.supports[s].region;
+    region = {};
+    region.kind = solid::Region::Kind::nodes;
+    const auto is_held = [&](int node) {
+      return (solid.model.constraints.support.col(node).array() == static_cast<int>(s)).any();
+    };
+    for (int n = 0; n < to.mesh.num_vertices(); ++n) {
+      const embed::TetLocator::Place& place = of_node[static_cast<std::size_t>(n)];
+      double held = 0.0;
+      for (Eigen::Index k = 0; k < 4; ++k)
+        if (is_held(from.mesh.tets(k, place.tet))) held += place.weights(k);
+      if (held >= kHeld) region.nodes.push_back(n);
+    }
+  }
+}
+
+/// Scales S so that Σ V S, by which the mass goes, is `wanted`, and no tet is more than full.
+void keep_water(const Field& volume, double wanted, Field& saturation) {
+  constexpr int kTries = 40;
+  for (int i = 0; i < kTries; ++i) {
+    const double now = volume.dot(saturation);
+    if (!(now > 0.0) || std::abs(now - wanted) <= 1e-15 * wanted) return;
+    saturation = (saturation * (wanted / now)).cwiseMin(1.0);
+  }
+}
+
+}  // namespace
+
+TensorField find_elastic_strain(const solid::Body& solid) {
+  const solid::Elements& elements = solid.model.elements;
+  TensorField elastic = TensorField::Zero(6, elements.num_tets());
+  for (int point = 0; point < elements.num_points(); ++point) {
+    const Mat3 F = solid.kinematics.at(point).F;
+    const Mat3 metric = apply_to_modes(from_mandel(solid.plastic_strain->col(point)), exp_of_minus_double);
+    const Mat3 b = F * metric * F.transpose();
+    elastic.col(elements.tet_of_point(point)) +=
+        to_mandel(apply_to_modes(0.5 * (b + b.transpose()), half_logarithm)) / elements.points_per_tet;
+  }
+  return elastic;
+}
+
+RemappedState remap(const Body& from, const solid::Body& solid, const Points& x, const Field& saturation,
+                    Body& to) {
+  mesh::TetMesh now = from.mesh;
+  now.vertices = x.leftCols(from.mesh.num_vertices());
+  const Places places(now);
+  std::vector<embed::TetLocator::Place> of_node;
+  for (const Vec3 node : to.mesh.vertices.colwise()) of_node.push_back(places.find(node));
+  const Origins origins = find_origins(places, to.mesh);
+  to.initial_saturation = take_means(origins, saturation);
+  keep_water(mesh::compute_volumes(to.mesh.vertices, to.mesh.tets),
+             mesh::compute_volumes(from.mesh.vertices, from.mesh.tets).dot(saturation),
+             to.initial_saturation);
+  if (from.youngs_modulus.size() > 0) to.youngs_modulus = take_means(origins, from.youngs_modulus);
+  take_supports(from, solid, of_node, to);
+  RemappedState state;
+  state.elastic = take_means(origins, find_elastic_strain(solid));
+  to.rest_volume_ratio = (-state.elastic.topRows<3>().colwise().sum()).array().exp().transpose();
+  state.v.resize(3, to.mesh.num_vertices());
+  for (int n = 0; n < to.mesh.num_vertices(); ++n) {
+    const embed::TetLocator::Place& place = of_node[static_cast<std::size_t>(n)];
+    state.v.col(n).setZero();
+    for (Eigen::Index k = 0; k < 4; ++k)
+      state.v.col(n) += place.weights(k) * solid.committed.v.col(from.mesh.tets(k, place.tet));
+  }
+  return state;
+}
+
+}  // namespace argil::sim

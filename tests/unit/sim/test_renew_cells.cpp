@@ -1,0 +1,114 @@
+// A body that gets new cells under the tool: where they are the old ones in their present shape, the hand
+// goes on feeling what a body feels that was left alone.
+#include <gtest/gtest.h>
+
+#include "contact/tool_shape.h"
+#include "sim/simulation.h"
+#include "support/block_body.h"
+
+namespace argil::sim {
+namespace {
+
+constexpr double kRadius = 0.008;
+constexpr double kTop = 0.02;
+
+Params make_clay() {
+  Params p;
+  p.elastic = {1.2e6, 0.3};
+  p.plasticity.form = material::FlowForm::j2;
+  p.plasticity.strength = 15e3;
+  p.kernel.form = material::KernelForm::off;
+  p.contact.law = contact::ContactLaw::pressure;
+  p.contact.round_tool = contact::RoundTool{kRadius, 0.0, kRadius, false};
+  p.contact.grip_strength = 1e9;
+  p.solid.model = solid::StrainModel::hencky;
+  p.solid.solver.tolerance = 1e-8;
+  p.water.initial_saturation = 0.3;
+  p.device.max_force = 1e3;
+  return p;
+}
+
+device::DeviceSample place(double depth, device::ToolMode mode = device::ToolMode::push) {
+  device::DeviceSample at;
+  at.position = {0.0212, 0.0195, kTop + kRadius - depth};
+  at.mode = mode;
+  return at;
+}
+
+struct Pressed {
+  const Params params = make_clay();
+  Simulation simulation{test::make_block_body(10, 10, 5, Vec3(0.04, 0.04, kTop), 0.3),
+                        contact::make_sphere_tool(kRadius, 2), params, place(-1e-3)};
+
+  void go(double from, double to, int ticks, device::ToolMode mode = device::ToolMode::push) {
+    for (int k = 1; k <= ticks; ++k)
+      ASSERT_TRUE(simulation.tick(place(from + (to - from) * k / ticks, mode)).is_ok()) << k;
+  }
+  /// The cells that it has, in the shape that they have now.
+  void renew() {
+    Body body;
+    body.mesh = simulation.body().mesh;
+    body.mesh.vertices = simulation.body_state().solid.x;
+    body.topology = mesh::make_topology(body.mesh);
+    body.epoch = simulation.body().epoch + 1;
+    simulation.renew_cells(std::move(body));
+  }
+  Vec3 force() const { return simulation.hand_state().hand_force; }
+};
+
+TEST(NewCells, AreFeltAsTheOldOnesWhereTheyAreThose) {
+  Pressed alone, renewed;
+  for (Pressed* p : {&alone, &renewed}) p->go(-1e-3, 2e-3, 60);
+  ASSERT_GT(alone.force().z(), 1.0);
+  renewed.renew();
+  EXPECT_EQ(renewed.force(), alone.force());
+  for (int i = 0; i < 5; ++i) {
+    for (Pressed* p : {&alone, &renewed}) p->go(2e-3 + 1e-4 * i, 2e-3 + 1e-4 * (i + 1), 10);
+    EXPECT_NEAR(renewed.force().z(), alone.force().z(), 0.01 * alone.force().z()) << i;
+  }
+  for (Pressed* p : {&alone, &renewed}) p->go(2.5e-3, -1e-3, 60);  // dents that are left
+  EXPECT_LT((renewed.simulation.body_state().solid.x - alone.simulation.body_state().solid.x)
+                .colwise()
+                .norm()
+                .maxCoeff(),
+            2e-5);
+}
+
+TEST(NewCells, KeepWhatIsBooked) {
+  Pressed p;
+  p.go(-1e-3, 2e-3, 60);
+  const PhysicsRecord before = p.simulation.physics_record();
+  p.renew();
+  const PhysicsRecord after = p.simulation.physics_record();
+  EXPECT_NEAR(after.water_mass, before.water_mass, 1e-12 * before.water_mass);
+  EXPECT_EQ(after.plastic_dissipation, before.plastic_dissipation);
+  EXPECT_EQ(after.contact_work, before.contact_work);
+  EXPECT_NEAR(after.elastic_energy, before.elastic_energy, 0.03 * before.elastic_energy);
+  EXPECT_EQ(after.epoch, 1);
+}
+
+TEST(NewCells, HangOnAToolThatPulls) {
+  Pressed alone, renewed;
+  for (Pressed* p : {&alone, &renewed}) {
+    p->go(-1e-3, 2e-3, 60);
+    p->go(2e-3, 1.4e-3, 20, device::ToolMode::pull);
+  }
+  ASSERT_LT(alone.force().z(), -0.5);  // drawn down by the clay
+  renewed.renew();
+  for (Pressed* p : {&alone, &renewed}) p->go(1.4e-3, 1.2e-3, 10, device::ToolMode::pull);
+  EXPECT_NEAR(renewed.force().z(), alone.force().z(), 0.02 * std::abs(alone.force().z()));
+}
+
+TEST(NewCells, WithoutTheToolLieStill) {
+  Pressed p;
+  p.go(-1e-3, 2e-3, 60);
+  p.go(2e-3, -2e-3, 60);
+  ASSERT_EQ(p.simulation.hand_state().num_contacts, 0);
+  const Points before = p.simulation.body_state().solid.x;
+  p.renew();
+  p.go(-2e-3, -2e-3, 50);
+  EXPECT_LT((p.simulation.body_state().solid.x - before).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+}  // namespace
+}  // namespace argil::sim
