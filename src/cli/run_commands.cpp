@@ -17,6 +17,7 @@
 #include "run/approach.h"
 #include "run/export.h"
 #include "run/files.h"
+#include "run/new_scenario.h"
 #include "run/place.h"
 #include "run/run.h"
 #include "run/start.h"
@@ -35,6 +36,7 @@ struct Options {
   live::LiveOptions live;
   run::ExportOptions exported;
   run::PlaceOptions placed;
+  run::NewOptions made;
   std::string at = "nearest", from;
   bool reference = false;
   std::vector<std::string> devices;
@@ -68,8 +70,8 @@ Vec3 parse_place(const std::string& option, const std::string& text) {
 
 int place(Options& o) {
   o.placed.run = o.run;
-  if (o.at != "nearest") o.placed.at = parse_place("--at", o.at);
-  if (!o.from.empty()) o.placed.from = parse_place("--from", o.from);
+  if (o.at != "nearest") o.placed.touch.at = parse_place("--at", o.at);
+  if (!o.from.empty()) o.placed.touch.from = parse_place("--from", o.from);
   return run::place(o.placed);
 }
 
@@ -192,11 +194,36 @@ void add_run_commands(CLI::App& app, int& code) {
   placing->add_option("--from", o->from, "X,Y,Z: direction that the tool comes from, with --at X,Y,Z");
   placing
       ->add_option(
-          "--depth", o->placed.depth,
+          "--depth", o->placed.touch.depth,
           "how deep the tool goes into the body at rest [m] (default: a quarter of the tool's radius)")
       ->check(finite_number(false));
   placing->add_option("-o,--output", o->placed.output, "patch for argil run --patch (default: printed)");
   placing->callback([o, &code] { code = place(*o); });
+
+  CLI::App* making = app.add_subcommand("new", "write a short scenario of a mesh and a recorded motion");
+  making->add_option("MESH", o->made.mesh, "surface (OBJ, STL, PLY) or tetrahedral mesh")->required();
+  making->add_option("TRACE", o->made.trace, "recorded motion")->required();
+  making->add_option("-o,--output", o->made.output, "scenario (default: the mesh's name with .json)");
+  making->add_option("--tool-radius", o->made.tool_radius, "of the ball [m] (default: by the body)")
+      ->check(finite_number(false));
+  making->add_option("--youngs-modulus", o->made.youngs_modulus, "E of the dry clay [Pa]")
+      ->check(finite_number(false))
+      ->capture_default_str();
+  making->add_option("--poissons-ratio", o->made.poissons_ratio, "of the dry clay")->capture_default_str();
+  making->add_option("--strength", o->made.strength, "undrained shear strength of the dry clay [Pa]")
+      ->check(finite_number(false))
+      ->capture_default_str();
+  making->add_option("--mesh-unit", o->made.mesh_unit,
+                     "m, cm, mm, um, or metres per unit of the mesh (default: m, or by its size)");
+  making->add_option("--trace-unit", o->made.trace_unit,
+                     "m, cm, mm or um of the motion (default: as it says, else m, or by its size)");
+  making->add_option("--up", o->made.up, "x, y or z: the body is held by its lowest part")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  making->add_option("--set", o->made.settings, "/json/pointer=value, a further key; may be repeated")
+      ->allow_extra_args(false);
+  making->add_flag("--force", o->made.overwrites, "write over a file that is there");
+  making->callback([o, &code] { code = run::write_new_scenario(o->made); });
 
   CLI::App* schema = app.add_subcommand("schema", "print the JSON Schema of a scenario");
   schema->add_flag("--reference", o->reference, "print the reference page (Markdown) instead");

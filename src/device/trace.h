@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "device/sample.h"
 
 namespace argil::device {
@@ -57,10 +58,26 @@ struct Trace {
   double duration() const { return time.back() - time.front(); }
 };
 
+/// A rate or a path out of all reason whose unit nobody gave.
+class UnlikelyUnit : public InputError {
+ public:
+  /// `likely`: what `key` of a scenario would be; empty where nothing is likely.
+  UnlikelyUnit(const std::string& file, const std::string& place, const std::string& reason,
+               const std::string& key, const std::string& words, const std::string& likely);
+  const std::string& reason() const { return m_reason; }
+  const std::string& key() const { return m_key; }
+  const std::string& likely() const { return m_likely; }
+
+ private:
+  std::string m_reason;
+  std::string m_key;
+  std::string m_likely;
+};
+
 /// Reads a CSV (header row names columns) or HDF5 trace; the formats are in this folder's README. Throws
 /// InputError (file, line, value, remedy) for long pauses, unsorted times, NaN, places beyond kFarthestPlace
-/// before device_to_world of the options, zero quaternions, unknown modes, and for a rate or a path out of
-/// all reason whose unit nobody gave; IoError when the file cannot be read.
+/// before device_to_world of the options, zero quaternions, unknown modes, and UnlikelyUnit; IoError when the
+/// file cannot be read.
 Trace read_trace(const std::string& file, const TraceOptions& options);
 
 /// The sample at `time` seconds after the trace's first: position linear, orientation slerp along the shorter

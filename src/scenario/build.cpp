@@ -123,15 +123,32 @@ void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
   take_fields(s, body);
 }
 
+double most_beyond(const Scenario& s) {
+  return s.body.fit == embed::Fit::surface ? embed::kMostBeyondFitted : 0.0;
+}
+
+bool holds_skin(const Scenario& s, const sim::Body& body) {
+  return body.skin.num_triangles() == 0 || embed::can_embed(body.mesh, body.skin.vertices, most_beyond(s));
+}
+
 Halvings make_cells(const Scenario& s, const std::vector<sim::TouchedPlace>* places, Scene& scene) {
   if (s.body.cells.kind == CellKind::even) {
     make_mesh(s, s.body.target_tets, scene);
     return {};
   }
+  // A sharp tip that the first cells cut off may be far outside the small ones below it: then others are
+  // tried.
+  constexpr double kMore = 1.5;
   const std::vector<std::string> notes = scene.notes;
-  make_mesh(s, count_first_tets(s.body), scene);
-  std::optional<Halvings> halvings = grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes);
-  if (halvings) return *std::move(halvings);
+  const double most = std::max(s.body.target_tets, count_first_tets(s.body));
+  for (double count = count_first_tets(s.body);; count *= kMore) {
+    scene.notes = notes;
+    make_mesh(s, static_cast<int>(count), scene);
+    std::optional<Halvings> halvings =
+        grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes);
+    if (!halvings) break;
+    if (holds_skin(s, scene.body) || kMore * count > most) return *std::move(halvings);
+  }
   const std::string reason = scene.notes.back();
   scene.notes = notes;
   scene.notes.push_back(reason);
@@ -150,10 +167,8 @@ void require_vertices(const Scenario& s, const std::string& pointer, const std::
 /// What of the skin is outside a fitted body is carried by the tets below it.
 void embed_skin(const Scenario& s, Scene& scene) {
   sim::Body& body = scene.body;
-  const bool is_fitted = s.body.fit == embed::Fit::surface;
-  body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, name_origin(s),
-                                              is_fitted ? embed::kMostBeyondFitted : 0.0);
-  if (!is_fitted) return;
+  body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, name_origin(s), most_beyond(s));
+  if (s.body.fit != embed::Fit::surface) return;
   std::ostringstream text;
   text << "skin: carried with weights " << body.skin_embedding.weights.minCoeff() << " to "
        << body.skin_embedding.weights.maxCoeff() << " of the cells' vertices";

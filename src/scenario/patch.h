@@ -11,6 +11,13 @@ namespace argil::scenario {
 
 /// Settings as a patch.
 std::string print_patch(const std::vector<Setting>& settings);
+/// The same with settings of the user's over it; those that it has no place for are refused, with the file
+/// that it is to become. Throws InputError.
+std::string print_patch(const std::vector<Setting>& settings, const std::vector<Setting>& over,
+                        const std::string& file);
+
+/// A text as JSON has it, so that a setting of it stays a text.
+std::string quote(const std::string& text);
 
 /// A patch as settings. Throws InputError for what is no object, and for null, which would take a key away.
 std::vector<Setting> read_patch(const std::string& file);
