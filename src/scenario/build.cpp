@@ -15,6 +15,8 @@
 #include "mesh/sliver.h"
 #include "mesh_files/readers.h"
 #include "scenario/cell_sizes.h"
+#include "scenario/faults.h"
+#include "scenario/file_faults.h"
 #include "scenario/medium_check.h"
 #include "solid/rigid_motion.h"
 
@@ -175,20 +177,23 @@ void embed_skin(const Scenario& s, Scene& scene) {
   scene.notes.push_back(text.str());
 }
 
+void check_support(const Scenario& s, std::size_t i, int num_given, const mesh::TetMesh& mesh) {
+  const solid::Region& region = s.body.fixed[i].region;
+  const std::string pointer = "/body/fixed/" + std::to_string(i);
+  require_vertices(s, pointer + "/nodes", region.nodes, num_given);
+  if (!solid::find_nodes(mesh.vertices, std::span(&region, 1)).empty()) return;
+  const Vec3 low = mesh.vertices.rowwise().minCoeff();
+  const Vec3 high = mesh.vertices.rowwise().maxCoeff();
+  throw InputError(s.file, pointer, "holds no vertex of the body",
+                   "move it into the body's box, " + print_place(low) + " to " + print_place(high) + " m");
+}
+
 void fix_and_load(const Scenario& s, const Halvings& halvings, sim::Body& body) {
   const int num_given = body.mesh.num_vertices() - static_cast<int>(halvings.ends.size());
-  for (std::size_t i = 0; i < s.body.fixed.size(); ++i) {
-    const solid::Region& region = s.body.fixed[i].region;
-    const std::string pointer = "/body/fixed/" + std::to_string(i);
-    require_vertices(s, pointer + "/nodes", region.nodes, num_given);
-    if (solid::find_nodes(body.mesh.vertices, std::span(&region, 1)).empty()) {
-      const Vec3 low = body.mesh.vertices.rowwise().minCoeff();
-      const Vec3 high = body.mesh.vertices.rowwise().maxCoeff();
-      throw InputError(
-          s.file, pointer, "holds no vertex of the body",
-          "move it into the body's box, " + print_place(low) + " to " + print_place(high) + " m");
-    }
-  }
+  Faults faults(s.file);
+  for (std::size_t i = 0; i < s.body.fixed.size(); ++i)
+    faults.check([&] { check_support(s, i, num_given, body.mesh); });
+  faults.throw_all();
   body.supports = s.body.fixed;
   for (solid::Support& support : body.supports) halvings.renumber_with_middles(support.region.nodes);
   body.loads = s.body.loads;
@@ -315,12 +320,16 @@ void check_trace(const Scenario& s, const device::Trace& trace) {
 Scene build_scene(const Scenario& s, const std::vector<sim::TouchedPlace>* places) {
   Scene scene;
   scene.notes = s.warnings;
-  scene.tool = make_tool(s);
-  if (s.mode == Mode::dynamic && !s.trace.file.empty()) {
-    scene.trace = device::read_trace(s.trace.file, s.trace.options);
-    check_trace(s, scene.trace);
-    for (const std::string& note : scene.trace.notes) scene.notes.push_back("trace: " + note);
-  }
+  Faults faults(s.file);
+  faults.check([&] { scene.tool = make_tool(s); });
+  if (s.mode == Mode::dynamic && !s.trace.file.empty())
+    faults.check([&] {
+      scene.trace = device::read_trace(s.trace.file, s.trace.options);
+      check_trace(s, scene.trace);
+      for (const std::string& note : scene.trace.notes) scene.notes.push_back("trace: " + note);
+    });
+  if (!faults.empty()) find_file_faults(s, faults);
+  faults.throw_all();
   const Halvings halvings = make_cells(s, places, scene);
   sim::Body& body = scene.body;
   mesh::sort_tets(body.mesh);

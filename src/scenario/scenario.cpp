@@ -12,6 +12,8 @@
 #include "base/error.h"
 #include "material/moisture.h"
 #include "material/plasticity.h"
+#include "scenario/doubts.h"
+#include "scenario/file_faults.h"
 #include "scenario/medium_check.h"
 #include "scenario/parameter_table.h"
 #include "scenario/scenario_text.h"
@@ -35,14 +37,15 @@ constexpr const char* kPaperPreset = R"({
 })";
 
 void choose_body(Scenario& s, const Json& document) {
-  if (!document.contains("body") || !document["body"].is_object())
+  if (document.contains("body") && !document["body"].is_object()) return;  // which its keys say
+  if (!document.contains("body"))
     throw InputError(s.file, "/body", "is missing", "add one of /body/mesh, /body/shape, /body/surface");
   const Json& body = document["body"];
   const int count =
       static_cast<int>(body.contains("mesh") + body.contains("shape") + body.contains("surface"));
   if (count != 1)
     throw InputError(s.file, "/body", "has " + std::to_string(count) + " of mesh, shape and surface",
-                     "give exactly one of them");
+                     "give exactly one of them: a run has one body");
   s.body.kind = body.contains("mesh")    ? BodyKind::mesh
                 : body.contains("shape") ? BodyKind::shape
                                          : BodyKind::surface;
@@ -94,17 +97,19 @@ void choose_model(Scenario& s, const Json& document) {
 
 void check_rates(const Scenario& s) {
   const sim::RateParams& r = s.params.rates;
-  const auto require_multiple = [&](const char* pointer, int value) {
+  Faults faults(s.file);
+  for (const auto& [pointer, value] : {std::pair{"/haptics/water_period_ticks", r.water_period_ticks},
+                                       {"/haptics/frame_period_ticks", r.frame_period_ticks}}) {
     const int period = r.physics_period_ticks;
-    const int next = (value / period + 1) * period;
-    if (value % period != 0)
-      throw InputError(
-          s.file, pointer,
-          std::to_string(value) + " is no multiple of physics_period_ticks (" + std::to_string(period) + ")",
-          "give a multiple of it, for instance " + std::to_string(next));
-  };
-  require_multiple("/haptics/water_period_ticks", r.water_period_ticks);
-  require_multiple("/haptics/frame_period_ticks", r.frame_period_ticks);
+    if (value % period == 0) continue;
+    faults.add(
+        InputError(s.file, pointer,
+                   std::to_string(value) + " is no multiple of physics_period_ticks (" +
+                       std::to_string(period) + ")",
+                   "give a multiple of it, for instance " + std::to_string((value / period + 1) * period))
+            .what());
+  }
+  faults.throw_all();
 }
 
 /// A surface that yields between frames needs the matrix of an implicit step, and a step that knows of it.
@@ -384,23 +389,15 @@ void check_plasticity(Scenario& s) {
                      "lower it, or use corotational");
 }
 
-void check_combinations(Scenario& s) {
-  check_regions(s);
-  check_plasticity(s);
-  check_solid(s);
-  check_inversion(s);
-  check_rates(s);
-  check_between_frames(s);
-  check_contact(s);
-  check_extent(s);
-  check_tables(s);
-  check_pore_axes(s);
-  check_medium(s);
+void check_tool(const Scenario& s) {
   if (s.tool.kind == ToolKind::mesh && s.tool.file.empty())
     throw InputError(s.file, "/tool/shape/file", "is missing", "name the tool's surface");
   if (s.tool.kind == ToolKind::stylus && !(s.tool.tip_radius < s.tool.radius))
     throw InputError(s.file, "/tool/shape/tip_radius_m", "is not smaller than radius_m",
                      "give a sharper tip");
+}
+
+void check_kernel(Scenario& s) {
   const sim::Params& p = s.params;
   if (s.mode == Mode::equilibrium) {
     if (p.plasticity.enabled && (p.plasticity.yield > 0.0 || p.plasticity.strength > 0.0))
@@ -412,10 +409,31 @@ void check_combinations(Scenario& s) {
     throw InputError(s.file, "/material/clay_kernel/radius_m", "is 0", "give R_D in metres, or form \"off\"");
 }
 
+void check_combinations(Scenario& s, Faults& faults) {
+  const auto check = [&](void (*function)(Scenario&)) { return faults.check([&] { function(s); }); };
+  const auto check_only = [&](void (*function)(const Scenario&)) {
+    return faults.check([&] { function(s); });
+  };
+  check_only(check_regions);
+  check(check_plasticity);
+  check(check_solid);
+  check_only(check_inversion);
+  check_only(check_rates);
+  check_only(check_between_frames);
+  check(check_contact);
+  check(check_extent);
+  const bool has_tables = check_only(check_tables);
+  check(check_pore_axes);
+  if (has_tables) check(check_medium);
+  check_only(check_tool);
+  check(check_kernel);
+}
+
 Scenario load_document(Json document, const std::string& file, const std::vector<Setting>& settings) {
   if (!document.is_object())
     throw InputError(file, "", "is not a JSON object", "a scenario is {\"about\": …}");
   for (const Setting& setting : settings) apply_setting(document, setting, file);
+  const Json given = document;
   const Json preset = document.value("preset", Json("none"));
   if (preset == "paper") {
     Json below = Json::parse(kPaperPreset);
@@ -424,12 +442,20 @@ Scenario load_document(Json document, const std::string& file, const std::vector
   }
   Scenario s;
   s.file = file;
-  choose_body(s, document);
+  Faults faults(file);
+  faults.check([&] { choose_body(s, document); });
   choose_mode(s, document);
   choose_model(s, document);
-  read_parameters(make_parameter_table(s, file), document, file, "");
-  leave_out_pairs(s, document);
-  check_combinations(s);
+  read_parameters(make_parameter_table(s, file), document, file, "", faults);
+  if (faults.empty()) {
+    leave_out_pairs(s, document);
+    check_combinations(s, faults);
+  }
+  if (faults.empty())
+    for (std::string& doubt : list_doubts(s)) s.warnings.push_back(std::move(doubt));
+  else
+    find_file_faults(s, faults);
+  faults.throw_all(given);
   return s;
 }
 
