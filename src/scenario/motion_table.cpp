@@ -37,7 +37,8 @@ void bind_trace(Binder& b, TraceSpec& t, const std::string& folder) {
   using device::LengthUnit;
   using device::QuaternionOrder;
   using device::TimeUnit;
-  b.path("/trace/file", t.file, folder, "Recorded motion (CSV or HDF5).").required = true;
+  b.path("/trace/file", t.file, folder, "Recorded motion (CSV or HDF5); argil live with a device needs none.")
+      .required = true;
   b.choice<device::ToolMode>("/trace/default_mode", t.options.default_mode,
                              {{device::ToolMode::push, "push"},
                               {device::ToolMode::pull, "pull"},

@@ -59,6 +59,15 @@ std::string print_patch(const std::vector<Setting>& settings, const std::vector<
   return with_short_lists(patch.dump(2)) + "\n";
 }
 
+std::string describe_differences(const std::string& a, const std::string& b, int most) {
+  if (!Json::accept(a) || !Json::accept(b)) return "";
+  std::string text;
+  int count = 0;
+  for (const auto& change : nlohmann::json::diff(nlohmann::json::parse(a), nlohmann::json::parse(b)))
+    if (++count <= most) text += (count > 1 ? ", " : "") + change["path"].get<std::string>();
+  return count > most ? text + " and " + std::to_string(count - most) + " more" : text;
+}
+
 std::string quote(const std::string& text) {
   return Json(text).dump();
 }

@@ -16,6 +16,9 @@ std::string print_patch(const std::vector<Setting>& settings);
 std::string print_patch(const std::vector<Setting>& settings, const std::vector<Setting>& over,
                         const std::string& file);
 
+/// Pointers of what two JSON texts do not have in common, the first `most` of them and a word for the rest.
+std::string describe_differences(const std::string& a, const std::string& b, int most);
+
 /// A text as JSON has it, so that a setting of it stays a text.
 std::string quote(const std::string& text);
 
