@@ -24,6 +24,7 @@
 #include "scenario/build.h"
 #include "scenario/model_summary.h"
 #include "scenario/tolerance_file.h"
+#include "study/figures_beside.h"
 
 namespace argil::cli {
 namespace {
@@ -39,11 +40,13 @@ struct Options {
   run::NewOptions made;
   std::string at = "nearest", from;
   bool reference = false;
+  bool of_tolerances = false;
+  bool verbose = false;
   std::vector<std::string> devices;
   std::string first, second, tolerances;
 };
 
-int compare_files(const std::string& a, const std::string& b, const std::string& tolerances) {
+int compare_files(const std::string& a, const std::string& b, const std::string& tolerances, bool verbose) {
   for (const std::string& file : {a, b}) run::require_input_file(file);
   output::CompareOptions options;
   if (!tolerances.empty()) {
@@ -51,7 +54,8 @@ int compare_files(const std::string& a, const std::string& b, const std::string&
     options = scenario::load_tolerances(tolerances);
   }
   const output::CompareReport report = output::compare_results(a, b, options);
-  std::fputs(to_string(report).c_str(), stdout);
+  std::fputs(study::print_figures_beside(a, b).c_str(), stdout);
+  std::fputs(to_string(report, verbose).c_str(), stdout);
   return report.is_equal() ? ExitCode::kDone : ExitCode::kDifferent;
 }
 
@@ -227,8 +231,12 @@ void add_run_commands(CLI::App& app, int& code) {
 
   CLI::App* schema = app.add_subcommand("schema", "print the JSON Schema of a scenario");
   schema->add_flag("--reference", o->reference, "print the reference page (Markdown) instead");
-  schema->callback(
-      [o] { std::cout << (o->reference ? scenario::print_reference() : scenario::print_schema()); });
+  schema->add_flag("--tolerances", o->of_tolerances, "print that of a tolerance file for compare instead");
+  schema->callback([o] {
+    std::cout << (o->reference       ? scenario::print_reference()
+                  : o->of_tolerances ? scenario::print_tolerance_schema()
+                                     : scenario::print_schema());
+  });
 
   CLI::App* info = app.add_subcommand("info", "say how a run went, and what it made simpler than it is");
   info->add_option("FILE", o->first, "result file")->required();
@@ -249,12 +257,13 @@ void add_run_commands(CLI::App& app, int& code) {
   exporting->add_flag("--cage", o->exported.cage, "show the cage also where there is a skin");
   exporting->callback([o, &code] { code = run::export_result(o->exported); });
 
-  CLI::App* compare =
-      app.add_subcommand("compare", "compare two result files bit by bit, or within tolerances");
+  CLI::App* compare = app.add_subcommand(
+      "compare", "compare two result files: their figures, then bit by bit or within tolerances");
   compare->add_option("A", o->first, "result file")->required();
   compare->add_option("B", o->second, "result file")->required();
   compare->add_option("--tolerances", o->tolerances, "tolerances of datasets (JSON)");
-  compare->callback([o, &code] { code = compare_files(o->first, o->second, o->tolerances); });
+  compare->add_flag("--verbose", o->verbose, "name every difference, hashes too");
+  compare->callback([o, &code] { code = compare_files(o->first, o->second, o->tolerances, o->verbose); });
 }
 
 }  // namespace argil::cli

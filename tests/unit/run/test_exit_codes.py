@@ -7,6 +7,7 @@ Usage: test_exit_codes.py ARGIL        the program
 import json
 import math
 import os
+import re
 import resource
 import shutil
 import signal
@@ -18,6 +19,7 @@ import unittest
 from pathlib import Path
 
 import h5py
+import numpy as np
 
 ARGIL = str(Path(sys.argv.pop(1)).resolve())
 
@@ -274,6 +276,12 @@ class ExitCodes(unittest.TestCase):
         code, out, _ = self.call("compare", "a.h5", "c.h5")
         self.assertEqual(code, 5)
         self.assertIn("/haptic/force", out)
+        self.check_figures(out.splitlines())
+        self.assertNotIn("state_hash", out.split("hashes among them")[0].split("datasets and attributes differ")[1])
+        verbose = self.call("compare", "a.h5", "c.h5", "--verbose")[1]
+        self.assertIn("state_hash", verbose)
+        self.assertEqual(len(verbose.splitlines()) - verbose.splitlines().index("") - 2,
+                         int(re.search(r"; (\d+) of \d+ datasets", verbose)[1]))
         for wide, expected in ((1.0, 0), (1e-9, 5)):
             (self.folder / "near.json").write_text(json.dumps({
                 "ignore": ["/provenance", "/physics/*", "/haptic/num_contacts"],
@@ -283,6 +291,24 @@ class ExitCodes(unittest.TestCase):
         code, _, error = self.call("compare", "a.h5", "c.h5", "--tolerances", "near.json")
         self.assertEqual(code, 2)
         self.assertIn("near.json: /tolerances/0/relativ: is not a known key; did you mean relative?", error)
+
+    def check_figures(self, lines):
+        """What compare opens with, against h5py's reading of the two files."""
+        def read(name):
+            with h5py.File(self.folder / name) as file:
+                force = np.linalg.norm(file["haptic/force"][:], axis=1)
+                frames = [frame["position"][:] for frame in file["frames"].values()]
+                moved = max(np.linalg.norm(x - file["mesh/rest_position"][:], axis=1).max() for x in frames)
+                return {"peak force": force.max(), "impulse": force.sum() * 1e-3, "work on the body": file["physics/contact_work"][-1],
+                        "water at the end": 1e3 * file["physics/water_mass"][-1], "largest displacement": moved}
+        a, c = read("a.h5"), read("c.h5")
+        said = {line[:22].strip(): re.findall(r"(-?[0-9.e+-]+) ([numµ]?)(?:N s|N|J|g|m)(?= |$)", line[22:50]) for line in lines[1:7]}
+        self.assertRegex(lines[0], "^ +a +b +b - a$")
+        for name in a:
+            values = [float(number) * {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "": 1}[prefix] for number, prefix in said[name]]
+            np.testing.assert_allclose(values, [a[name], c[name]], rtol=6e-4, atol=1e-12, err_msg=name)
+        share = 100 * (c["peak force"] / a["peak force"] - 1)
+        self.assertAlmostEqual(float(re.search(r"\(([+-][0-9.]+) %\)", lines[1])[1]), share, delta=0.01 * abs(share))
 
     def wait_for(self, file):
         """Until a run has made its file and is well inside its loop."""
