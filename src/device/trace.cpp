@@ -30,7 +30,7 @@ void fill_times(const std::string& file, const TraceOptions& options, RawTrace& 
   const double rate = raw.rate_hz > 0.0 ? raw.rate_hz : options.default_rate_hz;
   if (!(rate > 0.0 && std::isfinite(rate)))
     throw InputError(file, "", "no time column and no sampling rate",
-                     "name a column t [s] or give the rate in Hz");
+                     "name a column t [s] or give the rate in Hz by /trace/default_rate_hz");
   for (std::size_t i = 0; i < raw.position.size(); ++i) raw.time.push_back(static_cast<double>(i) / rate);
   raw.is_time_given = true;
 }
@@ -91,7 +91,10 @@ UnlikelyUnit::UnlikelyUnit(const std::string& file, const std::string& place, co
 Trace read_trace(const std::string& file, const TraceOptions& options) {
   const std::string bytes = read_file(file);
   const bool is_hdf5 = bytes.starts_with("\x89HDF\r\n\x1a\n");
-  RawTrace raw = is_hdf5 ? internal::read_hdf5(file, options) : internal::parse_csv(file, bytes, options);
+  const bool is_npy = bytes.starts_with("\x93NUMPY");
+  RawTrace raw = is_hdf5  ? internal::read_hdf5(file, options)
+                 : is_npy ? internal::parse_npy(file, bytes, options)
+                          : internal::parse_csv(file, bytes, options);
   fill_times(file, options, raw);
   internal::check_times(file, options, raw);
   const double scale = raw.device_to_world.scale * options.device_to_world.scale;

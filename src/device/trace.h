@@ -31,7 +31,7 @@ struct TraceOptions {
   DeviceToWorld device_to_world;           ///< applied after the header's own transform
   ToolMode default_mode = ToolMode::push;  ///< when the file has no mode column
   double default_rate_hz = 0.0;  ///< > 0: sampling rate when the file has neither a time column nor a rate
-  /// CSV only: names of the columns from the left, in place of the file's header row; "" or "-" leaves a
+  /// CSV, NPY: names of the columns from the left, in place of the file's header row; "" or "-" leaves a
   /// column out, as do columns past the list. For files without a header row, or whose names do not say what
   /// they hold.
   std::vector<std::string> columns;
@@ -74,7 +74,7 @@ class UnlikelyUnit : public InputError {
   std::string m_likely;
 };
 
-/// Reads a CSV (header row names columns) or HDF5 trace; the formats are in this folder's README. Throws
+/// Reads a CSV (header row names columns), NPY (options name them) or HDF5 trace; the formats are in this folder's README. Throws
 /// InputError (file, line, value, remedy) for long pauses, unsorted times, NaN, places beyond kFarthestPlace
 /// before device_to_world of the options, zero quaternions, unknown modes, and UnlikelyUnit; IoError when the
 /// file cannot be read.
