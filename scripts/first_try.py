@@ -82,9 +82,10 @@ class Trial:
         pair = ("cube.obj", self.file) if is_motion else (self.file, "press.csv")
         words = [word for setting in self.settings for word in setting]
         code, _ = self.call("new", *pair, "-o", "try.json", "--force", *words)
-        for command in (["validate", "try.json"], ["run", "try.json", "-o", "try.h5", "--quiet", *self.cut()]):
-            if code == 0:
-                code, _ = self.call(*command)
+        if code == 0:
+            code, _ = self.call("validate", "try.json")
+        if code == 0:
+            code, _ = self.call("run", "try.json", "-o", "try.h5", "--quiet", *self.cut())
         return code
 
     def cut(self):

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iomanip>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,12 +14,11 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/lower_case.h"
 #include "base/print.h"
 #include "base/read_file.h"
-#include "mesh_files/readers.h"
 #include "output/text.h"
 #include "run/files.h"
+#include "run/mesh_size.h"
 #include "run/placing.h"
 #include "run/run.h"
 #include "scenario/patch.h"
@@ -31,10 +31,7 @@ namespace fs = std::filesystem;
 using scenario::Setting;
 
 constexpr const char* kSchemaName = "argil.schema.json";
-// A body that a hand models. Sizes beyond are those of another unit.
-constexpr double kLargestBody = 5.0;    // [m]
-constexpr double kSmallestBody = 1e-3;  // [m]
-constexpr double kWidestPath = 30.0;    // of the body's size
+constexpr double kWidestPath = 30.0;  // of the body's size
 
 std::string to_json(double value) {
   std::ostringstream text;
@@ -68,60 +65,10 @@ std::string millimetres(const mesh::Box& box) {
          " mm";
 }
 
-void say(const std::string& subject, const std::string& text) {
-  std::printf("%s: %s\n", subject.c_str(), text.c_str());
-}
-
-mesh::Box find_box(const Points& points) {
-  return {points.rowwise().minCoeff(), points.rowwise().maxCoeff()};
-}
-
-double size_of(const mesh::Box& box) {
-  return (box.high - box.low).norm();
-}
-
 mesh::Box find_box(const device::Trace& trace) {
   mesh::Box box;
   for (const device::DeviceSample& sample : trace.samples) box.include(sample.position);
   return box;
-}
-
-/// By its ending: does the file hold triangles?
-bool is_surface(const std::string& file) {
-  const std::string ending = to_lower_case(fs::path(file).extension().string());
-  return ending == ".obj" || ending == ".stl" || ending == ".ply";
-}
-
-Points read_vertices(const std::string& file) {
-  return is_surface(file) ? mesh_files::read_triangle_mesh(file).vertices
-                          : mesh_files::read_tet_mesh(file).vertices;
-}
-
-std::optional<double> find_unit(const std::string& word) {
-  for (const auto& [name, metres] : {std::pair{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}})
-    if (word == name) return metres;
-  std::istringstream text(word);
-  double value = 0.0;
-  if (text >> value && text.eof() && std::isfinite(value) && value > 0.0) return value;
-  return std::nullopt;
-}
-
-/// Metres per unit of the mesh, given or by its size, which is said.
-double choose_scale(const NewOptions& o, const mesh::Box& box) {
-  if (!o.mesh_unit.empty()) {
-    if (const auto unit = find_unit(o.mesh_unit)) return *unit;
-    throw InputError("--mesh-unit", o.mesh_unit, "is no unit of length",
-                     "give m, cm, mm, um, or the metres in one unit of the file");
-  }
-  const double size = size_of(box);
-  if (!(size > kLargestBody)) return 1.0;
-  for (const auto& [name, metres] : {std::pair{"mm", 1e-3}, {"um", 1e-6}})
-    if (size * metres <= kLargestBody && size * metres >= kSmallestBody) {
-      say(o.mesh, "taken in " + std::string(name) + ": in metres the body would be " + output::rounded(size) +
-                      " m wide; --mesh-unit says it otherwise");
-      return metres;
-    }
-  return 1.0;
 }
 
 class Draft {
@@ -140,6 +87,7 @@ class Draft {
   bool is_given(const std::string& pointer) const;
   device::Trace read_motion();
   void fit_unit_to_body(device::Trace& trace, double body_size);
+  bool is_press(const std::optional<contact::Approach>& deepest) const;
   bool try_touch(const Touch& touch);
   bool find_touch();
   std::vector<Setting> hold_below(double share, solid::Region& region) const;
@@ -237,10 +185,14 @@ void Draft::read_inputs() {
   constexpr double kToolShare = 0.125;   // of the body's least width
   constexpr double kLeastShare = 0.02;   // of its greatest
   constexpr double kLargestTool = 0.02;  // [m]
-  const Points vertices = read_vertices(m_options.mesh);
-  mesh::Box box = find_box(vertices);
-  m_scale = choose_scale(m_options, box);
+  mesh::Box box = read_box(m_options.mesh);
+  m_scale = choose_scale(m_options.mesh, m_options.mesh_unit, box);
   box = {m_scale * box.low, m_scale * box.high};
+  if (!device::is_within_reach(box.low) || !device::is_within_reach(box.high))
+    throw InputError(
+        m_options.mesh, "",
+        "lies " + output::rounded(box.low.norm()) + " m from the origin, where no device reaches",
+        "move it there in the program that made it, or give its unit by --mesh-unit");
   const Vec3 widths = box.high - box.low;
   const double fitting = std::max(kToolShare * widths.minCoeff(), kLeastShare * widths.maxCoeff());
   m_radius =
@@ -253,36 +205,63 @@ void Draft::read_inputs() {
   for (const std::string& note : trace.notes) say(m_options.trace, note);
 }
 
-/// Moves the motion; is it a press that can begin, and not of what holds the body?
-bool Draft::try_touch(const Touch& touch) {
+/// Is it a touch of more than what holds the body, from which the motion can begin outside?
+bool Draft::is_press(const std::optional<contact::Approach>& deepest) const {
   constexpr double kFoot = 0.25;  // of the height
-  auto placing = std::make_unique<Placing>(touch, load());
+  const mesh::Box& box = m_placing->box();
+  return deepest && (deepest->on_body - box.low)(m_up) >= kFoot * (box.high - box.low)(m_up);
+}
+
+/// Moves the motion if that makes a press of it.
+bool Draft::try_touch(const Touch& touch) {
+  if (!is_press(m_placing->foresee(touch))) return false;
+  auto moved = std::make_unique<Placing>(touch, load());
   try {
-    placing->find();
+    moved->find();
   } catch (const InputError&) {
-    return false;  // no touch from there
+    return false;  // which the body's own cells have
   }
-  const mesh::Box& box = placing->box();
-  const contact::Approach touched = placing->find_deepest();
-  const double height = (touched.on_body - box.low)(m_up) / (box.high - box.low)(m_up);
-  if (placing->start_distance() <= 0.0 || height < kFoot) return false;
-  m_placing = std::move(placing);
+  if (moved->start_distance() <= 0.0 || !is_press(moved->find_deepest())) return false;
+  m_placing = std::move(moved);
   return true;
+}
+
+/// The middle of what lies farthest that way of the body's boundary.
+Vec3 find_top(const Placing& placing, const Vec3& way) {
+  constexpr double kLayer = 0.05;  // of the body's size
+  const Points& x = placing.body().mesh.vertices;
+  const Triangles& boundary = placing.body().topology.boundary;
+  double most = -std::numeric_limits<double>::infinity();
+  for (const int v : boundary.reshaped())
+    if (placing.box().distance(x.col(v)) == 0.0) most = std::max(most, way.dot(x.col(v)));
+  const double layer = most - kLayer * size_of(placing.box());
+  const auto is_in_layer = [&](int v) {  // no crumb beside the surface
+    return way.dot(x.col(v)) >= layer && placing.box().distance(x.col(v)) == 0.0;
+  };
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (const int v : boundary.reshaped())
+    if (is_in_layer(v)) {
+      sum += x.col(v);
+      ++count;
+    }
+  const Vec3 middle = sum / count + size_of(placing.box()) * way;
+  int top = boundary(0, 0);
+  for (const int v : boundary.reshaped())
+    if (is_in_layer(v) && (x.col(v) - middle).norm() < (x.col(top) - middle).norm()) top = v;
+  return x.col(top);
 }
 
 /// Where it is nearest, else from above and from the sides; as deep as place brings it, or less.
 bool Draft::find_touch() {
   constexpr std::array<double, 3> kDepths = {0.25, 0.06, 0.015};  // of the tool's radius
   const double radius = m_placing->tool_radius();
-  const Points vertices = m_placing->body().mesh.vertices;
   for (const double depth : kDepths) {
     if (try_touch({std::nullopt, std::nullopt, depth * radius})) return true;
     for (const auto& [turn, sign] : {std::pair{0, 1.0}, {1, -1.0}, {1, 1.0}, {2, -1.0}, {2, 1.0}}) {
       Vec3 from = Vec3::Zero();
       from((m_up + turn) % 3) = sign;
-      Eigen::Index farthest = 0;
-      (from.transpose() * vertices).maxCoeff(&farthest);
-      if (try_touch({Vec3(vertices.col(farthest)), from, depth * radius})) return true;
+      if (try_touch({find_top(*m_placing, from), from, depth * radius})) return true;
     }
   }
   return false;
@@ -294,6 +273,8 @@ void Draft::place() {
   const bool misses = nearest.distance > 0.0;
   const bool starts_inside = m_placing->start_distance() <= 0.0;
   if (is_given("/trace/device_to_world/translation_m") || !(misses || starts_inside)) return;
+  if (misses && size_of(m_placing->path()) == 0.0)
+    return say(m_options.trace, "stands still: it is not moved");
   const std::string reason = misses ? "the tool never comes nearer than " + millimetres(nearest.distance)
                                     : "the tool starts in the body";
   if (!find_touch())
@@ -310,7 +291,7 @@ void Draft::place() {
 /// A box round the body's lowest part, as settings.
 std::vector<Setting> Draft::hold_below(double share, solid::Region& region) const {
   constexpr double kMargin = 0.01;  // of the size
-  const mesh::Box body = find_box(m_placing->body().mesh.vertices);
+  const mesh::Box& body = m_placing->box();
   const mesh::Box box = body.grown(kMargin * size_of(body));
   region.kind = solid::Region::Kind::box;
   for (int k = 0; k < 3; ++k) {

@@ -177,16 +177,29 @@ void Placing::print_start() const {
   print_line("nearest", describe(m_nearest));
 }
 
+Vec3 Placing::find_shift(const Touch& touch, double depth, Way& way) {
+  way = touch.at ? make_way_to_place(finder(), m_poses, *touch.at, *touch.from, depth)
+                 : make_way_to_nearest(finder(), m_poses, m_nearest, depth);
+  return touch.at ? aim(finder(), way, depth, touch) : find_translation(finder(), way, depth, touch);
+}
+
+std::optional<contact::Approach> Placing::foresee(const Touch& touch) {
+  try {
+    Way way;
+    const Vec3 shift = find_shift(touch, choose_depth(finder().tool(), touch.depth), way);
+    if (finder().find(std::span(m_poses).first(1), shift).distance <= 0.0) return std::nullopt;
+    return finder().find(m_poses, shift);
+  } catch (const InputError&) {
+    return std::nullopt;  // no touch from there
+  }
+}
+
 void Placing::find() {
   constexpr int kMostTries = 8;
   constexpr double kClose = 0.005;  // of the depth
   Vec3& moved = m_scenario.trace.options.device_to_world.translation;
   for (int i = 0; i < kMostTries; ++i) {
-    m_way = m_touch.at ? make_way_to_place(finder(), m_poses, *m_touch.at, *m_touch.from, m_depth)
-                       : make_way_to_nearest(finder(), m_poses, m_nearest, m_depth);
-    const Vec3 shift = m_touch.at ? aim(finder(), m_way, m_depth, m_touch)
-                                  : find_translation(finder(), m_way, m_depth, m_touch);
-    const Vec3 found = rounded_to_nanometres(m_given + shift);
+    const Vec3 found = rounded_to_nanometres(m_given + find_shift(m_touch, m_depth, m_way));
     const bool is_same_body = i > 0 || m_scenario.body.cells.kind == scenario::CellKind::even;
     const bool is_close = (found - moved).norm() <= kClose * m_depth;
     if (is_same_body && is_close) return;

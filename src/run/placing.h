@@ -35,6 +35,10 @@ class Placing {
   /// Where body and motion are, and how near they come.
   void print_start() const;
 
+  /// Where the motion would be deepest after another touch, in the body as it is built now; nothing where
+  /// there is none or the motion would begin in the body.
+  std::optional<contact::Approach> foresee(const Touch& touch);
+
   /// Moves the motion. The body is built with it where it is put, so that it is the one that the tool will
   /// meet. Throws InputError where that finds no touch.
   void find();
@@ -66,6 +70,7 @@ class Placing {
     scenario::Scene scene;
     contact::ApproachFinder finder;
   };
+  Vec3 find_shift(const Touch& touch, double depth, Way& way);
   contact::ApproachFinder& finder() { return m_placement->finder; }
 
   Touch m_touch;

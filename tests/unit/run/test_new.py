@@ -4,6 +4,7 @@ are, and wherever the motion is. Sizes and places are those of bodies made here.
 
 Usage: test_new.py ARGIL        the program
 """
+import csv
 import json
 import math
 import os
@@ -137,6 +138,24 @@ class New(unittest.TestCase):
                 self.assertEqual(made["trace"], {"file": "tap.csv"})
                 self.assertGreater(self.peak("tets.json")[0], 0.01)
 
+    def test_a_table_that_numpy_saved_is_the_motion_that_its_text_is(self):
+        rows = np.loadtxt(self.folder / "tap.csv", delimiter=",", skiprows=1)
+        with_more = np.insert(rows, 2, 20.0, axis=1)  # a column that is left out
+        columns = '/trace/columns=["t","x","-","y","z"]'
+        for name, array in (("c.npy", with_more), ("f.npy", np.asfortranarray(with_more)), ("big.npy", with_more.astype(">f8"))):
+            np.save(self.folder / name, array)
+            with self.subTest(name):
+                self.call("new", "cube.obj", name, "-o", "npy.json", "--force", "--set", columns, "--trace-unit", "mm")
+                self.call("new", "cube.obj", "tap.csv", "-o", "csv.json", "--force", "--trace-unit", "mm")
+                paths = []
+                for scenario in ("npy", "csv"):
+                    self.call("run", f"{scenario}.json", "-o", f"{scenario}.h5", "--quiet")
+                    with h5py.File(self.folder / f"{scenario}.h5") as file:
+                        paths.append((file["haptic/tool_position"][:], file["haptic/force"][:]))
+                np.testing.assert_array_equal(paths[0], paths[1])
+        error = self.call("new", "cube.obj", "c.npy", "-o", "n.json", code=2)
+        self.assertIn('101 × 5 numbers without names of the columns; name them from the left by /trace/columns', error)
+
     def test_a_body_far_below_the_path_is_touched_as_place_proposes(self):
         write_obj(self.folder / "cube.obj", 0.04, shift=(0, 0, -0.5))
         write_tap(self.folder / "tap.csv", 0.0455, 0.0015)
@@ -198,6 +217,40 @@ class New(unittest.TestCase):
                   "--set", "/trace/length_unit=mm")
         made = self.read("cube.json")
         self.assertEqual((made["about"], made["contact"]["friction"]), ("mine", 0.2))
+
+
+class FirstTry(unittest.TestCase):
+    """scripts/first_try.py on a folder of which each file's end is known."""
+
+    def test_each_remedy_is_followed_and_told_of(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name, "files")
+            folder.mkdir()
+            write_tap(folder / "plain.csv", 0.0655, 0.0015, middle=0.03)
+            rows = np.loadtxt(folder / "plain.csv", delimiter=",", skiprows=1)
+            turned = "".join("%g,%g,%g,%g,1,0,0,0\n" % tuple(row) for row in rows)
+            (folder / "numbered.csv").write_text("t,x,y,z,q0,q1,q2,q3\n" + turned)
+            np.save(folder / "told.npy", rows[:, 1:])
+            (folder / "not_a_motion.csv").write_text("a,b\n1,2\n3,4\n")
+            write_msh(folder / "cube.msh", 0.04)
+            write_obj(folder / "open.obj", 0.04)
+            (folder / "open.obj").write_text("\n".join((folder / "open.obj").read_text().splitlines()[:-1]) + "\n")
+            known = Path(name, "known.json")
+            known.write_text(json.dumps({"told.npy": {"/trace/columns": ["x", "y", "z"], "/trace/default_rate_hz": 1000}}))
+            table = Path(name, "table.csv")
+            done = subprocess.run([ROOT / "scripts/first_try.py", ARGIL, folder, "-o", table, "--known", known],
+                                  capture_output=True, text=True, timeout=300)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            with open(table, newline="", encoding="utf-8") as text:
+                found = {row["file"]: (row["kind"], row["how"], row["set"]) for row in csv.DictReader(text)}
+        self.assertEqual(found, {
+            "plain.csv": ("motion", "at first try", ""),
+            "numbered.csv": ("motion", "by the remedy", "--set /trace/quaternion_order=wxyz"),
+            "told.npy": ("motion", "as its source tells",
+                         '--set /trace/columns=["x", "y", "z"]; --set /trace/default_rate_hz=1000'),
+            "not_a_motion.csv": ("motion", "refused", ""),
+            "cube.msh": ("mesh", "at first try", ""),
+            "open.obj": ("mesh", "by the remedy", "--set /contact/surface=cage")})
 
 
 class NewUser(unittest.TestCase):
