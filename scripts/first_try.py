@@ -46,9 +46,8 @@ def write_stock(folder):
 
 def find_remedies(message, known):
     """What a message says to do, as words for `argil new`, and whether the source of the file had to tell it."""
-    told = [f"{key}={json.dumps(value)}" for key, value in known.items() if key in message]
-    if told:
-        return [["--set", setting] for setting in told], True
+    if any(key in message for key in known):
+        return [["--set", f"{key}={json.dumps(value)}"] for key, value in known.items()], True
     if literal := re.search(r"(--set \S+=\S+|--up [xyz]\b|--force\b)", message):
         return [shlex.split(literal[1])], False
     if key := re.search(r"(?:by|set|give) (/[a-z_/]+)(?:: ([^;]*)| to ([^\s;,]+))", message):

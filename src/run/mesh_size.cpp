@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/lower_case.h"
+#include "contact/tool_shape.h"
 #include "mesh_files/readers.h"
 #include "output/text.h"
 
@@ -53,6 +54,17 @@ mesh::Box read_box(const std::string& file) {
   mesh::Box box;
   for (const int v : surface.triangles.reshaped()) box.include(surface.vertices.col(v));
   return box;
+}
+
+std::string find_hole(const std::string& file) {
+  if (!is_surface(file)) return "";
+  try {
+    contact::require_closed_surface(mesh_files::read_triangle_mesh(file), "");
+  } catch (const InputError& error) {
+    const std::string words = error.what();
+    return words.substr(0, words.find(';'));
+  }
+  return "";
 }
 
 double choose_scale(const std::string& file, const std::string& given, const mesh::Box& box) {

@@ -18,6 +18,9 @@ bool is_surface(const std::string& file);
 /// Of the vertices that the body has, in the file's unit: a surface's may hold others. Throws InputError.
 mesh::Box read_box(const std::string& file);
 
+/// Why a surface is not closed, in words; empty where it is, and of tetrahedra.
+std::string find_hole(const std::string& file);
+
 /// Metres per unit of the mesh: `given` as m, cm, mm, um or a number; or, where it is empty, by the size of
 /// the box, which is said where it speaks for another unit than metres. Throws InputError.
 double choose_scale(const std::string& file, const std::string& given, const mesh::Box& box);

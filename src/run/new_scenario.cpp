@@ -98,9 +98,10 @@ class Draft {
   std::vector<Setting> m_given;  // --set
   std::vector<Setting> m_trace;  // units and place of the motion
   std::vector<Setting> m_fixed;
-  double m_scale = 1.0;   // of the mesh
-  double m_radius = 0.0;  // of the tool [m]
-  int m_up = 2;           // axis
+  bool m_meets_solid = false;  // the skin cannot be touched
+  double m_scale = 1.0;        // of the mesh
+  double m_radius = 0.0;       // of the tool [m]
+  int m_up = 2;                // axis
   std::unique_ptr<Placing> m_placing;
 };
 
@@ -147,6 +148,7 @@ std::string Draft::print(const std::vector<Setting>& fixed) const {
                          {"/tool/shape/radius_m", to_json(m_radius)},
                          {"/trace/file", relative(m_options.trace)}});
   all.insert(all.end(), m_trace.begin(), m_trace.end());
+  if (m_meets_solid) all.push_back({"/contact/surface", scenario::quote("cage")});
   return scenario::print_patch(all, m_given, m_file);
 }
 
@@ -197,6 +199,10 @@ void Draft::read_inputs() {
   const double fitting = std::max(kToolShare * widths.minCoeff(), kLeastShare * widths.maxCoeff());
   m_radius =
       m_options.tool_radius > 0.0 ? m_options.tool_radius : std::min(kLargestTool, rounded_to_digit(fitting));
+  if (const std::string hole = find_hole(m_options.mesh); !hole.empty() && !is_given("/contact/surface")) {
+    m_meets_solid = true;
+    say(m_options.mesh, hole + ": the tool meets the solid that is made of it, by /contact/surface");
+  }
   if (!m_options.trace_unit.empty()) set_trace("/trace/length_unit", scenario::quote(m_options.trace_unit));
   device::Trace trace = read_motion();
   fit_unit_to_body(trace, size_of(box));
@@ -305,7 +311,7 @@ std::vector<Setting> Draft::hold_below(double share, solid::Region& region) cons
 /// By as little as holds it at rest.
 void Draft::hold() {
   if (is_given("/body/fixed")) return;
-  constexpr std::array<double, 5> kShares = {0.02, 0.05, 0.1, 0.2, 0.35};
+  constexpr std::array<double, 6> kShares = {0.02, 0.05, 0.1, 0.2, 0.35, 0.5};
   constexpr std::size_t kLeastNodes = 3;
   const sim::Body& body = m_placing->body();
   const solid::Elements elements = solid::make_elements(body.mesh, body.topology, solid::ElementKind::p1);
