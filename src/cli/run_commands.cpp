@@ -19,6 +19,7 @@
 #include "run/files.h"
 #include "run/new_scenario.h"
 #include "run/place.h"
+#include "run/ready_run.h"
 #include "run/run.h"
 #include "run/start.h"
 #include "scenario/build.h"
@@ -112,15 +113,22 @@ void show(const run::RunOptions& options) {
                run::describe_contact_stiffness(body, s.params.contact).c_str());
 }
 
-/// Reads and builds what a run would.
-int validate(const run::RunOptions& options) {
-  const scenario::Scenario s = run::load(options);
-  const scenario::Scene scene = scenario::build_scene(s);
+void print_scene_notes(const scenario::Scene& scene, const std::string& miss) {
   for (const std::string& note : scene.trace.notes)
     std::fprintf(stderr, "argil: note: trace: %s\n", note.c_str());
   if (!scene.contact_cells.empty()) std::fprintf(stderr, "argil: note: %s\n", scene.contact_cells.c_str());
-  if (const std::string miss = run::describe_miss(s, scene); !miss.empty())
-    std::fprintf(stderr, "argil: note: %s\n", miss.c_str());
+  if (!miss.empty()) std::fprintf(stderr, "argil: note: %s\n", miss.c_str());
+}
+
+/// Reads and builds what a run would, up to its first tick.
+int validate(const run::RunOptions& options) {
+  const scenario::Scenario s = run::load(options);
+  if (s.mode == scenario::Mode::equilibrium) {
+    print_scene_notes(scenario::build_scene(s), "");
+  } else {
+    const run::ReadyRun ready(s, options.trace);
+    print_scene_notes(ready.scene, ready.miss);
+  }
   for (const std::string& warning : s.warnings) std::fprintf(stderr, "argil: warning: %s\n", warning.c_str());
   std::printf("%s: valid\n", s.file.c_str());
   return ExitCode::kDone;

@@ -268,6 +268,14 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(code, 4, error)
         self.assertIn("text.h5", error)
 
+    def test_2_validate_refuses_what_a_run_would_at_its_start(self):
+        rows = [f"{k / 1000},0.001,0.0007,{0.03 + 0.0005 * k}" for k in range(50)]  # out of the ball's upper half
+        (self.folder / "inside.csv").write_text("\n".join(["t,x,y,z", *rows]) + "\n")
+        refusals = [self.call(command, "scene.json", "--trace", "inside.csv")[::2] for command in ("validate", "run")]
+        self.assertEqual(refusals[0], refusals[1])
+        self.assertEqual(refusals[0][0], 2)
+        self.assertIn("inside.csv: the tool starts in or across the body", refusals[0][1])
+
     def test_5_compare_tells_equal_results_from_different_ones(self):
         for name, more in (("a.h5", []), ("b.h5", ["--threads", "2"]),
                            ("c.h5", ["--set", "/material/youngs_modulus_Pa=1.1e5"])):
