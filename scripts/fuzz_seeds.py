@@ -138,6 +138,9 @@ def own_files():
         yield "traces", head(file)
     yield "traces", b"Time [ms];X_mm;Y_mm;Z_mm;rx;ry;rz;button\n" + b"".join(b"%d;1,5;-2;%d;90;0;4,5;%d\n" % (i, i // 4, i % 2) for i in range(40))
     yield "traces", b"# t x y z q0 q1 q2 q3\n" + b"".join(b"%d.%03d 0.1 0 0.2 1 0 0 0\n" % (1700000000, i * (1 + i // 20)) for i in range(30))
+    for order in ("False", "True"):
+        header = ("{'descr': '<f8', 'fortran_order': %s, 'shape': (4, 8), }" % order).encode().ljust(117) + b"\n"
+        yield "traces", b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + struct.pack("<32d", *(0.01 * i for i in range(32)))
     yield "traces", b"time,x,y,z\nms,mm,mm,mm\n0,1,2,3\n1,1,2,3\n"
     yield "traces", b"time\tx\ty\tz\n2024-02-29T23:59:59.5+01:00\t0\t0\t1\n2024/03/01 00:00:00.25\t0\t0\t1\n"
     for records in hdf5_traces():

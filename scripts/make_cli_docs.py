@@ -83,8 +83,20 @@ def long_options(command):
     return sorted(set(re.findall(r"--[a-z][a-z-]*", names)))
 
 
-def completion(commands):
-    """Commands and long options by the words before the cursor, otherwise files."""
+def read_pointers(argil):
+    """Keys of a scenario that --set takes."""
+    page = subprocess.run([argil, "schema", "--reference"], capture_output=True, text=True, check=True).stdout
+    return re.findall(r"^\| `(/[^`]+)` \|", page, flags=re.MULTILINE)
+
+
+def read_devices(argil):
+    """Names of the devices, a colon behind those that need more."""
+    page = subprocess.run([argil, "devices"], capture_output=True, text=True, check=True).stdout.split("\n\n")[0]
+    return [f"{name}:" if name == "plugin" else name for name in re.findall(r"^(\w+) ", page, flags=re.MULTILINE)]
+
+
+def completion(commands, pointers, devices):
+    """Keys after --set, devices after --device; commands and long options by the words before the cursor, otherwise files."""
     cases = []
     for command in commands:
         depth = len(command.words)
@@ -99,6 +111,14 @@ _argil() {{
       {names.replace(" ", chr(92) + " ")}) command="${{command:+$command }}$word" ;;
     esac
   done
+  if [[ ${{COMP_WORDS[COMP_CWORD-1]}} == --set ]]; then
+    compopt -o nospace 2> /dev/null
+    mapfile -t COMPREPLY < <(compgen -S = -W "{" ".join(pointers)}" -- "$cursor")
+    return
+  elif [[ ${{COMP_WORDS[COMP_CWORD-1]}} == --device || ( $command == devices && $cursor != -* ) ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "{" ".join(devices)}" -- "$cursor")
+    return
+  fi
   case "$command" in
 {chr(10).join(cases)}
   esac
@@ -121,7 +141,7 @@ def main():
     commands = read_command(options.argil, [])
     version = subprocess.run([options.argil, "--version"], capture_output=True, text=True, check=True).stdout.splitlines()[0]
     write(options.share / "man/man1/argil.1", man_page(commands, version))
-    write(options.share / "bash-completion/completions/argil", completion(commands))
+    write(options.share / "bash-completion/completions/argil", completion(commands, read_pointers(options.argil), read_devices(options.argil)))
 
 
 if __name__ == "__main__":

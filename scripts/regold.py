@@ -124,7 +124,9 @@ def without_commit(text):
 def compare(argil, a, b, rule):
     """Whether they are the same, and what the program says of it."""
     done = subprocess.run([argil, "compare", a, b, "--tolerances", GOLDEN / f"{rule}.json"], capture_output=True, text=True)
-    return done.returncode == 0, "\n    ".join((done.stdout + done.stderr).splitlines()[:4])
+    lines = (done.stdout + done.stderr).splitlines()
+    verdict = next((i for i, line in enumerate(lines) if line.startswith(("equal", "different", "argil"))), 0)
+    return done.returncode == 0, "\n    ".join(lines[verdict:verdict + 4])
 
 
 def check(argil, name, settings, threads, keep):

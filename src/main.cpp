@@ -7,6 +7,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? ExitCode::kDone : ExitCode::kInputRefused;
   } catch (const argil::InputError& error) {
-    std::fprintf(stderr, "argil: %s\n", error.what());
+    std::istringstream lines(error.what());  // a fault each
+    for (std::string line; std::getline(lines, line);) std::fprintf(stderr, "argil: %s\n", line.c_str());
     return ExitCode::kInputRefused;
   } catch (const argil::run::Interrupted& signal) {
     std::fprintf(stderr, "argil: %s\n", signal.what());

@@ -17,12 +17,15 @@
 #include "run/approach.h"
 #include "run/export.h"
 #include "run/files.h"
+#include "run/new_scenario.h"
 #include "run/place.h"
+#include "run/ready_run.h"
 #include "run/run.h"
 #include "run/start.h"
 #include "scenario/build.h"
 #include "scenario/model_summary.h"
 #include "scenario/tolerance_file.h"
+#include "study/figures_beside.h"
 
 namespace argil::cli {
 namespace {
@@ -35,13 +38,16 @@ struct Options {
   live::LiveOptions live;
   run::ExportOptions exported;
   run::PlaceOptions placed;
+  run::NewOptions made;
   std::string at = "nearest", from;
   bool reference = false;
+  bool of_tolerances = false;
+  bool verbose = false;
   std::vector<std::string> devices;
   std::string first, second, tolerances;
 };
 
-int compare_files(const std::string& a, const std::string& b, const std::string& tolerances) {
+int compare_files(const std::string& a, const std::string& b, const std::string& tolerances, bool verbose) {
   for (const std::string& file : {a, b}) run::require_input_file(file);
   output::CompareOptions options;
   if (!tolerances.empty()) {
@@ -49,7 +55,8 @@ int compare_files(const std::string& a, const std::string& b, const std::string&
     options = scenario::load_tolerances(tolerances);
   }
   const output::CompareReport report = output::compare_results(a, b, options);
-  std::fputs(to_string(report).c_str(), stdout);
+  std::fputs(study::print_figures_beside(a, b).c_str(), stdout);
+  std::fputs(to_string(report, verbose).c_str(), stdout);
   return report.is_equal() ? ExitCode::kDone : ExitCode::kDifferent;
 }
 
@@ -68,8 +75,8 @@ Vec3 parse_place(const std::string& option, const std::string& text) {
 
 int place(Options& o) {
   o.placed.run = o.run;
-  if (o.at != "nearest") o.placed.at = parse_place("--at", o.at);
-  if (!o.from.empty()) o.placed.from = parse_place("--from", o.from);
+  if (o.at != "nearest") o.placed.touch.at = parse_place("--at", o.at);
+  if (!o.from.empty()) o.placed.touch.from = parse_place("--from", o.from);
   return run::place(o.placed);
 }
 
@@ -106,15 +113,22 @@ void show(const run::RunOptions& options) {
                run::describe_contact_stiffness(body, s.params.contact).c_str());
 }
 
-/// Reads and builds what a run would.
-int validate(const run::RunOptions& options) {
-  const scenario::Scenario s = run::load(options);
-  const scenario::Scene scene = scenario::build_scene(s);
+void print_scene_notes(const scenario::Scene& scene, const std::string& miss) {
   for (const std::string& note : scene.trace.notes)
     std::fprintf(stderr, "argil: note: trace: %s\n", note.c_str());
   if (!scene.contact_cells.empty()) std::fprintf(stderr, "argil: note: %s\n", scene.contact_cells.c_str());
-  if (const std::string miss = run::describe_miss(s, scene); !miss.empty())
-    std::fprintf(stderr, "argil: note: %s\n", miss.c_str());
+  if (!miss.empty()) std::fprintf(stderr, "argil: note: %s\n", miss.c_str());
+}
+
+/// Reads and builds what a run would, up to its first tick.
+int validate(const run::RunOptions& options) {
+  const scenario::Scenario s = run::load(options);
+  if (s.mode == scenario::Mode::equilibrium) {
+    print_scene_notes(scenario::build_scene(s), "");
+  } else {
+    const run::ReadyRun ready(s, options.trace);
+    print_scene_notes(ready.scene, ready.miss);
+  }
   for (const std::string& warning : s.warnings) std::fprintf(stderr, "argil: warning: %s\n", warning.c_str());
   std::printf("%s: valid\n", s.file.c_str());
   return ExitCode::kDone;
@@ -192,16 +206,45 @@ void add_run_commands(CLI::App& app, int& code) {
   placing->add_option("--from", o->from, "X,Y,Z: direction that the tool comes from, with --at X,Y,Z");
   placing
       ->add_option(
-          "--depth", o->placed.depth,
+          "--depth", o->placed.touch.depth,
           "how deep the tool goes into the body at rest [m] (default: a quarter of the tool's radius)")
       ->check(finite_number(false));
   placing->add_option("-o,--output", o->placed.output, "patch for argil run --patch (default: printed)");
   placing->callback([o, &code] { code = place(*o); });
 
+  CLI::App* making = app.add_subcommand("new", "write a short scenario of a mesh and a recorded motion");
+  making->add_option("MESH", o->made.mesh, "surface (OBJ, STL, PLY) or tetrahedral mesh")->required();
+  making->add_option("TRACE", o->made.trace, "recorded motion")->required();
+  making->add_option("-o,--output", o->made.output, "scenario (default: the mesh's name with .json)");
+  making->add_option("--tool-radius", o->made.tool_radius, "of the ball [m] (default: by the body)")
+      ->check(finite_number(false));
+  making->add_option("--youngs-modulus", o->made.youngs_modulus, "E of the dry clay [Pa]")
+      ->check(finite_number(false))
+      ->capture_default_str();
+  making->add_option("--poissons-ratio", o->made.poissons_ratio, "of the dry clay")->capture_default_str();
+  making->add_option("--strength", o->made.strength, "undrained shear strength of the dry clay [Pa]")
+      ->check(finite_number(false))
+      ->capture_default_str();
+  making->add_option("--mesh-unit", o->made.mesh_unit,
+                     "m, cm, mm, um, or metres per unit of the mesh (default: m, or by its size)");
+  making->add_option("--trace-unit", o->made.trace_unit,
+                     "m, cm, mm or um of the motion (default: as it says, else m, or by its size)");
+  making->add_option("--up", o->made.up, "x, y or z: the body is held by its lowest part")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  making->add_option("--set", o->made.settings, "/json/pointer=value, a further key; may be repeated")
+      ->allow_extra_args(false);
+  making->add_flag("--force", o->made.overwrites, "write over a file that is there");
+  making->callback([o, &code] { code = run::write_new_scenario(o->made); });
+
   CLI::App* schema = app.add_subcommand("schema", "print the JSON Schema of a scenario");
   schema->add_flag("--reference", o->reference, "print the reference page (Markdown) instead");
-  schema->callback(
-      [o] { std::cout << (o->reference ? scenario::print_reference() : scenario::print_schema()); });
+  schema->add_flag("--tolerances", o->of_tolerances, "print that of a tolerance file for compare instead");
+  schema->callback([o] {
+    std::cout << (o->reference       ? scenario::print_reference()
+                  : o->of_tolerances ? scenario::print_tolerance_schema()
+                                     : scenario::print_schema());
+  });
 
   CLI::App* info = app.add_subcommand("info", "say how a run went, and what it made simpler than it is");
   info->add_option("FILE", o->first, "result file")->required();
@@ -222,12 +265,13 @@ void add_run_commands(CLI::App& app, int& code) {
   exporting->add_flag("--cage", o->exported.cage, "show the cage also where there is a skin");
   exporting->callback([o, &code] { code = run::export_result(o->exported); });
 
-  CLI::App* compare =
-      app.add_subcommand("compare", "compare two result files bit by bit, or within tolerances");
+  CLI::App* compare = app.add_subcommand(
+      "compare", "compare two result files: their figures, then bit by bit or within tolerances");
   compare->add_option("A", o->first, "result file")->required();
   compare->add_option("B", o->second, "result file")->required();
   compare->add_option("--tolerances", o->tolerances, "tolerances of datasets (JSON)");
-  compare->callback([o, &code] { code = compare_files(o->first, o->second, o->tolerances); });
+  compare->add_flag("--verbose", o->verbose, "name every difference, hashes too");
+  compare->callback([o, &code] { code = compare_files(o->first, o->second, o->tolerances, o->verbose); });
 }
 
 }  // namespace argil::cli

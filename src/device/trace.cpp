@@ -30,7 +30,7 @@ void fill_times(const std::string& file, const TraceOptions& options, RawTrace& 
   const double rate = raw.rate_hz > 0.0 ? raw.rate_hz : options.default_rate_hz;
   if (!(rate > 0.0 && std::isfinite(rate)))
     throw InputError(file, "", "no time column and no sampling rate",
-                     "name a column t [s] or give the rate in Hz");
+                     "name a column t [s] or give the rate in Hz by /trace/default_rate_hz");
   for (std::size_t i = 0; i < raw.position.size(); ++i) raw.time.push_back(static_cast<double>(i) / rate);
   raw.is_time_given = true;
 }
@@ -68,10 +68,33 @@ void move_to_world(const DeviceToWorld& map, DeviceSample& sample) {
   sample.orientation = make_unit(sample.orientation);
 }
 
+namespace {
+
+[[noreturn]] void refuse_far_place(const std::string& file, const RawTrace& raw, std::size_t i,
+                                   const Vec3& at) {
+  const std::string problem = "place " + print_number(at.stableNorm()) + " m from the origin, more than " +
+                              print_number(kFarthestPlace) + " m";
+  if (raw.is_length_given) throw InputError(file, print_place(raw, i), problem, "correct the unit of length");
+  throw UnlikelyUnit(file, print_place(raw, i), problem, "/trace/length_unit", "m, cm, mm or um", "mm");
+}
+
+}  // namespace
+
+UnlikelyUnit::UnlikelyUnit(const std::string& file, const std::string& place, const std::string& reason,
+                           const std::string& key, const std::string& words, const std::string& likely)
+    : InputError(file, place, reason,
+                 "give the unit by " + key + ": " + words + (likely.empty() ? "" : ", perhaps " + likely)),
+      m_reason(reason),
+      m_key(key),
+      m_likely(likely) {}
+
 Trace read_trace(const std::string& file, const TraceOptions& options) {
   const std::string bytes = read_file(file);
   const bool is_hdf5 = bytes.starts_with("\x89HDF\r\n\x1a\n");
-  RawTrace raw = is_hdf5 ? internal::read_hdf5(file, options) : internal::parse_csv(file, bytes, options);
+  const bool is_npy = bytes.starts_with("\x93NUMPY");
+  RawTrace raw = is_hdf5  ? internal::read_hdf5(file, options)
+                 : is_npy ? internal::parse_npy(file, bytes, options)
+                          : internal::parse_csv(file, bytes, options);
   fill_times(file, options, raw);
   internal::check_times(file, options, raw);
   const double scale = raw.device_to_world.scale * options.device_to_world.scale;
@@ -93,11 +116,7 @@ Trace read_trace(const std::string& file, const TraceOptions& options) {
     if (!raw.orientation.empty()) sample.orientation = checked_orientation(file, raw, i);
     sample.mode = raw.mode.empty() ? options.default_mode : raw.mode[i];
     move_to_world(raw.device_to_world, sample);
-    if (!is_within_reach(sample.position))
-      throw InputError(file, print_place(raw, i),
-                       "place " + print_number(sample.position.stableNorm()) +
-                           " m from the origin, more than " + print_number(kFarthestPlace) + " m",
-                       "correct the unit of length");
+    if (!is_within_reach(sample.position)) refuse_far_place(file, raw, i, sample.position);
     move_to_world(options.device_to_world, sample);
     trace.samples.push_back(sample);
   }

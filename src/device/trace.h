@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "device/sample.h"
 
 namespace argil::device {
@@ -30,7 +31,7 @@ struct TraceOptions {
   DeviceToWorld device_to_world;           ///< applied after the header's own transform
   ToolMode default_mode = ToolMode::push;  ///< when the file has no mode column
   double default_rate_hz = 0.0;  ///< > 0: sampling rate when the file has neither a time column nor a rate
-  /// CSV only: names of the columns from the left, in place of the file's header row; "" or "-" leaves a
+  /// CSV, NPY: names of the columns from the left, in place of the file's header row; "" or "-" leaves a
   /// column out, as do columns past the list. For files without a header row, or whose names do not say what
   /// they hold.
   std::vector<std::string> columns;
@@ -57,10 +58,26 @@ struct Trace {
   double duration() const { return time.back() - time.front(); }
 };
 
-/// Reads a CSV (header row names columns) or HDF5 trace; the formats are in this folder's README. Throws
+/// A rate or a path out of all reason whose unit nobody gave.
+class UnlikelyUnit : public InputError {
+ public:
+  /// `likely`: what `key` of a scenario would be; empty where nothing is likely.
+  UnlikelyUnit(const std::string& file, const std::string& place, const std::string& reason,
+               const std::string& key, const std::string& words, const std::string& likely);
+  const std::string& reason() const { return m_reason; }
+  const std::string& key() const { return m_key; }
+  const std::string& likely() const { return m_likely; }
+
+ private:
+  std::string m_reason;
+  std::string m_key;
+  std::string m_likely;
+};
+
+/// Reads a CSV (header row names columns), NPY (options name them) or HDF5 trace; the formats are in this folder's README. Throws
 /// InputError (file, line, value, remedy) for long pauses, unsorted times, NaN, places beyond kFarthestPlace
-/// before device_to_world of the options, zero quaternions, unknown modes, and for a rate or a path out of
-/// all reason whose unit nobody gave; IoError when the file cannot be read.
+/// before device_to_world of the options, zero quaternions, unknown modes, and UnlikelyUnit; IoError when the
+/// file cannot be read.
 Trace read_trace(const std::string& file, const TraceOptions& options);
 
 /// The sample at `time` seconds after the trace's first: position linear, orientation slerp along the shorter

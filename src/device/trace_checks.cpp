@@ -69,11 +69,10 @@ void check_rate(const std::string& file, const RawTrace& raw, double median) {
   if (raw.is_time_given) return;
   const bool is_slow = raw.time.size() >= kManySamples && median > kLongestInterval;
   if (!is_slow && !(median < kShortestInterval)) return;
-  throw InputError(file, "",
-                   std::to_string(raw.time.size()) + " samples at a median interval of " +
-                       print_number(median) + " s are no recorded motion if times are in s",
-                   std::string("give the unit by /trace/time_unit: s, ms, us or ns") +
-                       (is_slow ? ", perhaps " + std::string(guess_time_unit(median)) : ""));
+  throw UnlikelyUnit(file, "",
+                     std::to_string(raw.time.size()) + " samples at a median interval of " +
+                         print_number(median) + " s are no recorded motion if times are in s",
+                     "/trace/time_unit", "s, ms, us or ns", is_slow ? guess_time_unit(median) : "");
 }
 
 void bridge_pauses(const std::string& file, const TraceOptions& options, double median, RawTrace& raw) {
@@ -142,11 +141,11 @@ void check_path(const std::string& file, const Trace& trace) {
   const double width = (high - low).norm();
   const bool is_fast = mean > kFastestMean || fast > kFastestHand;
   if (width <= kWidestMotion && !(is_fast && width > kWideMotion)) return;
-  throw InputError(file, "",
-                   "the motion is " + print_number(width) + " m wide, " + print_number(mean) +
-                       " m/s fast in the mean and " + print_number(fast) +
-                       " m/s at its fastest, which is no hand's if places are in m",
-                   "give the unit by /trace/length_unit: m, cm, mm or um, perhaps mm");
+  throw UnlikelyUnit(file, "",
+                     "the motion is " + print_number(width) + " m wide, " + print_number(mean) +
+                         " m/s fast in the mean and " + print_number(fast) +
+                         " m/s at its fastest, which is no hand's if places are in m",
+                     "/trace/length_unit", "m, cm, mm or um", "mm");
 }
 
 void note_steps(const RawTrace& raw, double metres, std::vector<std::string>& notes) {

@@ -28,6 +28,8 @@ struct RawTrace {
 };
 
 RawTrace parse_csv(const std::string& file, const std::string& text, const TraceOptions& options);
+/// A table of NumPy's (.npy) whose columns the options name.
+RawTrace parse_npy(const std::string& file, const std::string& bytes, const TraceOptions& options);
 RawTrace read_hdf5(const std::string& file, const TraceOptions& options);
 
 }  // namespace argil::device::internal

@@ -33,7 +33,8 @@ constexpr double kBand = 1.5;  // beyond this distance only the side matters
 constexpr int kRounds = 40;
 constexpr double kTetsPerCube = 12.0;
 constexpr double kCountTolerance = 0.15;
-constexpr double kMostAbove = 0.3;  // of tets, before parts are looked for that are lost
+constexpr double kLargestCountError = 0.5;  // where the number of tets leaps with the lattice's size
+constexpr double kMostAbove = 0.3;          // of tets, before parts are looked for that are lost
 
 void require_usable_input(const mesh::TriangleMesh& surface, const CageOptions& options,
                           const std::string& name) {
@@ -259,9 +260,11 @@ class CageSearch {
       const double count_error = std::abs(ratio - 1.0);
       bad = find_bad_vertices(m_skin, mesh, is_fitted() ? kMostOutside * m_cell_size : 0.0);
       const double wanted = round < kRounds / 2 ? 0.5 * kCountTolerance : kCountTolerance;
-      if (bad.empty() && count_error <= wanted) {
-        if (is_fitted()) mesh = fit_volume(std::move(mesh));
-        return finish(std::move(mesh), m_cell_size, m_surface, m_skin, m_tree);
+      if (bad.empty() && count_error <= wanted) return finish_body(std::move(mesh));
+      if (bad.empty() && count_error < m_least_error) {
+        m_least_error = count_error;
+        m_best_size = m_cell_size;
+        m_best_offset = m_offset;
       }
       // Of a fitted body, what is too coarse loses parts, and what has lost parts has too few tets.
       const bool is_too_fine = is_fitted() && ratio > 1.0 + kMostAbove;
@@ -272,10 +275,20 @@ class CageSearch {
       if (!is_growing && count_error > (bad.empty() ? wanted : 0.8 * kCountTolerance))
         m_cell_size *= std::clamp(std::cbrt(ratio), 0.8, 1.5);
     }
-    give_up(m_name, m_options, bad.size(), num_tets);
+    if (m_least_error > kLargestCountError) give_up(m_name, m_options, bad.size(), num_tets);
+    m_cell_size = m_best_size;
+    m_offset = m_best_offset;
+    Cage nearest = finish_body(stuff(0.0));
+    nearest.report.wanted_tets = m_options.target_tets;
+    return nearest;
   }
 
  private:
+  Cage finish_body(mesh::TetMesh mesh) {
+    if (is_fitted()) mesh = fit_volume(std::move(mesh));
+    return finish(std::move(mesh), m_cell_size, m_surface, m_skin, m_tree);
+  }
+
   bool is_fitted() const { return m_options.fit == Fit::surface; }
 
   mesh::TetMesh stuff(double level) {
@@ -325,6 +338,10 @@ class CageSearch {
   mesh::TriangleMesh m_skin;  // the same surface; of a fitted body with triangles no larger than cells
   TriangleTree m_tree;
   Field m_offset;  // of each vertex of the skin, in cube edges
+  // Of the body that holds the skin with the number nearest to the wanted one.
+  double m_least_error = std::numeric_limits<double>::infinity();  // of that number, as a share
+  double m_best_size = 0.0;                                        // [m]
+  Field m_best_offset;
 };
 
 bool winds_round_something(const mesh::TriangleMesh& surface) {
@@ -337,7 +354,10 @@ bool winds_round_something(const mesh::TriangleMesh& surface) {
 std::string describe(const CageReport& r) {
   std::ostringstream text;
   text.precision(4);
-  text << r.num_tets << " tets, cells of " << 1e3 * r.cell_size << " mm";
+  text << r.num_tets << " tets";
+  if (r.wanted_tets > 0)
+    text << " (for the " << r.wanted_tets << " wanted: on this surface the number goes in leaps)";
+  text << ", cells of " << 1e3 * r.cell_size << " mm";
   if (r.volume_ratio > 0.0) text << ", volume " << r.volume_ratio << " of the surface's";
   text << "; boundary off the surface by " << 1e3 * r.median_distance << " mm in the median, "
        << 1e3 * r.max_distance << " mm at most, surface off the boundary by " << 1e3 * r.max_skin_distance

@@ -13,12 +13,13 @@ enum class Fit {
 };
 
 struct CageOptions {
-  int target_tets = 10000;  ///< wanted number of tets; reached within 15 %
+  int target_tets = 10000;  ///< wanted number of tets; reached within 15 % where a lattice has so many
   Fit fit = Fit::enclose;
 };
 
 struct CageReport {
   int num_tets = 0;
+  int wanted_tets = 0;           ///< where no lattice has within 15 % of them; else 0
   double cell_size = 0.0;        ///< [m] edge of the background lattice
   double median_distance = 0.0;  ///< [m] of the boundary's vertices from the surface
   double max_distance = 0.0;     ///< [m] the largest of these

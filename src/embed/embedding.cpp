@@ -34,12 +34,37 @@ namespace {
                    "make a cage that encloses the surface with `argil cage`");
 }
 
+/// Finds the tet that carries a point, inside or just outside.
+class CarrierFinder {
+ public:
+  CarrierFinder(const mesh::TetMesh& cage, double most_beyond)
+      : m_cage(cage), m_locator(cage), m_most_beyond(most_beyond) {}
+  TetLocator::Place find(const Vec3& point) {
+    const TetLocator::Place place = m_locator.find(point);
+    if (place.tet >= 0 || !(m_most_beyond > 0.0)) return place;
+    if (!m_boundary) m_boundary.emplace(m_cage);
+    return m_boundary->find(point, m_most_beyond, std::numeric_limits<double>::infinity());
+  }
+
+ private:
+  const mesh::TetMesh& m_cage;
+  TetLocator m_locator;
+  double m_most_beyond;                    // in longest edges of the tet
+  std::optional<BoundaryTets> m_boundary;  // made for the first point outside
+};
+
 }  // namespace
+
+bool can_embed(const mesh::TetMesh& cage, const Points& points, double most_beyond) {
+  CarrierFinder carriers(cage, most_beyond);
+  for (const auto& x : points.colwise())
+    if (carriers.find(x).tet < 0) return false;
+  return true;
+}
 
 Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const std::string& file,
                          double most_beyond) {
-  const TetLocator locator(cage);
-  std::optional<BoundaryTets> boundary;  // made for the first point outside
+  CarrierFinder carriers(cage, most_beyond);
   Embedding embedding;
   embedding.tet.resize(static_cast<std::size_t>(points.cols()));
   embedding.weights.resize(4, points.cols());
@@ -48,11 +73,7 @@ Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const 
     if (!points.col(v).allFinite())
       throw InputError(file, "vertex " + std::to_string(v) + " (counted from 0)",
                        "a coordinate is not a finite number", "repair the surface file");
-    TetLocator::Place place = locator.find(points.col(v));
-    if (place.tet < 0 && most_beyond > 0.0) {
-      if (!boundary) boundary.emplace(cage);
-      place = boundary->find(points.col(v), most_beyond, std::numeric_limits<double>::infinity());
-    }
+    const TetLocator::Place place = carriers.find(points.col(v));
     embedding.tet[static_cast<std::size_t>(v)] = place.tet;
     embedding.weights.col(v) = place.weights;
     if (place.tet < 0) outside.push_back(v);

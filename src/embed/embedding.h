@@ -20,6 +20,8 @@ struct Embedding {
 /// are nearer to the boundary than `most_beyond` longest edges of the tet below it are carried by that tet.
 Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const std::string& file,
                          double most_beyond = 0.0);
+/// Would make_embedding take all of the points?
+bool can_embed(const mesh::TetMesh& cage, const Points& points, double most_beyond);
 /// Of a body that is fitted to the points' surface.
 inline constexpr double kMostBeyondFitted = 2.0;
 

@@ -226,8 +226,13 @@ int conduct(sim::Simulation& simulation, device::HapticDevice& device, const Ses
 
 int run_live(const LiveOptions& options) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error of the write, like a full disk
-  const scenario::Scenario s = run::load(options.run);
+  run::RunOptions run_options = options.run;
+  run_options.is_live = true;
+  const scenario::Scenario s = run::load(run_options);
   require_live(s);
+  if (options.device == "simulated" && s.trace.file.empty())
+    throw InputError(s.file, "/trace/file", "is missing: it is what a simulated hand means to do",
+                     "add it, or take another --device");
   const std::string result = run::name_result(s, options.run);
   run::check_result_name(s, result);
   if (!options.watch.empty()) check_watch_name(s, options.watch, result);

@@ -351,23 +351,43 @@ CompareReport compare_results(const std::string& file_a, const std::string& file
   return Comparison(a, b, options).take_report();
 }
 
-std::string to_string(const CompareReport& report) {
+namespace {
+
+bool is_of_hash(const std::string& object) {
+  for (const char* name : {kStateHash, "sha256", "run_id"})
+    if (object.find(name) != std::string::npos) return true;
+  return false;
+}
+
+}  // namespace
+
+std::string to_string(const CompareReport& report, bool verbose) {
+  constexpr std::size_t kFew = 8;
   if (report.is_equal())
     return "equal: " + std::to_string(report.num_compared) + " datasets and attributes, " +
            std::to_string(report.num_hashes) + " hashes of the state among them\n";
   std::ostringstream text;
-  const auto timed = std::find_if(report.differences.begin(), report.differences.end(),
-                                  [](const Difference& difference) { return difference.tick.has_value(); });
-  const Difference& first = timed == report.differences.end() ? report.differences.front() : *timed;
+  const auto rank = [](const Difference& difference) {  // a hash only tells that there is more
+    return (difference.tick.has_value() ? 0 : 1) + (is_of_hash(difference.object) ? 2 : 0);
+  };
+  const Difference& first =
+      *std::min_element(report.differences.begin(), report.differences.end(),
+                        [&](const Difference& x, const Difference& y) { return rank(x) < rank(y); });
   text << "different: first ";
   if (first.tick) text << "at tick " << *first.tick << " ";
   text << "in " << first.object << "; " << report.differences.size() << " of " << report.num_compared
        << " datasets and attributes differ\n";
+  std::size_t said = 0;
   for (const Difference& difference : report.differences) {
+    if (!verbose && (said == kFew || is_of_hash(difference.object))) continue;
+    ++said;
     text << "  ";
     if (difference.tick) text << "tick " << *difference.tick << "  ";
     text << difference.object << ": " << difference.what << '\n';
   }
+  if (said < report.differences.size())
+    text << "  " << report.differences.size() - said << (said > 0 ? " more" : "")
+         << ", hashes among them, by --verbose\n";
   return text.str();
 }
 

@@ -51,7 +51,9 @@ struct CompareReport {
 CompareReport compare_results(const std::string& file_a, const std::string& file_b,
                               const CompareOptions& options);
 
-/// The report for a person; the first line names the first differing tick and dataset.
-std::string to_string(const CompareReport& report);
+/// The report for a person; the first line names the first differing tick and dataset. Unless it is
+/// `verbose`, hashes are left out, which differ where anything does, and of other differences all but the
+/// first few.
+std::string to_string(const CompareReport& report, bool verbose = true);
 
 }  // namespace argil::output

@@ -219,6 +219,7 @@ std::vector<std::string> write_html(const std::string& result_file, const std::s
   const mesh::TriangleMesh tool = reader.read_header().tool;
   add_tool(block, tool);
   const std::size_t stride = add_force(block, records);
+  add_path(block, records);
   const PageSurface shown =
       add_surface(block, surface, choose_frames(surface.frames(), limit, peak != nullptr ? peak->tick : 0));
   const std::vector<std::string> notes = list_notes(surface, shown, stride, options);

@@ -135,8 +135,27 @@ PageSurface add_surface(PageBlock& block, const SurfaceFrames& surface,
   return page;
 }
 
+namespace {
+
+std::size_t find_stride(const std::vector<sim::HapticRecord>& records) {
+  return std::max<std::size_t>(1, (records.size() + kForcePoints - 1) / kForcePoints);
+}
+
+}  // namespace
+
+void add_path(PageBlock& block, const std::vector<sim::HapticRecord>& records) {
+  const std::size_t stride = find_stride(records);
+  std::vector<float> path;
+  const auto add = [&](const sim::HapticRecord& record) {
+    for (int k = 0; k < 3; ++k) path.push_back(static_cast<float>(record.tool_position(k)));
+  };
+  for (std::size_t i = 0; i < records.size(); i += stride) add(records[i]);
+  if (!records.empty() && (records.size() - 1) % stride != 0) add(records.back());
+  block.add("tool_path", path);
+}
+
 std::size_t add_force(PageBlock& block, const std::vector<sim::HapticRecord>& records) {
-  const std::size_t stride = std::max<std::size_t>(1, (records.size() + kForcePoints - 1) / kForcePoints);
+  const std::size_t stride = find_stride(records);
   std::vector<float> time, low, high;
   std::vector<std::uint8_t> mode;
   for (std::size_t begin = 0; begin < records.size(); begin += stride) {

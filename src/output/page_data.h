@@ -69,4 +69,7 @@ void add_tool(PageBlock& block, const mesh::TriangleMesh& tool);
 /// range of as many ticks; returns how many ticks a point stands for.
 std::size_t add_force(PageBlock& block, const std::vector<sim::HapticRecord>& records);
 
+/// Adds tool_path [m]: the hand's point at the same ticks and at the last one, x y z each.
+void add_path(PageBlock& block, const std::vector<sim::HapticRecord>& records);
+
 }  // namespace argil::output

@@ -1,20 +1,17 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
-#include "base/types.h"
+#include "run/placing.h"
 #include "run/run.h"
 
 namespace argil::run {
 
 /// Where `argil place` brings a motion.
 struct PlaceOptions {
-  RunOptions run;            ///< what it reads of a run
-  std::optional<Vec3> at;    ///< place that the tool is to touch [m]; none: where it is nearest
-  std::optional<Vec3> from;  ///< with `at`: the direction that the tool comes from
-  double depth = 0.0;        ///< of the tool in the body at rest [m]; 0: a quarter of the tool's radius
-  std::string output;        ///< file of the patch; empty: standard output
+  RunOptions run;  ///< what it reads of a run
+  Touch touch;
+  std::string output;  ///< file of the patch; empty: standard output
 };
 
 /// Says where body and motion are, how near the tool comes and when, and writes a patch of the scenario with

@@ -34,7 +34,7 @@ ReadyRun::ReadyRun(const scenario::Scenario& scenario, const std::string& given_
   }
   const bool is_given = !given_trace.empty();
   require_free_start(simulation, tool, is_given ? given_trace : s.file, is_given ? "" : "/trace",
-                     "start the motion outside it");
+                     "start the motion outside it, or move it there by argil place");
 }
 
 output::ResultHeader ReadyRun::make_header(const Identity& identity) const {

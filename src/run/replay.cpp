@@ -5,9 +5,12 @@
 #include "base/error.h"
 #include "hdf5/file.h"
 #include "run/identity.h"
+#include "scenario/patch.h"
 
 namespace argil::run {
 namespace {
+
+constexpr int kMostSaid = 5;  // differences between two scenarios
 
 /// After a step of the body: as the physics thread of the session did.
 void append_step(Tick ticks_before, sim::Simulation& simulation, output::ResultFile& file) {
@@ -37,7 +40,11 @@ std::optional<output::Session> find_session(const std::string& trace, const scen
     return reader.find_provenance(name).value_or("") != wanted;
   };
   if (differs("scenario_sha256", identity.scenario) || differs("inputs_sha256", identity.inputs)) {
-    note = trace + " is a session of another scenario or other inputs: only its motion is taken";
+    const std::string settings =
+        scenario::describe_differences(reader.find_provenance("scenario").value_or(""),
+                                       scenario::print_portable(without_trace(s)), kMostSaid);
+    note = trace + " is a session of another scenario or other inputs: only its motion is taken" +
+           (settings.empty() ? "" : "; other settings: " + settings);
     return std::nullopt;
   }
   if (differs("build", identity.build))

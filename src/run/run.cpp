@@ -152,8 +152,9 @@ scenario::Scenario load(const RunOptions& options) {
   const bool is_text = !options.text.empty();
   if (!is_text) require_input_file(options.scenario);
   if (!options.trace.empty()) require_input_file(options.trace);
-  scenario::Scenario s = is_text ? scenario::load_text(options.text, options.scenario, settings)
-                                 : scenario::load_scenario(options.scenario, settings);
+  const auto motion = options.is_live ? scenario::MotionSource::device : scenario::MotionSource::trace;
+  scenario::Scenario s = is_text ? scenario::load_text(options.text, options.scenario, settings, motion)
+                                 : scenario::load_scenario(options.scenario, settings, motion);
   s.params.threads = options.threads;
   for (const scenario::InputFile& input : scenario::list_input_files(s))
     if (!is_text || !input.pointer.empty()) require_input_file(input.file, input.pointer);

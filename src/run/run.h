@@ -22,6 +22,7 @@ struct RunOptions {
   bool writes_xdmf = true;
   bool dry_run = false;  ///< check and build everything, run and write nothing
   bool quiet = false;
+  bool is_live = false;                        ///< a device gives the motion: /trace need not
   bool strict = false;                         ///< /dynamics/strict
   std::string remedy = "go on with --resume";  ///< of a run that was stopped or found no room, in its message
 };

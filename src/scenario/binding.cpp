@@ -9,11 +9,6 @@
 namespace argil::scenario {
 namespace {
 
-std::string shorten(const Json& json) {
-  const std::string text = json.dump();
-  return text.size() > 60 ? text.substr(0, 57) + "..." : text;
-}
-
 [[noreturn]] void refuse_type(const std::string& file, const std::string& place, const Json& json,
                               const std::string& wanted) {
   throw InputError(file, place, shorten(json) + " is not " + wanted, "give " + wanted);

@@ -87,10 +87,12 @@ Parameter& Binder::objects(const std::string& pointer, std::vector<Element>& val
   row.read = [&value, rows_of, checker, file = m_file](const Json& json, const std::string& place) {
     checker.check_list(place, json);
     value.clear();
+    Faults faults(file);
     for (std::size_t i = 0; i < json.size(); ++i) {
       value.emplace_back();
-      read_parameters(rows_of(value.back()), json[i], file, place + "/" + std::to_string(i));
+      read_parameters(rows_of(value.back()), json[i], file, place + "/" + std::to_string(i), faults);
     }
+    faults.throw_all();
   };
   row.write = [&value, rows_of]() -> Json {
     Json list = Json::array();

@@ -15,6 +15,8 @@
 #include "mesh/sliver.h"
 #include "mesh_files/readers.h"
 #include "scenario/cell_sizes.h"
+#include "scenario/faults.h"
+#include "scenario/file_faults.h"
 #include "scenario/medium_check.h"
 #include "solid/rigid_motion.h"
 
@@ -123,15 +125,32 @@ void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
   take_fields(s, body);
 }
 
+double most_beyond(const Scenario& s) {
+  return s.body.fit == embed::Fit::surface ? embed::kMostBeyondFitted : 0.0;
+}
+
+bool holds_skin(const Scenario& s, const sim::Body& body) {
+  return body.skin.num_triangles() == 0 || embed::can_embed(body.mesh, body.skin.vertices, most_beyond(s));
+}
+
 Halvings make_cells(const Scenario& s, const std::vector<sim::TouchedPlace>* places, Scene& scene) {
   if (s.body.cells.kind == CellKind::even) {
     make_mesh(s, s.body.target_tets, scene);
     return {};
   }
+  // A sharp tip that the first cells cut off may be far outside the small ones below it: then others are
+  // tried.
+  constexpr double kMore = 1.5;
   const std::vector<std::string> notes = scene.notes;
-  make_mesh(s, count_first_tets(s.body), scene);
-  std::optional<Halvings> halvings = grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes);
-  if (halvings) return *std::move(halvings);
+  const double most = std::max(s.body.target_tets, count_first_tets(s.body));
+  for (double count = count_first_tets(s.body);; count *= kMore) {
+    scene.notes = notes;
+    make_mesh(s, static_cast<int>(count), scene);
+    std::optional<Halvings> halvings =
+        grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes);
+    if (!halvings) break;
+    if (holds_skin(s, scene.body) || kMore * count > most) return *std::move(halvings);
+  }
   const std::string reason = scene.notes.back();
   scene.notes = notes;
   scene.notes.push_back(reason);
@@ -150,30 +169,31 @@ void require_vertices(const Scenario& s, const std::string& pointer, const std::
 /// What of the skin is outside a fitted body is carried by the tets below it.
 void embed_skin(const Scenario& s, Scene& scene) {
   sim::Body& body = scene.body;
-  const bool is_fitted = s.body.fit == embed::Fit::surface;
-  body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, name_origin(s),
-                                              is_fitted ? embed::kMostBeyondFitted : 0.0);
-  if (!is_fitted) return;
+  body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, name_origin(s), most_beyond(s));
+  if (s.body.fit != embed::Fit::surface) return;
   std::ostringstream text;
   text << "skin: carried with weights " << body.skin_embedding.weights.minCoeff() << " to "
        << body.skin_embedding.weights.maxCoeff() << " of the cells' vertices";
   scene.notes.push_back(text.str());
 }
 
+void check_support(const Scenario& s, std::size_t i, int num_given, const mesh::TetMesh& mesh) {
+  const solid::Region& region = s.body.fixed[i].region;
+  const std::string pointer = "/body/fixed/" + std::to_string(i);
+  require_vertices(s, pointer + "/nodes", region.nodes, num_given);
+  if (!solid::find_nodes(mesh.vertices, std::span(&region, 1)).empty()) return;
+  const Vec3 low = mesh.vertices.rowwise().minCoeff();
+  const Vec3 high = mesh.vertices.rowwise().maxCoeff();
+  throw InputError(s.file, pointer, "holds no vertex of the body",
+                   "move it into the body's box, " + print_place(low) + " to " + print_place(high) + " m");
+}
+
 void fix_and_load(const Scenario& s, const Halvings& halvings, sim::Body& body) {
   const int num_given = body.mesh.num_vertices() - static_cast<int>(halvings.ends.size());
-  for (std::size_t i = 0; i < s.body.fixed.size(); ++i) {
-    const solid::Region& region = s.body.fixed[i].region;
-    const std::string pointer = "/body/fixed/" + std::to_string(i);
-    require_vertices(s, pointer + "/nodes", region.nodes, num_given);
-    if (solid::find_nodes(body.mesh.vertices, std::span(&region, 1)).empty()) {
-      const Vec3 low = body.mesh.vertices.rowwise().minCoeff();
-      const Vec3 high = body.mesh.vertices.rowwise().maxCoeff();
-      throw InputError(
-          s.file, pointer, "holds no vertex of the body",
-          "move it into the body's box, " + print_place(low) + " to " + print_place(high) + " m");
-    }
-  }
+  Faults faults(s.file);
+  for (std::size_t i = 0; i < s.body.fixed.size(); ++i)
+    faults.check([&] { check_support(s, i, num_given, body.mesh); });
+  faults.throw_all();
   body.supports = s.body.fixed;
   for (solid::Support& support : body.supports) halvings.renumber_with_middles(support.region.nodes);
   body.loads = s.body.loads;
@@ -300,12 +320,16 @@ void check_trace(const Scenario& s, const device::Trace& trace) {
 Scene build_scene(const Scenario& s, const std::vector<sim::TouchedPlace>* places) {
   Scene scene;
   scene.notes = s.warnings;
-  scene.tool = make_tool(s);
-  if (s.mode == Mode::dynamic && !s.trace.file.empty()) {
-    scene.trace = device::read_trace(s.trace.file, s.trace.options);
-    check_trace(s, scene.trace);
-    for (const std::string& note : scene.trace.notes) scene.notes.push_back("trace: " + note);
-  }
+  Faults faults(s.file);
+  faults.check([&] { scene.tool = make_tool(s); });
+  if (s.mode == Mode::dynamic && !s.trace.file.empty())
+    faults.check([&] {
+      scene.trace = device::read_trace(s.trace.file, s.trace.options);
+      check_trace(s, scene.trace);
+      for (const std::string& note : scene.trace.notes) scene.notes.push_back("trace: " + note);
+    });
+  if (!faults.empty()) find_file_faults(s, faults);
+  faults.throw_all();
   const Halvings halvings = make_cells(s, places, scene);
   sim::Body& body = scene.body;
   mesh::sort_tets(body.mesh);

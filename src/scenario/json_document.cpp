@@ -88,6 +88,11 @@ class PlaceWatcher {
 
 }  // namespace
 
+std::string shorten(const Json& json) {
+  const std::string text = json.dump();
+  return text.size() > 60 ? text.substr(0, 57) + "..." : text;
+}
+
 std::string escape_key(const std::string& key) {
   std::string text;
   for (const char c : key) text += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);

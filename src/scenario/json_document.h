@@ -16,6 +16,9 @@ Json parse_json(const std::string& text, const std::string& file);
 /// Reads and parses a file of at most 64 MiB. Throws InputError or IoError.
 Json read_json(const std::string& file);
 
+/// A value as text, its end left out where it is long.
+std::string shorten(const Json& json);
+
 /// A key as it stands in a JSON pointer: ~ as ~0, / as ~1.
 std::string escape_key(const std::string& key);
 

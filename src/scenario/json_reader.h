@@ -132,8 +132,11 @@ class JsonReader {
   void finish() const {
     for (const auto& [key, value] : m_json.items())
       if (std::find(m_known.begin(), m_known.end(), key) == m_known.end()) {
+        std::string list;
+        for (const std::string& known : m_known) list += (list.empty() ? "" : ", ") + known;
         const std::string near = find_nearest(key, m_known);
-        refuse(key, "is not a known key", near.empty() ? "remove it" : "did you mean " + near + "?");
+        refuse(key, "is not a known key",
+               (near.empty() ? "remove it; " : "did you mean " + near + "? ") + ("known here are: " + list));
       }
   }
   [[noreturn]] void refuse(const std::string& key, const std::string& problem,

@@ -37,7 +37,9 @@ void bind_trace(Binder& b, TraceSpec& t, const std::string& folder) {
   using device::LengthUnit;
   using device::QuaternionOrder;
   using device::TimeUnit;
-  b.path("/trace/file", t.file, folder, "Recorded motion (CSV or HDF5).").required = true;
+  b.path("/trace/file", t.file, folder,
+         "Recorded motion (CSV, NPY or HDF5); argil live with a device needs none.")
+      .required = true;
   b.choice<device::ToolMode>("/trace/default_mode", t.options.default_mode,
                              {{device::ToolMode::push, "push"},
                               {device::ToolMode::pull, "pull"},
@@ -47,7 +49,7 @@ void bind_trace(Binder& b, TraceSpec& t, const std::string& folder) {
   b.number("/trace/default_rate_hz", t.options.default_rate_hz, not_negative(), "Hz",
            "Rate when the file has no time; 0: it must.");
   b.strings("/trace/columns", t.options.columns,
-            "CSV: names of the columns from the left, in place of a header row.");
+            "CSV, NPY: names of the columns from the left, in place of a header row.");
   b.choice<TimeUnit>("/trace/time_unit", t.options.time_unit,
                      {{TimeUnit::automatic, "auto"},
                       {TimeUnit::s, "s"},

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "scenario/faults.h"
 #include "scenario/json_document.h"
 #include "scenario/scenario.h"
 
@@ -71,7 +72,10 @@ const std::vector<std::string>& list_pointers();
 bool is_possible_pointer(const std::string& pointer);
 
 /// Checks the keys of `object` against the rows, then reads each row's value; `prefix` is put before pointers
-/// in errors.
+/// in errors. All that is wrong is gathered.
+void read_parameters(const std::vector<Parameter>& rows, const Json& object, const std::string& file,
+                     const std::string& prefix, Faults& faults);
+/// The same; throws what is wrong.
 void read_parameters(const std::vector<Parameter>& rows, const Json& object, const std::string& file,
                      const std::string& prefix);
 

@@ -134,10 +134,17 @@ struct Setting {
 /// Splits "/a/b=value". Throws InputError.
 Setting parse_setting(const std::string& text);
 
+/// Where the motion of a scenario comes from.
+enum class MotionSource {
+  trace,   ///< /trace/file must be there
+  device,  ///< it need not
+};
+
 /// Reads, applies the preset and the settings, checks every key, type and range, and the combinations that
 /// cannot run. Throws InputError naming file, JSON pointer, value, allowed range and unit; IoError when the
 /// file cannot be read.
-Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings);
+Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings,
+                       MotionSource motion = MotionSource::trace);
 
 /// A file that a run reads.
 struct InputFile {

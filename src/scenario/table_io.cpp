@@ -36,10 +36,21 @@ bool is_key(const std::vector<Parameter>& rows, const std::string& pointer) {
   return std::any_of(rows.begin(), rows.end(), [&](const Parameter& row) { return row.pointer == pointer; });
 }
 
+/// Of lists of bodies or tools, which there are not.
+std::string say_one(const Json& value, const std::string& pointer) {
+  return value.is_array() && (pointer == "/body" || pointer == "/tool")
+             ? ": a run has one body and one rigid tool"
+             : "";
+}
+
 void check_keys(const std::vector<Parameter>& rows, const Json& object, const std::string& pointer,
-                const std::string& file, const std::string& prefix) {
-  if (!object.is_object())
-    throw InputError(file, prefix + pointer, object.dump() + " is not an object", "give an object {…}");
+                const std::string& file, const std::string& prefix, Faults& faults) {
+  if (!object.is_object()) {
+    faults.add(InputError(file, prefix + pointer, shorten(object) + " is not an object",
+                          "give an object {…}" + say_one(object, prefix + pointer))
+                   .what());
+    return;
+  }
   const std::vector<std::string> allowed = find_keys_below(rows, pointer);
   for (const auto& [key, value] : object.items()) {
     if (key == kSchemaKey && (prefix + pointer).empty() && value.is_string()) continue;
@@ -48,11 +59,15 @@ void check_keys(const std::vector<Parameter>& rows, const Json& object, const st
       std::string list;
       for (const std::string& word : allowed) list += (list.empty() ? "" : ", ") + word;
       const std::string nearest = find_nearest(key, allowed);
-      throw InputError(
-          file, prefix + below, "is not a known key",
-          (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") + ("known here are: " + list));
+      const InputError fault(file, prefix + below, "is not a known key",
+                             (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") +
+                                 ("known here are: " + list) +
+                                 (prefix.empty() && pointer.empty() ? say_one(value, "/" + nearest) : ""));
+      faults.add(fault.what());
+      if (!nearest.empty()) faults.add_misspelt(prefix + pointer + "/" + escape_key(nearest));
+    } else if (!is_key(rows, below)) {
+      check_keys(rows, value, below, file, prefix, faults);
     }
-    if (!is_key(rows, below)) check_keys(rows, value, below, file, prefix);
   }
 }
 
@@ -157,17 +172,25 @@ std::string to_string(const Range& range, bool is_whole) {
 }
 
 void read_parameters(const std::vector<Parameter>& rows, const Json& object, const std::string& file,
-                     const std::string& prefix) {
-  check_keys(rows, object, "", file, prefix);
+                     const std::string& prefix, Faults& faults) {
+  check_keys(rows, object, "", file, prefix, faults);
   for (const Parameter& row : rows) {
     const Json::json_pointer pointer(row.pointer);
-    if (object.contains(pointer)) {
-      row.read(object[pointer], prefix + row.pointer);
-    } else if (row.required && (!row.applies || row.applies())) {
-      throw InputError(file, prefix + row.pointer, "is missing",
-                       "add it: " + row.doc + (row.unit.empty() ? "" : " [" + row.unit + "]"));
-    }
+    const std::string place = prefix + row.pointer;
+    if (object.contains(pointer))
+      faults.check([&] { row.read(object[pointer], place); });
+    else if (row.required && (!row.applies || row.applies()) && !faults.explains(place))
+      faults.add(InputError(file, place, "is missing",
+                            "add it: " + row.doc + (row.unit.empty() ? "" : " [" + row.unit + "]"))
+                     .what());
   }
+}
+
+void read_parameters(const std::vector<Parameter>& rows, const Json& object, const std::string& file,
+                     const std::string& prefix) {
+  Faults faults(file);
+  read_parameters(rows, object, file, prefix, faults);
+  faults.throw_all();
 }
 
 Json write_parameters(const std::vector<Parameter>& rows) {

@@ -38,8 +38,40 @@ output::CompareOptions load_tolerances(const std::string& file) {
       entry.finish();
       options.tolerances.push_back(tolerance);
     }
+  reader.find("$schema");
   reader.finish();
   return options;
+}
+
+std::string print_tolerance_schema() {
+  const auto number = [](const char* about) {
+    return Json{{"type", "number"}, {"description", about}, {"minimum", 0}, {"default", 0}};
+  };
+  const Json rule = {
+      {"type", "object"},
+      {"additionalProperties", false},
+      {"properties",
+       {{"dataset", {{"type", "string"}, {"description", "Path of a dataset; * stands for any text."}}},
+        {"absolute", number("In the dataset's unit.")},
+        {"relative", number("Of the value in the first file.")},
+        {"of_largest", number("Of the dataset's largest value in the first file.")}}},
+      {"required", {"dataset"}}};
+  const Json schema = {
+      {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+      {"title", "argil tolerances"},
+      {"type", "object"},
+      {"additionalProperties", false},
+      {"properties",
+       {{"$schema", {{"type", "string"}, {"description", "Where this schema lies, for an editor."}}},
+        {"ignore",
+         {{"type", "array"},
+          {"description", "Paths that are left out with everything in them; * stands for any text."},
+          {"items", {{"type", "string"}}}}},
+        {"tolerances",
+         {{"type", "array"},
+          {"description", "The first whose dataset fits counts; what none fits must have the same bits."},
+          {"items", rule}}}}}};
+  return schema.dump(2) + "\n";
 }
 
 }  // namespace argil::scenario

@@ -12,14 +12,17 @@ void add_force(const output::ResultReader& result, SweepFigures& figures) {
   if (records.empty()) return;  // an equilibrium without a hand
   figures.peak_force = 0.0;
   double sum = 0.0;
+  double whole = 0.0;
   std::size_t touching = 0;
   for (const sim::HapticRecord& record : records) {
     const double force = record.force.norm();
     figures.peak_force = std::max(figures.peak_force, force);
+    whole += force;
     if (record.num_contacts == 0) continue;
     sum += force;
     ++touching;
   }
+  figures.impulse = whole * result.read_header().haptic_period;
   figures.mean_force = touching > 0 ? sum / static_cast<double>(touching) : 0.0;
 }
 
@@ -31,6 +34,7 @@ void add_books(const output::ResultReader& result, SweepFigures& figures) {
   const double initial = first.water_mass - first.water_added + first.water_removed;
   figures.work = last.contact_work;
   figures.dissipation = last.plastic_dissipation;
+  figures.final_water = last.water_mass;
   figures.water_added = last.water_added;
   figures.water_removed = last.water_removed;
   figures.water_error = last.water_mass - initial - last.water_added + last.water_removed;

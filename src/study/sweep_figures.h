@@ -14,10 +14,12 @@ struct SweepFigures {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   double peak_force = kNone;        ///< [N] at the hand
   double mean_force = kNone;        ///< [N] over the ticks in touch
+  double impulse = kNone;           ///< [N s] of the force's magnitude over the motion
   double work = kNone;              ///< [J] of the contact forces on the body
   double dissipation = kNone;       ///< [J] by plastic flow
   double indentation = kNone;       ///< [m] largest displacement of a vertex from rest, over the frames
   double final_saturation = kNone;  ///< [–] mean of the last frame by volume
+  double final_water = kNone;       ///< [kg] in the body at the end
   double water_added = kNone;       ///< [kg]
   double water_removed = kNone;     ///< [kg]
   double water_error = kNone;       ///< [kg] change of the water in the body less what was added and taken

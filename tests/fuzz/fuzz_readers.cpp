@@ -77,6 +77,12 @@ void read_recording(const std::string& file) {
     device::read_trace(file, options);
   } catch (const InputError&) {
   }
+  try {
+    device::TraceOptions named;
+    named.columns = {"t", "x", "y", "-", "z"};
+    device::read_trace(file, named);
+  } catch (const InputError&) {
+  }
   device::read_trace(file, {});
 }
 

@@ -91,6 +91,14 @@ print(argil.build())"""
             COMP_WORDS=(argil export --h) COMP_CWORD=2; _argil; echo "${{COMPREPLY[@]}}" """
         self.assertEqual(run("bash", "-c", script, cwd=self.folder.name), "collect\n--help --html\n")
 
+    def test_the_completion_offers_devices_and_keys(self):
+        script = f"""source '{self.prefix}/share/bash-completion/completions/argil'
+            COMP_WORDS=(argil live a.json --device "") COMP_CWORD=4; _argil; echo "${{COMPREPLY[@]}}"
+            COMP_WORDS=(argil devices h) COMP_CWORD=2; _argil; echo "${{COMPREPLY[@]}}"
+            COMP_WORDS=(argil run a.json --set /material/y) COMP_CWORD=4; _argil; echo "${{COMPREPLY[@]}}" """
+        self.assertEqual(run("bash", "-c", script, cwd=self.folder.name),
+                         "simulated haply spacenav plugin:\nhaply\n/material/youngs_modulus_Pa=\n")
+
     def test_scenarios_run_from_where_they_are_installed(self):
         run(self.prefix / "bin/argil", "validate", self.prefix / "share/argil/scenarios/demo_dino_wet.json")
 

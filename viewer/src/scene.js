@@ -2,7 +2,7 @@
 
 import {
   BufferAttribute, BufferGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide, Group,
-  HemisphereLight, Mesh, MeshStandardMaterial, PerspectiveCamera, Quaternion, Scene, Vector3, WebGLRenderer,
+  HemisphereLight, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, PerspectiveCamera, Quaternion, Scene, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
@@ -26,6 +26,17 @@ function makeTool(vertices, indices) {
   return new Mesh(geometry, new MeshStandardMaterial({
     color: 0xd7e0ea, roughness: 0.3, transparent: true, opacity: 0.45, depthWrite: false,
   }));
+}
+
+/** Where the hand's point goes over the whole motion, faintly, also behind the body. */
+function makePath(points) {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(points, 3));
+  const path = new Line(geometry, new LineBasicMaterial({
+    color: 0x2f5d8c, transparent: true, opacity: 0.35, depthTest: false, depthWrite: false,
+  }));
+  path.frustumCulled = false;
+  return path;
 }
 
 /** An arrow of length 1 along +y, from the origin. */
@@ -59,9 +70,10 @@ export class View {
     this.body = makeBody(arrays.triangles, result.num_vertices);
     this.tool = makeTool(arrays.tool_vertices, arrays.tool_triangles);
     this.arrow = makeArrow();
+    this.path = makePath(arrays.tool_path);
     this.scene = new Scene();
     this.scene.background = new Color(0xf6f7f8);
-    this.scene.add(this.body, this.tool, this.arrow);
+    this.scene.add(this.body, this.tool, this.arrow, this.path);
     this.addCamera(result);
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
@@ -143,6 +155,7 @@ export class View {
     const force = new Vector3(...frame.force_N);
     const size = force.length();
     this.tool.visible = isShown && frame.has_tool;
+    this.path.visible = isShown;
     this.arrow.visible = isShown && frame.has_tool && size > 1e-3 * this.peak;
     this.tool.position.set(...frame.tool_position_m);
     this.tool.quaternion.set(...frame.tool_orientation);

@@ -43,6 +43,25 @@ double find_farthest(const Points& points, const mesh::TriangleMesh& surface) {
   return farthest;
 }
 
+/// An octahedron of 6 cm, whose faces lie along the lattice's: 1666 tets fall into a leap.
+TEST(FittedBody, TakesTheNearestNumberThatALatticeHasAndSaysSo) {
+  mesh::TriangleMesh gem;
+  gem.vertices.resize(3, 6);
+  gem.vertices << 0, 0.03, 0, -0.03, 0, 0, 0, 0, 0.03, 0, -0.03, 0, 0.06, 0.03, 0.03, 0.03, 0.03, 0;
+  gem.triangles.resize(3, 8);
+  gem.triangles << 0, 0, 0, 0, 5, 5, 5, 5, 1, 2, 3, 4, 2, 3, 4, 1, 2, 3, 4, 1, 1, 2, 3, 4;
+  const Cage body = fit(gem, 1666);
+  EXPECT_EQ(body.report.wanted_tets, 1666);
+  EXPECT_GT(std::abs(body.mesh.num_tets() - 1666), 0.15 * 1666);
+  EXPECT_LT(std::abs(body.mesh.num_tets() - 1666), 0.5 * 1666);
+  EXPECT_NE(describe(body.report).find(" (for the 1666 wanted: "), std::string::npos);
+  EXPECT_GT(mesh::compute_volumes(body.mesh.vertices, body.mesh.tets).minCoeff(), 0.0);
+  EXPECT_NEAR(mesh::compute_volumes(body.mesh.vertices, body.mesh.tets).sum(), 3.6e-5, 0.02 * 3.6e-5);
+  const Cage plain = fit(gem, 1500);
+  EXPECT_EQ(plain.report.wanted_tets, 0);
+  EXPECT_NEAR(plain.mesh.num_tets(), 1500, 0.15 * 1500);
+}
+
 TEST(FittedBody, HasTheVolumeOfItsSurfaceAndLiesOnIt) {
   for (const shapes::ShapeKind kind : {shapes::ShapeKind::sphere, shapes::ShapeKind::cylinder,
                                        shapes::ShapeKind::box, shapes::ShapeKind::figure})

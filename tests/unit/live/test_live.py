@@ -130,6 +130,28 @@ class Live(unittest.TestCase):
         self.replay()
         self.assert_equal()
 
+    def test_a_device_needs_no_trace(self):
+        scene = make_scene({"between_frames": "re_evaluate"})
+        del scene["trace"]
+        (self.folder / "scene.json").write_text(json.dumps(scene))
+        done = self.call("live", "scene.json", *self.hostile("good"), "-o", "live.h5", "--duration", "1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.replay()
+        self.assert_equal()
+        with h5py.File(self.folder / "live.h5") as file:
+            self.assertEqual(file["haptic/tick"].shape[0], 1000)
+        for command in (("live", "--device", "simulated"), ("run",), ("validate",)):
+            done = self.call(command[0], "scene.json", *command[1:])
+            self.assertEqual(done.returncode, 2, command)
+            self.assertIn("scene.json: /trace/file: is missing", done.stderr)
+
+    def test_a_replay_with_other_settings_says_which(self):
+        self.call("live", "scene.json", "--device", "simulated", "-o", "live.h5", "--duration", "0.3")
+        done = self.replay("--set", "/material/youngs_modulus_Pa=2e5")
+        self.assertIn("live.h5 is a session of another scenario or other inputs: only its motion is taken; other settings: "
+                      "/material/youngs_modulus_Pa\n", done.stderr)
+        self.assertNotIn("session of another", self.replay().stderr)
+
     def test_a_record_survives_a_kill_and_replays(self):
         process = self.start()
         self.wait_for_rows(process, 1024)

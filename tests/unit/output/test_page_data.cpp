@@ -73,6 +73,23 @@ TEST(AddForce, GivesTheRangeOfAsManyTicksAsDoNotFit) {
   EXPECT_EQ(high.back(), 8000.0F);
 }
 
+TEST(AddPath, GoesFromTheFirstTickToTheLast) {
+  std::vector<sim::HapticRecord> records(8003);
+  for (std::size_t i = 0; i < records.size(); ++i)
+    records[i].tool_position = Vec3(static_cast<double>(i), 0.5, -1.0);
+  PageBlock block;
+  add_path(block, records);
+  const std::vector<float> path = read_section<float>(block, "tool_path");
+  ASSERT_EQ(path.size(), 3U * 2669U);  // every third of 8003, and tick 8002
+  EXPECT_EQ(path[3], 3.0F);
+  EXPECT_EQ(path[4], 0.5F);
+  EXPECT_EQ(path[path.size() - 6], 8001.0F);
+  EXPECT_EQ(path[path.size() - 3], 8002.0F);
+  PageBlock empty;
+  add_path(empty, {});
+  EXPECT_TRUE(read_section<float>(empty, "tool_path").empty());
+}
+
 TEST(AddSurface, DifferencesAddUpToTheRoundedSkin) {
   const TempFolder folder;
   test::write_run(folder / "run.h5", 21, false);

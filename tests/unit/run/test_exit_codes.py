@@ -7,6 +7,7 @@ Usage: test_exit_codes.py ARGIL        the program
 import json
 import math
 import os
+import re
 import resource
 import shutil
 import signal
@@ -18,6 +19,7 @@ import unittest
 from pathlib import Path
 
 import h5py
+import numpy as np
 
 ARGIL = str(Path(sys.argv.pop(1)).resolve())
 
@@ -266,6 +268,14 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(code, 4, error)
         self.assertIn("text.h5", error)
 
+    def test_2_validate_refuses_what_a_run_would_at_its_start(self):
+        rows = [f"{k / 1000},0.001,0.0007,{0.03 + 0.0005 * k}" for k in range(50)]  # out of the ball's upper half
+        (self.folder / "inside.csv").write_text("\n".join(["t,x,y,z", *rows]) + "\n")
+        refusals = [self.call(command, "scene.json", "--trace", "inside.csv")[::2] for command in ("validate", "run")]
+        self.assertEqual(refusals[0], refusals[1])
+        self.assertEqual(refusals[0][0], 2)
+        self.assertIn("inside.csv: the tool starts in or across the body", refusals[0][1])
+
     def test_5_compare_tells_equal_results_from_different_ones(self):
         for name, more in (("a.h5", []), ("b.h5", ["--threads", "2"]),
                            ("c.h5", ["--set", "/material/youngs_modulus_Pa=1.1e5"])):
@@ -274,6 +284,15 @@ class ExitCodes(unittest.TestCase):
         code, out, _ = self.call("compare", "a.h5", "c.h5")
         self.assertEqual(code, 5)
         self.assertIn("/haptic/force", out)
+        self.check_figures(out.splitlines())
+        verbose = self.call("compare", "a.h5", "c.h5", "--verbose")[1]
+        few, all_of_it = ([line for line in said.splitlines() if re.match("  [^ ]", line)] for said in (out, verbose))
+        without_hashes = [line for line in all_of_it if not re.search("state_hash|sha256|run_id", line.split(": ")[0])]
+        self.assertLess(len(without_hashes), len(all_of_it))
+        self.assertEqual(few[:-1], without_hashes[:8])
+        self.assertIn(f"{len(all_of_it) - 8} more, hashes among them, by --verbose", few[-1])
+        self.assertEqual(len(verbose.splitlines()) - verbose.splitlines().index("") - 2,
+                         int(re.search(r"; (\d+) of \d+ datasets", verbose)[1]))
         for wide, expected in ((1.0, 0), (1e-9, 5)):
             (self.folder / "near.json").write_text(json.dumps({
                 "ignore": ["/provenance", "/physics/*", "/haptic/num_contacts"],
@@ -283,6 +302,24 @@ class ExitCodes(unittest.TestCase):
         code, _, error = self.call("compare", "a.h5", "c.h5", "--tolerances", "near.json")
         self.assertEqual(code, 2)
         self.assertIn("near.json: /tolerances/0/relativ: is not a known key; did you mean relative?", error)
+
+    def check_figures(self, lines):
+        """What compare opens with, against h5py's reading of the two files."""
+        def read(name):
+            with h5py.File(self.folder / name) as file:
+                force = np.linalg.norm(file["haptic/force"][:], axis=1)
+                frames = [frame["position"][:] for frame in file["frames"].values()]
+                moved = max(np.linalg.norm(x - file["mesh/rest_position"][:], axis=1).max() for x in frames)
+                return {"peak force": force.max(), "impulse": force.sum() * 1e-3, "work on the body": file["physics/contact_work"][-1],
+                        "water at the end": 1e3 * file["physics/water_mass"][-1], "largest displacement": moved}
+        a, c = read("a.h5"), read("c.h5")
+        said = {line[:22].strip(): re.findall(r"(-?[0-9.e+-]+) ([numµ]?)(?:N s|N|J|g|m)(?= |$)", line[22:50]) for line in lines[1:7]}
+        self.assertRegex(lines[0], "^ +a +b +b - a$")
+        for name in a:
+            values = [float(number) * {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "": 1}[prefix] for number, prefix in said[name]]
+            np.testing.assert_allclose(values, [a[name], c[name]], rtol=6e-4, atol=1e-12, err_msg=name)
+        share = 100 * (c["peak force"] / a["peak force"] - 1)
+        self.assertAlmostEqual(float(re.search(r"\(([+-][0-9.]+) %\)", lines[1])[1]), share, delta=0.01 * abs(share))
 
     def wait_for(self, file):
         """Until a run has made its file and is well inside its loop."""

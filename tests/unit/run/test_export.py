@@ -117,6 +117,16 @@ class Pages(Folder):
                 seen = re.search(r"force ([\d.]+) N", self.browser.evaluate("readout.textContent"))
                 self.assertAlmostEqual(float(seen[1]), force, delta=0.00051)
 
+    def test_the_whole_path_is_drawn_faintly(self):
+        self.open()
+        path = np.array(self.browser.evaluate("Array.from(argil.view.path.geometry.attributes.position.array)")).reshape(-1, 3)
+        with h5py.File(RESULT) as result:
+            np.testing.assert_allclose(path, result["haptic/tool_position"][:], rtol=1e-6, atol=1e-9)
+        self.assertLess(self.browser.evaluate("argil.view.path.material.opacity"), 0.5)
+        with_path = self.browser.evaluate(PIXELS)[1]
+        self.browser.evaluate("argil.view.path.material.opacity = 0; argil.view.draw()")
+        self.assertNotEqual(self.browser.evaluate(PIXELS)[1], with_path)
+
     def test_a_click_on_the_slider_changes_frame_and_picture(self):
         self.open()
         last = int(self.browser.evaluate("slider.max"))

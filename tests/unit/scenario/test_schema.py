@@ -7,13 +7,16 @@ Usage: test_schema.py ARGIL        the program
 import json
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
 import jsonschema
 
-ARGIL = sys.argv.pop(1)
-SCENARIOS = sorted((Path(__file__).resolve().parents[3] / "scenarios").glob("*.json"))
+ROOT = Path(__file__).resolve().parents[3]
+ARGIL = str(Path(sys.argv.pop(1)).resolve())
+GOLDEN = str(ROOT / "tests/golden/push.h5")
+SCENARIOS = sorted((ROOT / "scenarios").glob("*.json"))
 
 
 def call_argil(*arguments):
@@ -82,6 +85,28 @@ class Schema(unittest.TestCase):
         static = {name: value for name, value in self.scenario.items() if name not in ("contact", "trace", "tool")}
         static["dynamics"] = {"mode": "static"}
         self.assertTrue(self.validator.is_valid(static))
+
+
+class ToleranceSchema(unittest.TestCase):
+    def test_it_takes_what_compare_takes(self):
+        schema = json.loads(subprocess.run([ARGIL, "schema", "--tolerances"], capture_output=True, text=True, check=True).stdout)
+        jsonschema.Draft202012Validator.check_schema(schema)
+        validator = jsonschema.Draft202012Validator(schema)
+        for name in ("near.json", "exact.json"):
+            validator.validate(json.loads((ROOT / "tests/golden" / name).read_text()))
+        page = (ROOT / "src/output/tolerances.md").read_text(encoding="utf-8")
+        validator.validate(json.loads(page.split("```json")[1].split("```")[0]))
+        with tempfile.TemporaryDirectory() as folder:
+            for wrong in ({"ignored": []}, {"tolerances": [{"relative": 1}]}, {"tolerances": [{"dataset": "/a", "relativ": 1}]},
+                          {"tolerances": [{"dataset": "/a", "relative": -1}]}, {"ignore": [3]}, {"tolerances": {}}):
+                with self.subTest(str(wrong)):
+                    self.assertFalse(validator.is_valid(wrong))
+                    Path(folder, "t.json").write_text(json.dumps(wrong))
+                    done = subprocess.run([ARGIL, "compare", GOLDEN, GOLDEN, "--tolerances", "t.json"], cwd=folder,
+                                          capture_output=True, text=True)
+                    self.assertEqual(done.returncode, 2, done.stdout)
+                    if "relativ" in str(wrong) and "relative" not in str(wrong):
+                        self.assertIn("known here are: dataset, relative, absolute, of_largest", done.stderr)
 
 
 if __name__ == "__main__":
