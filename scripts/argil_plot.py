@@ -18,7 +18,7 @@ except ImportError as missing:
 
 from argil.errors import InputError, IoError  # noqa: E402
 from argil.plot import reading, style  # noqa: E402
-from argil.plot.reading import MODES, force_norm, is_deforming, spans  # noqa: E402, F401
+from argil.plot.reading import MODES, cells_of, force_norm, is_deforming, spans  # noqa: E402, F401
 from argil.plot.style import COLOURS, DASHES, GREY, MARKS, MILLIMETRES, quantity_label  # noqa: E402, F401
 from argil.result import open_file  # noqa: E402
 

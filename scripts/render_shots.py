@@ -56,8 +56,8 @@ class Shot:
         if FIELDS[field].on_skin_only and not skinned:
             ap.refuse(f"{result.filename}: has no skin, so there is no field '{field}'")
         self.points = frame["skin_position" if skinned else "position"][:]
-        self.triangles = mesh["skin_triangles" if skinned else "surface_triangles"][:]
-        self.cage, self.cage_triangles = frame["position"][:], mesh["surface_triangles"][:]
+        self.cage, self.cage_triangles = frame["position"][:], ap.cells_of(result, frame)["surface_triangles"][:]
+        self.triangles = mesh["skin_triangles"][:] if skinned else self.cage_triangles
         self.values = FIELDS[field].scale * point_values(result, frame, field, skinned, skin_tets)
         self.force, self.tool_points = np.zeros(3), None
         self.tool_triangles = mesh["tool_triangles"][:]
@@ -128,6 +128,8 @@ def point_values(result, frame, field, skinned, skin_tets=None):
     if field == "shape":
         return np.zeros(len(frame["skin_position" if skinned else "position"]))
     if field in ("displacement", "normal"):
+        if not skinned and frame.attrs.get("epoch", 0) > 0:
+            ap.refuse(f"{result.filename}: the body got new cells, so that there is no field '{field}' on them; give it a skin")
         rest = rest_points(result, skinned)
         moved = frame["skin_position" if skinned else "position"][:] - rest
         if field == "displacement":
@@ -135,11 +137,13 @@ def point_values(result, frame, field, skinned, skin_tets=None):
         triangles = result["mesh/skin_triangles" if skinned else "mesh/surface_triangles"][:]
         return np.einsum("vi,vi->v", moved, vertex_normals(rest, triangles))
     if skinned and field == "plastic_strain":
+        if frame.attrs.get("epoch", 0) > 0:
+            skin_tets = find_weights(frame["position"][:], ap.cells_of(result, frame)["tets"][:], frame["skin_position"][:])[0]
         return frame["plastic_strain_norm"][:][skin_tets]
     if skinned:
         return frame["skin_influence" if field == "influence" else "skin_saturation"][:]
     per_tet = frame["plastic_strain_norm" if field == "plastic_strain" else "saturation"][:]
-    tets = result["mesh/tets"][:]
+    tets = ap.cells_of(result, frame)["tets"][:]
     num_points = len(frame["position"])
     total = np.bincount(tets.ravel(), weights=np.repeat(per_tet, 4), minlength=num_points)
     return total / np.maximum(np.bincount(tets.ravel(), minlength=num_points), 1)

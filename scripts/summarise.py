@@ -25,8 +25,9 @@ def saturation_near_tool(result, time):
     """Mean saturation of the tets near the tool, by volume, in the frame nearest to `time` [s]; None if none is."""
     frame = min(ap.frames_of(result), key=lambda frame: abs(frame.attrs["time"] - time))
     tool = result["haptic/tool_position"][np.argmin(np.abs(result["haptic/time"][:] - frame.attrs["time"]))]
-    centres = frame["position"][:][result["mesh/tets"][:]].mean(axis=1)
-    volume = rest_volumes(result) * (np.linalg.norm(centres - tool, axis=1) < NEAR_TOOL)
+    cells = ap.cells_of(result, frame)
+    centres = frame["position"][:][cells["tets"][:]].mean(axis=1)
+    volume = rest_volumes(cells) * (np.linalg.norm(centres - tool, axis=1) < NEAR_TOOL)
     return float(frame["saturation"][:] @ volume / volume.sum()) if volume.sum() > 0.0 else None
 
 

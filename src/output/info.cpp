@@ -236,6 +236,9 @@ std::string describe_result(const ResultReader& reader) {
   if (const auto about = reader.find_provenance("about")) out << label("about") << *about << '\n';
   describe_outcome(out, reader);
   describe_body(out, header);
+  if (const int epochs = reader.num_epochs(); epochs > 0)
+    out << label("cells") << "made anew " << count(static_cast<std::size_t>(epochs), "time")
+        << ", the last time " << reader.read_cells(epochs).tets.cols() << " tets\n";
   describe_haptic(out, haptic, header.haptic_period);
   const std::vector<sim::PhysicsRecord> steps = reader.read_physics();
   describe_physics(out, steps);

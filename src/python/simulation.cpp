@@ -155,7 +155,7 @@ py::dict list_physics(const sim::PhysicsRecord& r) {
                   "factorisations"_a = r.factorisations, "residual"_a = r.residual,
                   "active_nodes"_a = r.active_nodes, "min_volume_ratio"_a = r.min_volume_ratio,
                   "max_plastic_strain"_a = r.max_plastic_strain, "limited_tets"_a = r.limited_tets,
-                  "limited_tet"_a = r.limited_tet);
+                  "limited_tet"_a = r.limited_tet, "epoch"_a = r.epoch);
 }
 
 /// As in /mesh of a result.
@@ -226,6 +226,11 @@ void bind_simulation(py::module_& module) {
              return run.read(
                  [](run::Stepper& stepper) { return list_physics(stepper.simulation().physics_record()); });
            })
+      .def_property_readonly(
+          "epoch",
+          [](SteppedRun& run) {
+            return run.read([](run::Stepper& stepper) { return stepper.simulation().body().epoch; });
+          })
       .def("mesh", [](SteppedRun& run) { return run.read(list_mesh); })
       .def("notes", [](SteppedRun& run) { return run.read(list_notes); })
       .def("state_hash",

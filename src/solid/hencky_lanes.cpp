@@ -132,7 +132,9 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
   // Flow keeps the volume: what else changes the trace is rounding.
   Lanes before[6];
   read_tensor(points.plastic_strain, begin, last, before);
-  const Lanes mean_before = (before[0] + before[1] + before[2]) / 3.0;
+  constexpr double kNoTrace = 1e-12;
+  Lanes mean_before = (before[0] + before[1] + before[2]) / 3.0;
+  mean_before = mean_before < kNoTrace && mean_before > -kNoTrace ? zero : mean_before;
   const Lanes trace = (plastic[0] + plastic[1] + plastic[2]) / 3.0;
   for (int k = 0; k < 6; ++k) plastic[k] = k < 3 ? mean_before - (plastic[k] - trace) : -kSqrt2 * plastic[k];
   Lanes plastic_squares = {};

@@ -1,9 +1,9 @@
 // Hencky's law of large strain, isotropic [Hencky1928; Simo1998]: F = Fₑ F_p, with the elastic strain ε = ½
 // ln FₑFₑᵀ
 //   W = μ‖dev ε‖² + ½K (tr ε)²,  Kirchhoff stress τ = 2μ dev ε + K tr ε 1,  P = τ F⁻ᵀ,  K = λ + ⅔μ
-// The plastic strain is E_p = ½ ln F_pᵀF_p, without trace, so that det F_p = 1. Flow takes a part of dev ε
-// away at held F, and ε keeps its directions: radial return [Simo1998]. Where det F ≤ 0 there is no such
-// strain: W is infinite, P and ∂P/∂F are NaN.
+// The plastic strain is E_p = ½ ln F_pᵀF_p, without trace, so that det F_p = 1, but for what the shape at
+// rest has of it. Flow takes a part of dev ε away at held F, and ε keeps its directions: radial return
+// [Simo1998]. Where det F ≤ 0 there is no such strain: W is infinite, P and ∂P/∂F are NaN.
 
 #include <Eigen/LU>
 

@@ -325,6 +325,7 @@ run::RunOptions make_run_options(const std::string& scenario,
   run::RunOptions options;
   options.scenario = scenario;
   options.settings.emplace_back("/dynamics/strict=true");  // a study asks where methods fail
+  options.settings.emplace_back("/body/cells/remesh=\"never\"");  // and compares places by their cells
   for (const scenario::Setting& setting : settings)
     options.settings.push_back(setting.pointer + "=" + setting.value);
   return options;

@@ -60,6 +60,7 @@ run::RunOptions make_options(const SweepPoint& point, const std::string& points)
   run::RunOptions options;
   options.scenario = (find_folder(points) / point.scenario).lexically_normal().string();
   options.settings.emplace_back("/dynamics/strict=true");  // a figure of a table is the model's, or none
+  options.settings.emplace_back("/body/cells/remesh=\"never\"");  // displacements are those of its cells
   for (const scenario::Setting& setting : point.settings)
     options.settings.push_back(setting.pointer + "=" + setting.value);
   options.quiet = true;

@@ -50,20 +50,24 @@ double compute_volume(const Points& x, const Tets& tets, Eigen::Index t) {
   return edges.determinant() / 6.0;
 }
 
+/// Displacements: of the cells at the start, as long as the body has them.
 void add_frames(const output::ResultReader& result, SweepFigures& figures) {
-  const output::ResultHeader header = result.read_header();
+  const output::CellMesh start = result.read_cells(0);
   figures.indentation = 0.0;
   sim::Frame frame;
+  int epoch = 0;
   for (const output::FrameInfo& info : result.read_frame_list()) {
     frame = result.read_frame(info);
-    if (frame.position.cols() == header.rest_position.cols() && frame.position.cols() > 0)
+    epoch = info.epoch;
+    if (epoch == 0 && frame.position.cols() > 0)
       figures.indentation =
-          std::max(figures.indentation, (frame.position - header.rest_position).colwise().norm().maxCoeff());
+          std::max(figures.indentation, (frame.position - start.rest_position).colwise().norm().maxCoeff());
   }
-  if (frame.saturation.size() == 0 || frame.saturation.size() != header.tets.cols()) return;
+  if (frame.saturation.size() == 0) return;
+  const output::CellMesh cells = result.read_cells(epoch);
   double wet = 0.0, whole = 0.0;
-  for (Eigen::Index t = 0; t < header.tets.cols(); ++t) {
-    const double volume = compute_volume(header.rest_position, header.tets, t);
+  for (Eigen::Index t = 0; t < cells.tets.cols(); ++t) {
+    const double volume = compute_volume(cells.rest_position, cells.tets, t);
     wet += frame.saturation(t) * volume;
     whole += volume;
   }

@@ -1,5 +1,4 @@
 """A run tick by tick."""
-import functools
 import os
 from types import MappingProxyType
 
@@ -110,11 +109,17 @@ class Simulation:
     state_hash = property(lambda self: self._run.state_hash(),
                           doc="SHA-256 of all that a tick takes from earlier ones: where equal, equal bits follow.")
 
-    @functools.cached_property
+    _mesh, _mesh_epoch = None, None
+    epoch = property(lambda self: self._run.epoch, doc="How often the body has got new cells.")
+
+    @property
     def mesh(self):
-        """What no tick changes, by the names of /mesh in a result: rest_position n×3 [m], tets m×4, surface_triangles
+        """The cells that the body has now, which ticks change where it gets new ones (epoch), and what no tick changes,
+        by the names of /mesh in a result: rest_position n×3 [m], tets m×4, surface_triangles
         and skin_triangles ·×3 (vertex numbers from 0, outward), tool_vertices [m] and tool_triangles (tool's frame)."""
-        return MappingProxyType(self._run.mesh())
+        if self._mesh_epoch != self.epoch:
+            self._mesh, self._mesh_epoch = MappingProxyType(self._run.mesh()), self.epoch
+        return self._mesh
 
     @property
     def tets(self):

@@ -144,7 +144,7 @@ class Figures(unittest.TestCase):
     def test_mean_saturation_is_weighted_by_volume(self):
         with h5py.File(self.file("wet.h5")) as result:
             saturation = water_figure.read_saturation(result)
-            self.assertAlmostEqual(water_figure.rest_volumes(result).sum(), 1e-3)
+            self.assertAlmostEqual(water_figure.rest_volumes(result["mesh"]).sum(), 1e-3)
         self.assertAlmostEqual(saturation.mean[-1], 0.9 / 6)
         self.assertAlmostEqual(saturation.largest[-1], 0.9)
 

@@ -47,6 +47,12 @@ def frames_of(result):
     return frames
 
 
+def cells_of(result, frame):
+    """The group that has the cells of a frame: those at the start, or those that the body got while the run went on."""
+    epoch = frame.attrs.get("epoch", 0)
+    return result["mesh"] if epoch == 0 else result[f"epochs/{epoch:06d}/mesh"]
+
+
 def force_norm(result):
     """‖force on the hand‖ [N] of every haptic tick, before the output gate."""
     return np.linalg.norm(result["haptic/force"][:], axis=1)

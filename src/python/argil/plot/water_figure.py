@@ -5,7 +5,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from ..errors import InputError
-from .reading import frames_of, opened
+from .reading import cells_of, frames_of, opened
 from .style import COLOURS, DASHES, GREY, MILLIMETRES
 
 MILLIGRAM = 1e-6  # [kg]
@@ -35,19 +35,19 @@ class Ledger(NamedTuple):
         return np.abs(implied_start - implied_start[0]) / (scale if scale > 0.0 else 1.0)
 
 
-def rest_volumes(result):
-    """Volume of each tet [m³]."""
-    corners = result["mesh/rest_position"][:][result["mesh/tets"][:]]
+def rest_volumes(mesh):
+    """Volume of each tet of a group of cells [m³]."""
+    corners = mesh["rest_position"][:][mesh["tets"][:]]
     edges = corners[:, 1:] - corners[:, :1]
     return np.abs(np.linalg.det(edges)) / 6.0
 
 
 def read_saturation(result):
-    volume = rest_volumes(result)
     frames = frames_of(result)
     fields = [frame["saturation"][:] for frame in frames]
+    volumes = [rest_volumes(cells_of(result, frame)) for frame in frames]
     return Saturation(np.array([frame.attrs["time"] for frame in frames]),
-                      np.array([field @ volume / volume.sum() for field in fields]),
+                      np.array([field @ volume / volume.sum() for field, volume in zip(fields, volumes)]),
                       np.array([field.max() for field in fields]))
 
 
