@@ -115,7 +115,9 @@ StepStatus RecordedTicks::make(const device::DeviceSample& sample) {
     m_file.append(record);
   }
   if (m_simulation.frame_due_last_tick()) m_file.append(m_simulation.make_frame());
+  m_cost->meter.begin();
   m_remesher.renew_if_spoilt(m_simulation);
+  m_cost->meter.end();
   return StepStatus::ok();
 }
 
@@ -125,6 +127,7 @@ double RecordedTicks::end() {
   const double seconds = seconds_since(m_cost->start);
   auto timing = m_cost->stages.seconds(seconds, last - m_first);
   timing.emplace_back("cpu", m_cost->meter.cpu_seconds());
+  if (m_remesher.seconds() > 0.0) timing.emplace_back("new_cells", m_remesher.seconds());
   if (const auto instructions = m_cost->meter.instructions())
     timing.emplace_back("instructions", *instructions);
   m_file.append_timing(timing);

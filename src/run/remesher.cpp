@@ -1,5 +1,6 @@
 #include "run/remesher.h"
 
+#include <chrono>
 #include <cstdio>
 #include <utility>
 
@@ -38,6 +39,7 @@ bool Remesher::is_due(const sim::Simulation& simulation) const {
 
 bool Remesher::renew_if_spoilt(sim::Simulation& simulation) {
   if (!m_can_renew || !is_due(simulation)) return false;
+  const auto start = std::chrono::steady_clock::now();
   const sim::Body& before = simulation.body();
   const Points& x = simulation.body_state().solid.x;
   const sim::HandState& hand = simulation.hand_state();
@@ -64,6 +66,7 @@ bool Remesher::renew_if_spoilt(sim::Simulation& simulation) {
         static_cast<long long>(body.epoch_tick), body.mesh.num_tets(), before.mesh.num_tets(), worst);
   simulation.renew_cells(std::move(body));
   if (m_file) m_file->begin_epoch(simulation.body());
+  m_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return true;
 }
 

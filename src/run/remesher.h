@@ -17,6 +17,7 @@ class Remesher {
 
   /// After a tick. True when the body has got new cells.
   bool renew_if_spoilt(sim::Simulation& simulation);
+  double seconds() const { return m_seconds; }  ///< of wall clock that new cells have taken
 
  private:
   bool is_due(const sim::Simulation& simulation) const;
@@ -25,6 +26,7 @@ class Remesher {
   output::ResultFile* m_file;
   bool m_is_quiet;
   bool m_can_renew;
+  double m_seconds = 0.0;
 };
 
 }  // namespace argil::run

@@ -55,6 +55,8 @@ class ForceBetweenSteps {
   /// The hand has felt this for a tick.
   void feel(const Vec3& force);
 
+  /// Of a surface that had these vertices and others.
+  void go_on_from(const ForceBetweenSteps& before) { m_state = m_committed = before.m_state; }
   void commit() { m_committed = m_state; }
   void roll_back() { m_state = m_committed; }
   void serialize(Archive& archive);

@@ -73,6 +73,7 @@ void HandSide::go_on_from(const HandSide& before, const Points& x) {
   m_state = before.m_state;
   m_grip = before.m_grip;
   if (m_friction) m_friction->go_on_from(*before.m_friction);
+  if (m_between) m_between->go_on_from(*before.m_between);
   m_pressure->stiffness() = m_body.find_surface_stiffness();
   place_surface(x);
   commit();

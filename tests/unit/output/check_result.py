@@ -23,7 +23,7 @@ PHYSICS = {
     "water_added": ("<f8", "kg"), "water_removed": ("<f8", "kg"), "newton_iterations": ("<i4", "1"),
     "iterations": ("<i4", "1"),
     "factorisations": ("<i4", "1"), "residual": ("<f8", "1"), "active_nodes": ("<i4", "1"),
-    "min_volume_ratio": ("<f8", "1"), "max_plastic_strain": ("<f8", "1"), "limited_tets": ("<i4", "1"), "limited_tet": ("<i4", "1"),
+    "min_volume_ratio": ("<f8", "1"), "max_plastic_strain": ("<f8", "1"), "limited_tets": ("<i4", "1"), "limited_tet": ("<i4", "1"), "epoch": ("<i4", "1"),
 }
 FRAME_UNITS = {
     "position": "m", "saturation": "1", "plastic_strain": "1", "plastic_strain_norm": "1", "skin_position": "m",

@@ -121,6 +121,7 @@ TEST(ResultReader, GivesBackEveryPhysicsRecord) {
     ASSERT_EQ(records[i].max_plastic_strain, wanted.max_plastic_strain);
     ASSERT_EQ(records[i].limited_tets, wanted.limited_tets);
     ASSERT_EQ(records[i].limited_tet, wanted.limited_tet);
+    ASSERT_EQ(records[i].epoch, wanted.epoch);
   }
 }
 

@@ -12,8 +12,10 @@ namespace {
 constexpr double kRadius = 0.008;
 constexpr double kTop = 0.02;
 
-Params make_clay() {
+Params make_clay(BetweenFrames between = BetweenFrames::hold, int ticks_of_step = 1) {
   Params p;
+  p.rates.between_frames = between;
+  p.rates.physics_period_ticks = p.rates.water_period_ticks = ticks_of_step;
   p.elastic = {1.2e6, 0.3};
   p.plasticity.form = material::FlowForm::j2;
   p.plasticity.strength = 15e3;
@@ -36,7 +38,9 @@ device::DeviceSample place(double depth, device::ToolMode mode = device::ToolMod
 }
 
 struct Pressed {
-  const Params params = make_clay();
+  explicit Pressed(const Params& p = make_clay()) : params(p) {}
+
+  const Params params;
   Simulation simulation{test::make_block_body(10, 10, 5, Vec3(0.04, 0.04, kTop), 0.3),
                         contact::make_sphere_tool(kRadius, 2), params, place(-1e-3)};
 
@@ -97,6 +101,17 @@ TEST(NewCells, HangOnAToolThatPulls) {
   renewed.renew();
   for (Pressed* p : {&alone, &renewed}) p->go(1.4e-3, 1.2e-3, 10, device::ToolMode::pull);
   EXPECT_NEAR(renewed.force().z(), alone.force().z(), 0.02 * std::abs(alone.force().z()));
+}
+
+TEST(NewCells, AreFeltBetweenStepsToo) {
+  const Params params = make_clay(BetweenFrames::re_evaluate, 4);
+  Pressed alone(params), renewed(params);
+  for (Pressed* p : {&alone, &renewed}) p->go(-1e-3, 2e-3, 60);
+  renewed.renew();
+  for (int i = 0; i < 8; ++i) {
+    for (Pressed* p : {&alone, &renewed}) p->go(2e-3, 2e-3 + 1e-5, 1);
+    EXPECT_NEAR(renewed.force().z(), alone.force().z(), 0.05 * alone.force().z()) << i;
+  }
 }
 
 TEST(NewCells, WithoutTheToolLieStill) {
