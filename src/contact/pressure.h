@@ -64,6 +64,8 @@ class PressureContact {
   /// Of the last contacts.
   Patch find_patch() const;
 
+  /// Of a body whose surface is in the same place: how the tool came through it.
+  void go_on_from(const PressureContact& before) { m_passages = before.m_passages; }
   void commit() { m_passages.commit(); }
   void roll_back() {
     m_passages.roll_back();

@@ -27,6 +27,13 @@ SurfaceFriction::SurfaceFriction(double friction, int num_vertices)
   m_limits.reserve(m_place.size());
 }
 
+void SurfaceFriction::go_on_from(const SurfaceFriction& before, const Points& x_t0, const Points& x_t1) {
+  m_state = before.m_state;
+  for (std::size_t i = 0; i < m_state.vertex.size(); ++i)
+    m_state.stretch[i] -= x_t1.col(m_state.vertex[i]) - x_t0.col(m_state.vertex[i]);
+  commit();
+}
+
 /// The vertices of these contacts; those that were in touch before have gone with the body since.
 void SurfaceFriction::take_over(const Points& x_t0, const Points& x_t1, const Contacts& contacts) {
   m_next.vertex.clear();

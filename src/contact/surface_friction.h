@@ -21,11 +21,8 @@ class SurfaceFriction {
   void stretch(const Points& x_t0, const Points& x_t1, const Pose& pose_t0, const Pose& pose_t1,
                Contacts& contacts);
 
-  /// Of a surface that had these vertices and others.
-  void go_on_from(const SurfaceFriction& before) {
-    m_state = before.m_state;
-    commit();
-  }
+  /// Of a surface that had these vertices and others, and that went from x_t0 to x_t1 since the last call.
+  void go_on_from(const SurfaceFriction& before, const Points& x_t0, const Points& x_t1);
   void commit() { m_committed = m_state; }
   void roll_back() { m_state = m_committed; }
   void serialize(Archive& archive);

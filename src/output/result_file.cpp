@@ -122,6 +122,7 @@ struct ResultFile::Impl {
   Table physics;
   std::uint64_t num_frames = 0;
   int epoch = 0;
+  bool has_ended_epochs = false;
   std::optional<Table> fidelity = {};
   bool is_checked = false;  // fidelity has errors
   std::optional<Table> session = {}, tick_timing = {}, step_timing = {};
@@ -220,6 +221,8 @@ ResultFile::ResultFile(const std::string& name, Tick last_tick, std::uint64_t nu
   file.flush();
   m_impl = std::make_unique<Impl>(Impl{std::move(file), std::move(root), std::move(frames), std::move(timing),
                                        std::move(haptic), std::move(physics), num_frames, epoch});
+  m_impl->has_ended_epochs = m_impl->root.has_attribute(schema::kEpochsEnd) &&
+                             m_impl->root.read_integer(schema::kEpochsEnd) <= last_tick;
   if (!m_impl->root.has(schema::kFidelity)) return;
   const Group group = m_impl->root.open_group(schema::kFidelity);
   m_impl->is_checked = group.has(schema::kFidelityError.name);
@@ -322,6 +325,7 @@ void ResultFile::begin_epoch(const sim::Body& body) {
         root.has(schema::kEpochs) ? root.open_group(schema::kEpochs) : root.create_group(schema::kEpochs);
     Group epoch = epochs.create_group(frame_name(static_cast<std::uint64_t>(body.epoch)));
     epoch.write_attribute("tick", body.epoch_tick);
+    epoch.write_attribute("first_tets", std::int64_t{body.first_tets});
     const Group mesh = epoch.create_group("mesh");
     write_entities(mesh, "rest_position", body.mesh.vertices, schema::kRestPosition);
     write_entities(mesh, "tets", body.mesh.tets, schema::kTets);
@@ -339,6 +343,16 @@ void ResultFile::begin_epoch(const sim::Body& body) {
                        schema::kHeld);
     }
   });
+}
+
+void ResultFile::end_epochs(Tick tick) {
+  ARGIL_ASSERT(m_impl, "append after finish");
+  m_impl->has_ended_epochs = true;
+  m_impl->guarded([&] { m_impl->root.write_attribute(schema::kEpochsEnd, tick); });
+}
+
+bool ResultFile::has_ended_epochs() const {
+  return m_impl->has_ended_epochs;
 }
 
 void ResultFile::begin_session(const SessionHead& head, bool is_timed) {

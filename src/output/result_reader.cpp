@@ -174,6 +174,8 @@ std::optional<sim::Body> ResultReader::find_last_cells(Tick until) const {
   sim::Body body;
   body.epoch = epoch;
   body.epoch_tick = begin_of(epoch);
+  body.first_tets = static_cast<int>(
+      m_root.open_group(schema::kEpochs).open_group(name_epoch(epoch)).read_integer("first_tets"));
   body.mesh = {cells.rest_position, cells.tets, {}};
   body.topology = mesh::make_topology(body.mesh);
   body.skin = {read_entities<Points>(mesh, "skin_rest_position"),

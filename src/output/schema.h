@@ -131,6 +131,7 @@ inline constexpr std::array kStepTiming = {
 
 /// Cells that the body got while the run went on, in groups by number, from 000001.
 inline constexpr const char* kEpochs = "epochs";
+inline constexpr const char* kEpochsEnd = "last_cells_tick";  ///< root: after it cells were not made anew any more
 inline constexpr const char* kEpoch = "epoch";  ///< attribute of a frame; none in the first
 inline constexpr hdf5::Label kTouchedPosition{"m", "what the tool meets: positions of its vertices, at rest"};
 inline constexpr hdf5::Label kTouchedTriangles{"1", "what the tool meets: vertex numbers, outward"};

@@ -24,7 +24,7 @@ Remesher::Remesher(const scenario::Scenario& s, output::ResultFile* file, bool i
     : m_scenario(s),
       m_file(file),
       m_is_quiet(is_quiet),
-      m_can_renew(scenario::find_remesh_obstacle(s).empty()) {}
+      m_can_renew(scenario::find_remesh_obstacle(s).empty() && !(file && file->has_ended_epochs())) {}
 
 bool Remesher::is_due(const sim::Simulation& simulation) const {
   const sim::RateParams& rates = m_scenario.params.rates;
@@ -43,28 +43,31 @@ bool Remesher::renew_if_spoilt(sim::Simulation& simulation) {
   const sim::Body& before = simulation.body();
   const Points& x = simulation.body_state().solid.x;
   const sim::HandState& hand = simulation.hand_state();
-  sim::Body body;
+  const double worst = mesh::find_worst_shape(x, before.mesh.tets);
+  const int num_before = before.mesh.num_tets();
   try {
-    body = scenario::make_new_cells(
+    sim::Body body = scenario::make_new_cells(
         m_scenario, {before,
                      x,
                      {simulation.surface_now(), simulation.body_side().surface().triangles()},
                      simulation.tool(),
                      hand.num_contacts > 0 ? std::optional(hand.contact_tool) : std::nullopt});
+    body.epoch = before.epoch + 1;
+    body.epoch_tick = simulation.clock().tick;
+    if (!simulation.renew_cells(std::move(body)))
+      throw InputError("the clay", "", "is pressed beyond what its law bears", "");
   } catch (const InputError& error) {
     if (!m_is_quiet)
       std::fprintf(stderr, "argil: note: the clay's shape gives no new cells: %s\n", error.what());
     m_can_renew = false;
+    if (m_file) m_file->end_epochs(simulation.clock().tick);
     return false;
   }
-  body.epoch = before.epoch + 1;
-  body.epoch_tick = simulation.clock().tick;
-  const double worst = mesh::find_worst_shape(x, before.mesh.tets);
   if (!m_is_quiet)
-    std::fprintf(
-        stderr, "argil: note: tick %lld: new cells, %d tets for %d whose worst had the quality %.2g\n",
-        static_cast<long long>(body.epoch_tick), body.mesh.num_tets(), before.mesh.num_tets(), worst);
-  simulation.renew_cells(std::move(body));
+    std::fprintf(stderr,
+                 "argil: note: tick %lld: new cells, %d tets for %d whose worst had the quality %.2g\n",
+                 static_cast<long long>(simulation.clock().tick), simulation.body().mesh.num_tets(),
+                 num_before, worst);
   if (m_file) m_file->begin_epoch(simulation.body());
   m_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return true;

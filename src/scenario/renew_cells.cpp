@@ -14,6 +14,8 @@
 namespace argil::scenario {
 namespace {
 
+constexpr int kFewestTets = 100;  // that a body may be made of
+
 /// What the tool has pressed round, in facets as large as cells, lies on it.
 void lay_on_tool(const PresentShape& now, const Scenario& s, mesh::TriangleMesh& surface) {
   constexpr double kNear = 0.3;    // of an edge, to both sides
@@ -71,7 +73,8 @@ Scenario make_scenario_of_surface(const Scenario& s, const sim::Body& body) {
   of_surface.body.fit = embed::Fit::surface;
   const bool has_target =
       s.body.kind != BodyKind::mesh && s.body.cage_file.empty() && !(s.body.cells.near_tool > 0.0);
-  if (!has_target) of_surface.body.target_tets = body.mesh.num_tets();
+  const int first_tets = body.first_tets > 0 ? body.first_tets : body.mesh.num_tets();
+  if (!has_target) of_surface.body.target_tets = std::max(kFewestTets, first_tets);
   of_surface.body.cells.near_tool = 0.0;
   return of_surface;
 }
@@ -151,6 +154,7 @@ sim::Body make_new_cells(const Scenario& s, const PresentShape& now) {
   body.touched = is_boundary ? embed::split_where_curved(now.touched) : now.touched;
   if (is_boundary) lay_on_tool(now, s, body.touched);
   body.loads = now.body.loads;
+  body.first_tets = now.body.first_tets > 0 ? now.body.first_tets : now.body.mesh.num_tets();
   Points skin;
   if (now.body.skin.num_triangles() > 0)
     embed::interpolate_positions(now.body.skin_embedding, now.body.mesh.tets, now.x, skin);

@@ -61,13 +61,16 @@ BodySide::BodySide(Body body, const Params& params)
 }
 
 void BodySide::go_on_from(const BodySide& before, const RemappedState& clay) {
+  constexpr double kRounding = 1e-14;
   static_cast<BodyProgress&>(m_state) = before.m_state;
   m_state.is_at_rest = false;
-  m_state.solid.v = clay.v;
+  m_state.solid.v = (m_solid.model.constraints.support.array() < 0).select(clay.v.array(), 0.0);
   water::WaterState water = m_water.state();
   water.initial = before.m_water.state().initial;
   water.added = before.m_water.state().added;
   water.removed = before.m_water.state().removed;
+  const double lost = before.m_water.mass() - m_water.mass();  // what full cells have no room for
+  if (lost > kRounding * before.m_water.mass()) water.removed.add(lost);
   m_water.restore(water);
   m_region.wake_all();
   begin_strained(clay.elastic);
@@ -79,7 +82,8 @@ void BodySide::begin_strained(const TensorField& elastic) {
   for (int point = 0; point < m_solid.model.elements.num_points(); ++point) {
     const int tet = point / points_per_tet;
     m_state.solid.plastic_strain.col(point) = -elastic.col(tet);
-    m_state.solid.plastic_strain.col(point).head<3>().array() -= std::log(m_body.rest_volume_ratio(tet)) / 3.0;
+    m_state.solid.plastic_strain.col(point).head<3>().array() -=
+        std::log(m_body.rest_volume_ratio(tet)) / 3.0;
   }
   m_state.solid.x = m_solid.model.elements.rest;
   solid::forget(m_solid, m_region);
@@ -97,10 +101,11 @@ void BodySide::balance(const Points& contact_force) {
   constexpr double kEnough = 1e-3;  // past the strength
   const Points v = m_state.solid.v;
   const Points force = m_force.loads() + contact_force;
-  const TensorField before = find_elastic_strain(m_solid);
+  TensorField balanced = find_elastic_strain(m_solid);  // of the last turn that came to an end
   for (int turn = 0; turn < kTurns; ++turn) {
     const StepStatus status = solid::find_equilibrium(m_solid, m_region.whole(), {force}, m_state.solid);
-    TensorField elastic = status.is_ok() ? find_elastic_strain(m_solid) : before;
+    if (status.is_ok()) balanced = find_elastic_strain(m_solid);
+    TensorField elastic = balanced;
     const double beyond = status.is_ok() && turn + 1 < kTurns ? limit_to_strength(elastic) : 0.0;
     m_state.solid.v = v;
     begin_strained(elastic);

@@ -90,6 +90,14 @@ Vec3 Grip::find_normal(const contact::Pose& tool) const {
   return tool.orientation * normal.normalized();
 }
 
+void Grip::go_on_from(const Grip& before, const Points& x_before, const Points& x,
+                      const contact::Pose& tool) {
+  m_state = before.m_state;
+  for (Bond& bond : m_state.bonds)
+    bond.place += tool.orientation.conjugate() * Vec3(x.col(bond.vertex) - x_before.col(bond.vertex));
+  commit();
+}
+
 void Grip::test(const Vec3& on_hand, const contact::Pose& tool) {
   if (!holds()) return;
   const Vec3 normal = find_normal(tool);

@@ -36,6 +36,9 @@ class Grip {
   void find_contacts(const Points& x, const contact::Pose& from, const contact::Pose& to,
                      contact::Contacts& contacts) const;
 
+  /// Of a surface that had these vertices and others, and is now at `x` where it was at `x_before`: bonds go
+  /// with them, so that they carry what they carried.
+  void go_on_from(const Grip& before, const Points& x_before, const Points& x, const contact::Pose& tool);
   void commit() { m_committed = m_state; }
   void roll_back() { m_state = m_committed; }
   void serialize(Archive& archive);

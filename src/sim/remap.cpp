@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -14,7 +15,7 @@
 namespace argil::sim {
 namespace {
 
-constexpr int kSamples = 8;     // of a tet
+constexpr int kSamples = 8;  // of a tet
 constexpr double kHeld = 0.85;  // of a node's place, by weight, that held nodes carry
 
 /// Barycentric coordinates of the places of a tet over which its mean is taken: four points of equal weight
@@ -100,7 +101,20 @@ Field take_means(const Origins& origins, const Field& from) {
   return take_means(origins, row).transpose();
 }
 
-void take_supports(const Body& from, const solid::Body& solid,
+/// The new nodes that are nearest to old ones.
+std::vector<int> find_nearest_nodes(const Points& x, const std::vector<int>& old_nodes, const Points& old_x) {
+  std::vector<int> nodes;
+  for (const int n : old_nodes) {
+    Eigen::Index nearest = 0;
+    (x.colwise() - old_x.col(n)).colwise().squaredNorm().minCoeff(&nearest);
+    nodes.push_back(static_cast<int>(nearest));
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+void take_supports(const Body& from, const solid::Body& solid, const Points& x,
                    const std::vector<embed::TetLocator::Place>& of_node, Body& to) {
   to.supports = from.supports;
   for (std::size_t s = 0; s < to.supports.size(); ++s) {
@@ -110,6 +124,9 @@ void take_supports(const Body& from, const solid::Body& solid,
     const auto is_held = [&](int node) {
       return (solid.model.constraints.support.col(node).array() == static_cast<int>(s)).any();
     };
+    std::vector<int> before;
+    for (int n = 0; n < from.mesh.num_vertices(); ++n)
+      if (is_held(n)) before.push_back(n);
     for (int n = 0; n < to.mesh.num_vertices(); ++n) {
       const embed::TetLocator::Place& place = of_node[static_cast<std::size_t>(n)];
       double held = 0.0;
@@ -117,16 +134,30 @@ void take_supports(const Body& from, const solid::Body& solid,
         if (is_held(from.mesh.tets(k, place.tet))) held += place.weights(k);
       if (held >= kHeld) region.nodes.push_back(n);
     }
+    if (region.nodes.empty()) region.nodes = find_nearest_nodes(to.mesh.vertices, before, x);
   }
 }
 
-/// Scales S so that Σ V S, by which the mass goes, is `wanted`, and no tet is more than full.
+/// Scales S so that Σ V S, by which the mass goes, is `wanted`: up in tets that are not full, as far as they
+/// have room.
 void keep_water(const Field& volume, double wanted, Field& saturation) {
-  constexpr int kTries = 40;
-  for (int i = 0; i < kTries; ++i) {
-    const double now = volume.dot(saturation);
-    if (!(now > 0.0) || std::abs(now - wanted) <= 1e-15 * wanted) return;
-    saturation = (saturation * (wanted / now)).cwiseMin(1.0);
+  const double whole = volume.dot(saturation);
+  if (wanted <= whole) {
+    if (whole > 0.0) saturation *= wanted / whole;
+    return;
+  }
+  for (bool has_filled = true; has_filled;) {
+    double full = 0.0, open = 0.0;
+    for (Eigen::Index t = 0; t < volume.size(); ++t)
+      (saturation(t) < 1.0 ? open : full) += volume(t) * saturation(t);
+    if (!(open > 0.0)) return;
+    const double scale = (wanted - full) / open;
+    has_filled = false;
+    for (double& S : saturation) {
+      if (!(S < 1.0)) continue;
+      S = std::min(1.0, scale * S);
+      has_filled = has_filled || S == 1.0;
+    }
   }
 }
 
@@ -158,7 +189,7 @@ RemappedState remap(const Body& from, const solid::Body& solid, const Points& x,
              mesh::compute_volumes(from.mesh.vertices, from.mesh.tets).dot(saturation),
              to.initial_saturation);
   if (from.youngs_modulus.size() > 0) to.youngs_modulus = take_means(origins, from.youngs_modulus);
-  take_supports(from, solid, of_node, to);
+  take_supports(from, solid, x, of_node, to);
   RemappedState state;
   state.elastic = take_means(origins, find_elastic_strain(solid));
   to.rest_volume_ratio = (-state.elastic.topRows<3>().colwise().sum()).array().exp().transpose();

@@ -17,8 +17,9 @@ TensorField find_elastic_strain(const solid::Body& solid);
 /// Takes what the clay of `solid` is like now to the cells of `to`, which lie where its own lie at x: water,
 /// moduli, pores' axes and supports go into `to`, the rest is returned. A tet gets the mean over its places;
 /// a node the speed of its place. A tet is at rest
-/// where its volume is without pressure. A node is held where nodes that are held carry its place by kHeld and more.
-/// Water keeps its mass to rounding: so does the saturation, but for what the sizes of both bodies differ by.
+/// where its volume is without pressure. A node is held where nodes that are held carry its place by kHeld
+/// and more. Water keeps its mass to rounding: so does the saturation, but for what the sizes of both bodies
+/// differ by.
 ///
 /// `to`: mesh, topology and skin are made. The cells' shape at rest is the present one.
 RemappedState remap(const Body& from, const solid::Body& solid, const Points& x, const Field& saturation,

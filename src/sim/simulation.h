@@ -28,8 +28,9 @@ class Simulation final : private BodySteps {
   Points surface_now() const;
   /// Between two steps: the body gets new cells in the shape that it has now. `body`: these, with skin,
   /// embedding and topology; what its clay is like, water, speed and strain, is taken over from the old ones
-  /// (remap). The hand feels what it felt; contacts are found anew in the next tick.
-  void renew_cells(Body body);
+  /// (remap). The hand feels what it felt; contacts are found anew in the next tick. False, and nothing has
+  /// changed, where the clay of some cell would be pressed beyond what its law bears.
+  bool renew_cells(Body body);
   /// The body has these cells, of which a snapshot was taken that is restored next.
   void restore_cells(Body body);
 

@@ -37,9 +37,11 @@ struct Body {
   embed::Embedding skin_embedding;
   mesh::TriangleMesh touched;  ///< what the tool meets, where that is finer than the skin; else empty
   embed::Embedding touched_embedding;
-  /// Of each tet: volume at rest over that of the mesh, where cells were made of clay under pressure; empty: 1.
+  /// Of each tet: volume at rest over that of the mesh, where cells were made of clay under pressure;
+  /// empty: 1.
   Field rest_volume_ratio;
   std::vector<TouchedPlace> touched_places;  ///< by which its cells were graded; empty: they are even
+  int first_tets = 0;                        ///< of its first epoch; 0: this is it
   int epoch = 0;                             ///< how often it has got new cells
   Tick epoch_tick = 0;                       ///< after which it got these
 };

@@ -94,6 +94,26 @@ TEST_F(Change, OfCellsKeepsTheWater) {
   EXPECT_LE(to.initial_saturation.maxCoeff(), 1.0);
 }
 
+TEST_F(Change, OfCellsKeepsTheWaterOfTetsThatAreNearlyFull) {
+  deform(Vec3(0.99, 0.99, 1.0).asDiagonal());  // less room than before
+  Field saturation = Field::Constant(from.mesh.num_tets(), 1.0);
+  saturation.head(10).setConstant(0.2);
+  const double before = mesh::compute_volumes(from.mesh.vertices, from.mesh.tets).dot(saturation);
+  remap(saturation);
+  const double after = mesh::compute_volumes(to.mesh.vertices, to.mesh.tets).dot(to.initial_saturation);
+  EXPECT_NEAR(after, before, 1e-14 * before);
+  EXPECT_LE(to.initial_saturation.maxCoeff(), 1.0);
+}
+
+TEST_F(Change, OfCellsHoldsSomethingWhereOneVertexIsHeld) {
+  deform(Mat3::Identity());
+  test::Scene held(test::make_irregular_block(4, 3, 2, kSize), {0}, make_hencky(), 1e5, 0.3);
+  held.solid.plastic_strain = &held.state.plastic_strain;
+  from.supports = {test::hold_nodes({0})};
+  sim::remap(from, held.solid, held.state.x, dry(), to);
+  EXPECT_EQ(to.supports[0].region.nodes.size(), 1U);
+}
+
 TEST_F(Change, OfCellsHoldsTheSameFace) {
   deform(Mat3::Identity());
   remap(dry());

@@ -114,6 +114,25 @@ TEST(NewCells, AreFeltBetweenStepsToo) {
   }
 }
 
+TEST(NewCells, StandWhereTheyAreHeld) {
+  Pressed p;
+  p.go(-1e-3, 4e-3, 20);  // fast
+  p.renew();
+  const Points before = p.simulation.body_state().solid.x;
+  p.go(4e-3, 4.5e-3, 20);
+  const auto& support = p.simulation.solid().model.constraints.support;
+  double moved = 0.0;
+  int num_held = 0;
+  for (Eigen::Index n = 0; n < support.cols(); ++n)
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      if (support(k, n) < 0) continue;
+      ++num_held;
+      moved = std::max(moved, std::abs(p.simulation.body_state().solid.x(k, n) - before(k, n)));
+    }
+  EXPECT_GT(num_held, 100);
+  EXPECT_EQ(moved, 0.0);
+}
+
 TEST(NewCells, WithoutTheToolLieStill) {
   Pressed p;
   p.go(-1e-3, 2e-3, 60);
