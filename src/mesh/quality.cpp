@@ -246,18 +246,14 @@ std::string require_usable(const QualityReport& report, const std::string& file)
   return line;
 }
 
-double find_worst_shape(const Points& vertices, const Tets& tets) {
-  double least = 1.0;  // of η³, which has no roots
-  for (const auto& tet : tets.colwise()) {
-    const Vec3 a = vertices.col(tet(1)) - vertices.col(tet(0));
-    const Vec3 b = vertices.col(tet(2)) - vertices.col(tet(0));
-    const Vec3 c = vertices.col(tet(3)) - vertices.col(tet(0));
-    const double edges = a.squaredNorm() + b.squaredNorm() + c.squaredNorm() + (b - a).squaredNorm() +
-                         (c - a).squaredNorm() + (c - b).squaredNorm();
-    const double half = std::max(0.0, 0.5 * a.cross(b).dot(c));  // 3 V
-    least = std::min(least, 1728.0 * half * half / (edges * edges * edges));
-  }
-  return std::cbrt(least);
+double compute_shape(const std::array<Vec3, 4>& corners) {
+  const Vec3 a = corners[1] - corners[0];
+  const Vec3 b = corners[2] - corners[0];
+  const Vec3 c = corners[3] - corners[0];
+  const double edges = a.squaredNorm() + b.squaredNorm() + c.squaredNorm() + (b - a).squaredNorm() +
+                       (c - a).squaredNorm() + (c - b).squaredNorm();
+  const double thrice_volume = std::max(0.0, 0.5 * a.cross(b).dot(c));
+  return 12.0 * std::cbrt(thrice_volume * thrice_volume) / edges;
 }
 
 }  // namespace argil::mesh

@@ -24,8 +24,8 @@ struct DihedralAngles {
 DihedralAngles compute_dihedral_angles(const std::array<Vec3, 4>& corners);
 
 /// Mean ratio η = 12 (3V)^⅔ / Σ l² of a tet's volume and edges: 1 where it is regular, 0 where it is flat or
-/// inverted [Liu1994]. That of the worst tet.
-double find_worst_shape(const Points& vertices, const Tets& tets);
+/// inverted [Liu1994].
+double compute_shape(const std::array<Vec3, 4>& corners);
 
 /// What a reviewer asks of a tet mesh. Lists hold element or vertex numbers from 0, increasing.
 struct QualityReport {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "mesh/quality.h"
 #include "scenario/renew_cells.h"
 
 namespace argil::run {
@@ -13,7 +12,7 @@ namespace {
 
 constexpr Tick kStepsBetweenLooks = 8;
 constexpr double kShortestEpoch = 0.05;  // [s]
-// Of the worst tet, mesh::find_worst_shape: below which cells are renewed while nothing touches the body,
+// Of the worst tet, mesh::compute_shape: below which cells are renewed while nothing touches the body,
 // and while something does.
 constexpr double kWorn = 0.12;
 constexpr double kSpoilt = 0.1;
@@ -33,8 +32,8 @@ bool Remesher::is_due(const sim::Simulation& simulation) const {
   const sim::Body& body = simulation.body();
   if (static_cast<double>(tick - body.epoch_tick) * rates.haptic_period < kShortestEpoch) return false;
   if (simulation.body_state().is_at_rest && simulation.body_state().plastic_dissipation == 0.0) return false;
-  const double worst = mesh::find_worst_shape(simulation.body_state().solid.x, body.mesh.tets);
-  return worst < (simulation.hand_state().num_contacts == 0 ? kWorn : kSpoilt);
+  return simulation.body_side().find_worst_shape() <
+         (simulation.hand_state().num_contacts == 0 ? kWorn : kSpoilt);
 }
 
 bool Remesher::renew_if_spoilt(sim::Simulation& simulation) {
@@ -43,7 +42,7 @@ bool Remesher::renew_if_spoilt(sim::Simulation& simulation) {
   const sim::Body& before = simulation.body();
   const Points& x = simulation.body_state().solid.x;
   const sim::HandState& hand = simulation.hand_state();
-  const double worst = mesh::find_worst_shape(x, before.mesh.tets);
+  const double worst = simulation.body_side().find_worst_shape();
   const int num_before = before.mesh.num_tets();
   try {
     sim::Body body = scenario::make_new_cells(

@@ -2,6 +2,7 @@
 
 #include "base/hash.h"
 #include "mesh/order.h"
+#include "mesh/quality.h"
 #include "sim/body_side.h"
 
 namespace argil::sim {
@@ -34,6 +35,21 @@ PhysicsRecord BodySide::make_record() {
   record.limited_tet = m_limit.worst_tet;
   record.fidelity = m_economy.record();
   return record;
+}
+
+double BodySide::find_worst_shape() const {
+  double worst = 1.0;
+  const int points_per_tet = m_solid.model.elements.points_per_tet;
+  m_region.part().batches.each_in_order(
+      m_solid.model.elements.num_points(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        for (std::ptrdiff_t point = begin; point < end; point += points_per_tet) {
+          const auto corner = m_body.mesh.tets.col(point / points_per_tet);
+          const Points& x = m_state.solid.x;
+          worst = std::min(worst, mesh::compute_shape({x.col(corner(0)), x.col(corner(1)), x.col(corner(2)),
+                                                       x.col(corner(3))}));
+        }
+      });
+  return worst;
 }
 
 /// ε_p of each tet: the mean of its points, whose weights are equal.

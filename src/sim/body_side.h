@@ -51,6 +51,8 @@ class BodySide {
   /// where supports alone do not hold the body.
   void balance(const Points& contact_force);
 
+  /// mesh::compute_shape of the worst of the tets that the last step has moved; 1 where there is none.
+  double find_worst_shape() const;
   const BodyState& state() const { return m_state; }
   const Body& body() const { return m_body; }
   const ContactSurface& surface() const { return m_surface; }

@@ -258,13 +258,11 @@ TEST(SurfaceReport, TrianglesWithoutAreaAreCounted) {
 
 // 12 (3V)^⅔ / Σ l²: of the corner of a cube V = 1/6 and Σ l² = 9.
 TEST(Quality, ShapeIsOneWhereTheTetIsRegularAndNoneWhereItIsFlat) {
-  const TetMesh regular = make_tet({1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1});
-  const TetMesh corner = make_corner_tet(0.01);
-  EXPECT_NEAR(find_worst_shape(regular.vertices, regular.tets), 1.0, 1e-14);
-  EXPECT_NEAR(find_worst_shape(corner.vertices, corner.tets), 12.0 * std::pow(0.5, 2.0 / 3.0) / 9.0, 1e-14);
-  TetMesh inverted = corner;
-  inverted.vertices(2, 3) *= -1.0;
-  EXPECT_EQ(find_worst_shape(inverted.vertices, inverted.tets), 0.0);
+  EXPECT_NEAR(compute_shape({Vec3(1, 1, 1), Vec3(-1, 1, -1), Vec3(1, -1, -1), Vec3(-1, -1, 1)}), 1.0, 1e-14);
+  const std::array<Vec3, 4> corner = {Vec3::Zero(), 0.01 * Vec3::UnitX(), 0.01 * Vec3::UnitY(),
+                                      0.01 * Vec3::UnitZ()};
+  EXPECT_NEAR(compute_shape(corner), 12.0 * std::pow(0.5, 2.0 / 3.0) / 9.0, 1e-14);
+  EXPECT_EQ(compute_shape({corner[0], corner[1], corner[2], -corner[3]}), 0.0);
 }
 
 }  // namespace
