@@ -134,7 +134,8 @@ class Halves {
 mesh::TriangleMesh split_where_curved(const mesh::TriangleMesh& surface) {
   constexpr int kTimes = 2;
   mesh::TriangleMesh made = surface;
-  made.vertices = Surface(made).place_back(Surface(made).find_curved());
+  const Surface coarse(surface);
+  made.vertices = coarse.place_back(coarse.find_curved());
   for (int i = 0; i < kTimes; ++i) made = Halves(made, Surface(made).find_curved()).take();
   return made;
 }

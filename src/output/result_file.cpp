@@ -1,7 +1,6 @@
 #include "output/result_file.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -27,12 +26,6 @@ void write_entities(const Group& group, const char* name, const Array& array, co
 
 void write_field(const Group& group, const char* name, const Field& field, const hdf5::Label& label) {
   group.write_array(name, field.data(), Shape{static_cast<std::uint64_t>(field.size())}, true, label);
-}
-
-std::string frame_name(std::uint64_t number) {
-  char name[24];
-  std::snprintf(name, sizeof name, "%06llu", static_cast<unsigned long long>(number));
-  return name;
 }
 
 // Rows of a series whose tick is at most `last`; ticks increase.
@@ -298,7 +291,7 @@ void ResultFile::append_fidelity(const sim::PhysicsRecord& record) {
 void ResultFile::append(const sim::Frame& frame) {
   ARGIL_ASSERT(m_impl, "append after finish");
   m_impl->guarded([&] {
-    Group group = m_impl->frames.create_group(frame_name(m_impl->num_frames));
+    Group group = m_impl->frames.create_group(schema::name_number(m_impl->num_frames));
     group.write_attribute("tick", frame.tick);
     group.write_attribute("time", frame.time);
     group.write_attribute("state_hash", frame.state_hash);
@@ -323,7 +316,7 @@ void ResultFile::begin_epoch(const sim::Body& body) {
     Group& root = m_impl->root;
     const Group epochs =
         root.has(schema::kEpochs) ? root.open_group(schema::kEpochs) : root.create_group(schema::kEpochs);
-    Group epoch = epochs.create_group(frame_name(static_cast<std::uint64_t>(body.epoch)));
+    Group epoch = epochs.create_group(schema::name_number(static_cast<std::uint64_t>(body.epoch)));
     epoch.write_attribute("tick", body.epoch_tick);
     epoch.write_attribute("first_tets", std::int64_t{body.first_tets});
     const Group mesh = epoch.create_group("mesh");

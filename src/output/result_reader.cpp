@@ -109,17 +109,6 @@ std::optional<Failure> ResultReader::read_failure() const {
 
 namespace {
 
-std::string name_epoch(int epoch) {
-  const std::string number = std::to_string(epoch);
-  return std::string(6 - std::min<std::size_t>(6, number.size()), '0') + number;
-}
-
-/// Of its cells.
-Group open_mesh(const Group& root, int epoch) {
-  if (epoch == 0) return root.open_group("mesh");
-  return root.open_group(schema::kEpochs).open_group(name_epoch(epoch)).open_group("mesh");
-}
-
 std::vector<sim::TouchedPlace> read_touched_places(const Group& mesh) {
   std::vector<sim::TouchedPlace> places;
   if (!mesh.has("touched_places")) return places;
@@ -154,7 +143,7 @@ int ResultReader::num_epochs() const {
 }
 
 CellMesh ResultReader::read_cells(int epoch) const {
-  const Group mesh = open_mesh(m_root, epoch);
+  const Group mesh = schema::open_mesh(m_root, epoch);
   CellMesh cells;
   cells.rest_position = read_entities<Points>(mesh, "rest_position");
   cells.tets = read_elements<Tets>(mesh, "tets", cells.rest_position.cols());
@@ -164,18 +153,21 @@ CellMesh ResultReader::read_cells(int epoch) const {
 
 std::optional<sim::Body> ResultReader::find_last_cells(Tick until) const {
   const auto begin_of = [this](int epoch) {
-    return m_root.open_group(schema::kEpochs).open_group(name_epoch(epoch)).read_integer("tick");
+    return m_root.open_group(schema::kEpochs)
+        .open_group(schema::name_number(static_cast<std::uint64_t>(epoch)))
+        .read_integer("tick");
   };
   int epoch = num_epochs();
   while (epoch > 0 && begin_of(epoch) > until) --epoch;
   if (epoch == 0) return std::nullopt;
   const CellMesh cells = read_cells(epoch);
-  const Group mesh = open_mesh(m_root, epoch);
+  const Group mesh = schema::open_mesh(m_root, epoch);
   sim::Body body;
   body.epoch = epoch;
   body.epoch_tick = begin_of(epoch);
-  body.first_tets = static_cast<int>(
-      m_root.open_group(schema::kEpochs).open_group(name_epoch(epoch)).read_integer("first_tets"));
+  body.first_tets = static_cast<int>(m_root.open_group(schema::kEpochs)
+                                         .open_group(schema::name_number(static_cast<std::uint64_t>(epoch)))
+                                         .read_integer("first_tets"));
   body.mesh = {cells.rest_position, cells.tets, {}};
   body.topology = mesh::make_topology(body.mesh);
   body.skin = {read_entities<Points>(mesh, "skin_rest_position"),
@@ -321,7 +313,7 @@ sim::Frame ResultReader::read_frame(const FrameInfo& info) const {
   frame.position = read_entities<Points>(group, "position");
   frame.saturation = read_field(group, "saturation");
   frame.plastic_strain = read_entities<TensorField>(group, "plastic_strain");
-  const Group mesh = open_mesh(m_root, info.epoch);
+  const Group mesh = schema::open_mesh(m_root, info.epoch);
   check_count(group, "position", frame.position.cols(), mesh.open_dataset("rest_position"));
   check_count(group, "saturation", frame.saturation.size(), mesh.open_dataset("tets"));
   check_count(group, "plastic_strain", frame.plastic_strain.cols(), mesh.open_dataset("tets"));

@@ -3,7 +3,10 @@
 // What a result file contains: every name, type, unit and meaning once, for the writer, the reader and the
 // checks. The table in this folder's README follows it.
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <string>
 
 #include "hdf5/file.h"
 
@@ -131,12 +134,26 @@ inline constexpr std::array kStepTiming = {
 
 /// Cells that the body got while the run went on, in groups by number, from 000001.
 inline constexpr const char* kEpochs = "epochs";
-inline constexpr const char* kEpochsEnd = "last_cells_tick";  ///< root: after it cells were not made anew any more
+/// Of a frame or an epoch: its group.
+inline std::string name_number(std::uint64_t number) {
+  const std::string digits = std::to_string(number);
+  return std::string(6 - std::min<std::size_t>(6, digits.size()), '0') + digits;
+}
+/// The cells of an epoch; those of the start are in /mesh.
+inline hdf5::Group open_mesh(const hdf5::Group& root, int epoch) {
+  if (epoch == 0) return root.open_group("mesh");
+  return root.open_group(kEpochs)
+      .open_group(name_number(static_cast<std::uint64_t>(epoch)))
+      .open_group("mesh");
+}
+inline constexpr const char* kEpochsEnd =
+    "last_cells_tick";                          ///< root: after it cells were not made anew any more
 inline constexpr const char* kEpoch = "epoch";  ///< attribute of a frame; none in the first
 inline constexpr hdf5::Label kTouchedPosition{"m", "what the tool meets: positions of its vertices, at rest"};
 inline constexpr hdf5::Label kTouchedTriangles{"1", "what the tool meets: vertex numbers, outward"};
 inline constexpr hdf5::Label kSkinRestPosition{"m", "rest positions of the skin's vertices"};
-inline constexpr hdf5::Label kRestVolumeRatio{"1", "volume of each tet without pressure, over that of its mesh"};
+inline constexpr hdf5::Label kRestVolumeRatio{"1",
+                                              "volume of each tet without pressure, over that of its mesh"};
 inline constexpr hdf5::Label kHeld{"1", "vertices that a support of the scenario holds"};
 inline constexpr hdf5::Label kYoungsModulus{"Pa", "Young's modulus of each tet, dry"};
 

@@ -64,14 +64,8 @@ constexpr Picture kCage = {"cage", "tets", "Tetrahedron", "position", "Cell", kO
 constexpr Picture kSkin = {"skin", "skin_triangles", "Triangle", "skin_position", "Node", kOnSkin};
 
 /// Only the cage's are others in every epoch.
-Dataset open_elements(const Group& root, const Picture& picture, std::int64_t epoch) {
-  if (epoch == 0 || &picture == &kSkin) return root.open_group("mesh").open_dataset(picture.elements);
-  char number[24];
-  std::snprintf(number, sizeof number, "%06lld", static_cast<long long>(epoch));
-  return root.open_group(schema::kEpochs)
-      .open_group(number)
-      .open_group("mesh")
-      .open_dataset(picture.elements);
+Dataset open_elements(const Group& root, const Picture& picture, int epoch) {
+  return schema::open_mesh(root, &picture == &kSkin ? 0 : epoch).open_dataset(picture.elements);
 }
 
 void write_collection(Writer& out, const Picture& picture, const Group& root) {
@@ -80,10 +74,11 @@ void write_collection(Writer& out, const Picture& picture, const Group& root) {
            << "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   std::vector<Dataset> first;  // of an epoch: position, then the attributes
   std::optional<Dataset> elements;
-  std::int64_t epoch = 0;
+  int epoch = 0;
   for (const std::string& number : frames.names()) {
     const Group frame = frames.open_group(number);
-    const std::int64_t now = frame.has_attribute(schema::kEpoch) ? frame.read_integer(schema::kEpoch) : 0;
+    const int now =
+        frame.has_attribute(schema::kEpoch) ? static_cast<int>(frame.read_integer(schema::kEpoch)) : 0;
     if (first.empty() || now != epoch) {
       epoch = now;
       first.clear();

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "embed/curved_split.h"
+#include "embed/skin_shape.h"
 #include "mesh/order.h"
 #include "mesh/quality.h"
 #include "scenario/cell_sizes.h"
@@ -37,18 +38,12 @@ void lay_on_tool(const PresentShape& now, const Scenario& s, mesh::TriangleMesh&
   }
 }
 
-double compute_enclosed_volume(const Points& x, const Triangles& triangles) {
-  double sum = 0.0;
-  for (const auto& v : triangles.colwise()) sum += x.col(v(0)).dot(x.col(v(1)).cross(x.col(v(2)))) / 6.0;
-  return sum;
-}
-
 /// Moves the boundary out or in, everywhere alike, until it encloses as much as the surface that it follows.
 /// Where that is more than a cell gives, the surface is not closed, and nothing moves.
 void match_volume(const mesh::TriangleMesh& surface, const Triangles& boundary, Points& x) {
   constexpr int kTimes = 2;
   constexpr double kMost = 0.1;  // of the mean edge of the boundary
-  const double wanted = compute_enclosed_volume(surface.vertices, surface.triangles);
+  const double wanted = embed::compute_skin_volume(surface);
   for (int i = 0; i < kTimes; ++i) {
     Points normal = Points::Zero(3, x.cols());
     double area = 0.0, edge = 0.0;
@@ -58,7 +53,7 @@ void match_volume(const mesh::TriangleMesh& surface, const Triangles& boundary, 
       area += n.norm();
       edge += (x.col(v(1)) - x.col(v(0))).norm() / static_cast<double>(boundary.cols());
     }
-    const double offset = (wanted - compute_enclosed_volume(x, boundary)) / area;
+    const double offset = (wanted - embed::compute_skin_volume({x, boundary})) / area;
     if (!(std::abs(offset) < kMost * edge)) return;
     for (Eigen::Index v = 0; v < x.cols(); ++v)
       if (!normal.col(v).isZero(0.0)) x.col(v) += offset * normal.col(v).normalized();

@@ -15,7 +15,7 @@
 namespace argil::sim {
 namespace {
 
-constexpr int kSamples = 8;  // of a tet
+constexpr int kSamples = 8;     // of a tet
 constexpr double kHeld = 0.85;  // of a node's place, by weight, that held nodes carry
 
 /// Barycentric coordinates of the places of a tet over which its mean is taken: four points of equal weight
@@ -64,25 +64,19 @@ class Places {
   embed::BoundaryTets m_boundary;
 };
 
-/// Calls visit(tet, place) for all.
-template <class Visit>
-void for_samples(const mesh::TetMesh& mesh, const Visit& visit) {
-  const std::array<Vec4, kSamples> samples = list_samples();
-  for (int t = 0; t < mesh.num_tets(); ++t)
-    for (const Vec4& weights : samples) {
-      Vec3 x = Vec3::Zero();
-      for (Eigen::Index k = 0; k < 4; ++k) x += weights(k) * mesh.vertices.col(mesh.tets(k, t));
-      visit(t, x);
-    }
-}
-
 /// For each tet the old tets at its samples.
 using Origins = Eigen::Matrix<int, kSamples, Eigen::Dynamic>;
 
 Origins find_origins(const Places& places, const mesh::TetMesh& mesh) {
+  const std::array<Vec4, kSamples> samples = list_samples();
   Origins origins(kSamples, mesh.num_tets());
-  Eigen::Index i = 0;
-  for_samples(mesh, [&](int, const Vec3& x) { origins(i++) = places.find(x).tet; });
+  for (int t = 0; t < mesh.num_tets(); ++t)
+    for (int i = 0; i < kSamples; ++i) {
+      Vec3 x = Vec3::Zero();
+      for (Eigen::Index k = 0; k < 4; ++k)
+        x += samples[static_cast<std::size_t>(i)](k) * mesh.vertices.col(mesh.tets(k, t));
+      origins(i, t) = places.find(x).tet;
+    }
   return origins;
 }
 
