@@ -112,6 +112,20 @@ TEST(SurfaceFriction, IsSlackenedByABodyThatGoesAlong) {
     EXPECT_LT((c.resistance - 0.25 * c.stiffness * way).norm(), 1e-12 * c.stiffness);
 }
 
+TEST(SurfaceFriction, GoesOnAfterABodyThatWentAlong) {
+  Patch patch(1e6);
+  const Vec3 way(1e-4, 2e-4, 0.0);
+  patch.move(way);
+  const Points before = patch.x;
+  patch.x.colwise() += 0.75 * way;
+  patch.place();
+  SurfaceFriction next(kFriction, kVertices);
+  next.go_on_from(patch.friction, before, patch.x);
+  next.stretch(patch.x, patch.x, patch.pose, patch.pose, patch.contacts);
+  for (const Contact& c : patch.contacts.contacts)
+    EXPECT_LT((c.resistance - 0.25 * c.stiffness * way).norm(), 1e-12 * c.stiffness);
+}
+
 /// Tool and body turn together: nothing is stretched beyond what the turn's chord differs from its arc.
 TEST(SurfaceFriction, HoldsNothingUnderACommonRigidTurn) {
   Patch patch(1e6);

@@ -59,6 +59,20 @@ double find_pressing(int vertex) {
   return 0.1 * (vertex / 3 + 1) * (vertex % 3 == 0 ? 0.5 : 0.25);
 }
 
+TEST(Grip, GoesOnWithVerticesThatLieElsewhere) {
+  Scene patch;
+  patch.hold();
+  const Points before = patch.x;
+  for (int v = 0; v < patch.x.cols(); ++v) patch.x.col(v) += Vec3(1e-5 * v, -2e-5, 3e-5);
+  Grip grip{kStrength};
+  grip.go_on_from(patch.grip, before, patch.x, patch.tool);
+  contact::Contacts found;
+  grip.find_contacts(patch.x, patch.tool, patch.tool, found);
+  ASSERT_EQ(found.contacts.size(), 3 * kPoints);
+  for (const contact::Contact& c : found.contacts)
+    EXPECT_LT((c.force + find_pressing(c.vertex[0]) * Vec3::UnitZ()).norm(), 1e-12);
+}
+
 TEST(Grip, TakesHoldWithTheForcesThatPress) {
   Scene patch;
   patch.hold();
