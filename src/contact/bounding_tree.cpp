@@ -24,10 +24,9 @@ void BoundingTree::fit_all(const Points& x) {
 
 mesh::Box BoundingTree::fit_triangle(int triangle, const Points& x_t0, const Points& x_t1) const {
   mesh::Box box;
-  for (int k = 0; k < 3; ++k) {
-    box.include(Vec3(x_t0.col(m_triangles(k, triangle))));
-    box.include(Vec3(x_t1.col(m_triangles(k, triangle))));
-  }
+  for (int k = 0; k < 3; ++k) box.include(Vec3(x_t0.col(m_triangles(k, triangle))));
+  if (&x_t0 == &x_t1) return box;
+  for (int k = 0; k < 3; ++k) box.include(Vec3(x_t1.col(m_triangles(k, triangle))));
   return box;
 }
 
@@ -43,6 +42,27 @@ ARGIL_INLINE void read_box(const mesh::Box& box, double margin, BoxLanes& lanes)
   read(box.high.data(), lanes.high);
   lanes.low -= margin;
   lanes.high += margin;
+}
+
+ARGIL_INLINE void spread(const mesh::Box& box, BoxLanes& lanes) {
+  lanes.low = Quad{box.low(0), box.low(1), box.low(2), 0.0};
+  lanes.high = Quad{box.high(0), box.high(1), box.high(2), 0.0};
+}
+
+ARGIL_INLINE bool overlaps(const BoxLanes& a, const BoxLanes& b) {
+  const Quad under = a.high - b.low;
+  const Quad over = b.high - a.low;
+  const Quad both = under < over ? under : over;
+  return (both[0] >= 0.0) & (both[1] >= 0.0) & (both[2] >= 0.0);
+}
+
+/// Square of the distance of a point from a box.
+ARGIL_INLINE double square_distance(const BoxLanes& box, const Quad& p) {
+  const Quad below = box.low - p;
+  const Quad above = p - box.high;
+  const Quad beside = below > above ? below : above;
+  const Quad d = beside > 0.0 ? beside : Quad{};
+  return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
 }
 
 }  // namespace
@@ -71,17 +91,29 @@ ARGIL_INLINE void BoundingTree::find(Test is_met, const Points& x_t0, const Poin
 
 ARGIL_EVERY_PROCESSOR void BoundingTree::find_overlaps(const mesh::Box& query, const Points& x_t0,
                                                        const Points& x_t1, std::vector<int>& triangles) {
-  const Quad low = {query.low(0), query.low(1), query.low(2), 0.0};
-  const Quad high = {query.high(0), query.high(1), query.high(2), 0.0};
-  const auto overlaps = [&](const mesh::Box& box, double margin) __attribute__((always_inline)) {
-    BoxLanes lanes;
-    read_box(box, margin, lanes);
-    const Quad under = high - lanes.low;
-    const Quad over = lanes.high - low;
-    const Quad both = under < over ? under : over;
-    return (both[0] >= 0.0) & (both[1] >= 0.0) & (both[2] >= 0.0);
+  BoxLanes lanes;
+  spread(query, lanes);
+  const auto is_met = [&](const mesh::Box& box, double margin) __attribute__((always_inline)) {
+    BoxLanes at;
+    read_box(box, margin, at);
+    return overlaps(lanes, at);
   };
-  find(overlaps, x_t0, x_t1, triangles);
+  find(is_met, x_t0, x_t1, triangles);
+}
+
+ARGIL_EVERY_PROCESSOR void BoundingTree::find_overlaps(const mesh::Box& query, const Reach& reach,
+                                                       const Points& x, std::vector<int>& triangles) {
+  BoxLanes lanes;
+  spread(query, lanes);
+  const Quad centre = {reach.centre(0), reach.centre(1), reach.centre(2), 0.0};
+  const auto is_met = [&](const mesh::Box& box, double margin) __attribute__((always_inline)) {
+    BoxLanes at;
+    read_box(box, margin, at);
+    const Quad side = at.high - at.low;
+    const double most = reach.radius + reach.per_side * (side[0] + side[1] + side[2]);
+    return overlaps(lanes, at) && square_distance(at, centre) <= most * most;
+  };
+  find(is_met, x, x, triangles);
 }
 
 ARGIL_EVERY_PROCESSOR void BoundingTree::find_near(const Vec3& p, double squared_reach, const Points& x_t0,
@@ -91,11 +123,7 @@ ARGIL_EVERY_PROCESSOR void BoundingTree::find_near(const Vec3& p, double squared
   const auto is_near = [&](const mesh::Box& box, double margin) __attribute__((always_inline)) {
     BoxLanes lanes;
     read_box(box, margin, lanes);
-    const Quad below = lanes.low - at;
-    const Quad above = at - lanes.high;
-    const Quad beside = below > above ? below : above;
-    const Quad d = beside > 0.0 ? beside : Quad{};
-    return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= squared_reach;
+    return square_distance(lanes, at) <= squared_reach;
   };
   find(is_near, x_t0, x_t1, triangles);
 }

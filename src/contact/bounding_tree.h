@@ -34,6 +34,16 @@ class BoundingTree {
   void find_overlaps(const mesh::Box& query, const Points& x_t0, const Points& x_t1,
                      std::vector<int>& triangles);
 
+  /// A ball that boxes have to reach. One counts as nearer by so many times the sum of its three sides.
+  struct Reach {
+    Vec3 centre = Vec3::Zero();
+    double radius = 0.0;    ///< [m]
+    double per_side = 0.0;  ///< [–]
+  };
+  /// The same of a surface at rest at `x`, without those whose boxes do not reach the ball; in any order.
+  void find_overlaps(const mesh::Box& query, const Reach& reach, const Points& x,
+                     std::vector<int>& triangles);
+
   /// Finds the triangles whose boxes over the present motion come as near to `p` as the root of
   /// `squared_reach`.
   void find_near(const Vec3& p, double squared_reach, const Points& x_t0, const Points& x_t1,

@@ -22,6 +22,7 @@ struct Pose {
 struct Contact {
   std::array<int, 3> vertex = {-1, -1, -1};  ///< body vertices that carry the force; −1 beyond the last
   std::array<double, 3> weight = {};         ///< their shares, sum 1 (weights at entry)
+  int triangle = -1;                         ///< whose corners they are, where that is known
   Vec3 normal = Vec3::Zero();                ///< mean direction in which a push tool moves the body, unit
   Vec3 force =
       Vec3::Zero();  ///< k·∫ nᵀ(p−q) n dt: mean force of a push tool on the body over the interval [N]

@@ -11,21 +11,8 @@
 namespace argil::contact {
 namespace {
 
-constexpr int kMostLevels = 10;         // of splitting a triangle in four
-constexpr double kMostPieces = 2.6e5;   // of all triangles near the tool
-constexpr double kLeastRadius = 0.25;   // of that of the covered area
-constexpr double kFarthestNear = 0.25;  // of the tool's radius
-
-/// Mean over the corners of how near each is to the tool: 1 inside, 0 farther than `band`.
-double compute_share_within(const std::array<double, 3>& distance, double band) {
-  double sum = 0.0;
-  for (const double d : distance) sum += std::clamp(1.0 - d / band, 0.0, 1.0);
-  return sum / 3.0;
-}
-
-Vec3 centre_of(const std::array<Vec3, 3>& piece) {
-  return (piece[0] + piece[1] + piece[2]) / 3.0;
-}
+constexpr int kMostLevels = 10;        // of splitting a triangle in four
+constexpr double kMostPieces = 2.6e5;  // of all triangles near the tool
 
 }  // namespace
 
@@ -37,16 +24,19 @@ PressureContact::PressureContact(const Triangles& surface, int num_vertices, Too
       m_is_solved_for(is_solved_for),
       m_penalty(penalty),
       m_passages(m_tool.inner_balls().size(), surface.cols()),
-      m_corner_of_vertex(static_cast<std::size_t>(num_vertices), -1) {
+      m_corner_of_vertex(static_cast<std::size_t>(num_vertices), -1),
+      m_place_of_vertex(m_corner_of_vertex) {
   ARGIL_ASSERT(m_stiffness.per_area.size() == surface.cols(), m_stiffness.per_area.size());
   m_places.reserve(kMostPlaces);
   m_candidates.reserve(static_cast<std::size_t>(surface.cols()));
   m_faces.reserve(m_candidates.capacity());
   m_corners.reserve(m_corner_of_vertex.size());
+  m_distances.reserve(m_corner_of_vertex.size());
 }
 
 void PressureContact::prepare(const Points& x) {
   m_tree.emplace(x, m_surface);
+  m_ahead.reset();
   m_motion = 0.0;
 }
 
@@ -57,174 +47,24 @@ void PressureContact::exchange(std::span<StiffnessOfTriangle> list) {
   }
 }
 
-/// Of the body, what the ball around the tool comes near; of a body that is solved for, also what it may come
-/// near as it follows the tool: by what both have moved since the last call.
-void PressureContact::find_faces(const Points& x) {
-  m_margin = finds_near() ? std::min(m_way + m_motion, kFarthestNear * m_tool.radius()) : 0.0;
-  mesh::Box box;
-  for (const Place& place : m_places) {
-    const Vec3 centre = place.position + place.turn.transpose() * m_tool.centre();
-    box.include(centre);
-    if (!m_passage) continue;
-    box.include(centre - m_passage->length * m_passage->inward);
-    box.include(centre + m_passage->retreat * m_passage->inward);
-  }
-  m_candidates.clear();
-  m_tree->find_overlaps(box.grown(m_tool.radius() + m_margin), x, x, m_candidates);
-  // Most of them lie outside the ball that holds all that the tool sweeps and what is near that.
-  const Vec3 middle = 0.5 * (box.low + box.high);
-  const double radius = 0.5 * (box.high - box.low).norm() + m_tool.radius() + m_margin;
-  const auto is_far = [&](int number) {
-    const Eigen::Vector3i v = m_surface.col(number);
-    const std::array<Vec3, 3> corner = {x.col(v(0)), x.col(v(1)), x.col(v(2))};
-    const Vec3 centre = centre_of(corner);
-    double squared_reach = 0.0;
-    for (const Vec3& p : corner) squared_reach = std::max(squared_reach, (p - centre).squaredNorm());
-    const double reach = std::sqrt(squared_reach);  // no edge is longer than twice that
-    const double most = radius + reach + find_band_of_side(2.0 * reach);
-    return (centre - middle).squaredNorm() > most * most;
-  };
-  std::erase_if(m_candidates, is_far);
-  std::sort(m_candidates.begin(), m_candidates.end());
-  m_faces.clear();
-  for (const int number : m_candidates) {
-    Face face;
-    face.number = number;
-    for (Eigen::Index k = 0; k < 3; ++k) face.x[static_cast<std::size_t>(k)] = x.col(m_surface(k, number));
-    const Vec3 a = face.x[1] - face.x[0];
-    const Vec3 b = face.x[2] - face.x[0];
-    const Vec3 normal = a.cross(b);
-    face.area = 0.5 * normal.norm();
-    if (!(face.area > 0.0)) continue;
-    face.normal = normal / (2.0 * face.area);
-    if (m_passage && facing_share(m_passage->inward, face.normal) == 0.0) continue;
-    const double longest = std::sqrt(std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()}));
-    face.size = std::max(0.5 * longest, std::sqrt(4.0 / std::numbers::sqrt3 * face.area));
-    face.whole = measure_cover(face, kWhole, 0, find_band(face, 0));
-    if (face.whole.area > 0.0 || face.whole.may_touch || is_within_margin(face)) m_faces.push_back(face);
-  }
-}
-
-bool PressureContact::is_within_margin(const Face& face) {
-  if (m_margin == 0.0) return false;
-  const Vec3 centre = face.at(centre_of(kWhole));
-  double reach = m_margin;
-  for (const Vec3& corner : face.x) reach = std::max(reach, m_margin + (corner - centre).norm());
-  return find_least_distance(centre, reach).distance < reach;
-}
-
-PressureContact::Cover& PressureContact::Cover::operator+=(const Cover& other) {
-  area += other.area;
-  facing_area += other.facing_area;
-  may_touch = may_touch || other.may_touch;
-  return *this;
-}
-
-/// How far from the tool the corners of a face's pieces of `level` still count in part as covered [m]: three
-/// times as far as those of a regular triangle are whose middle touches a ball like the tool. So about the
-/// same area is covered whether corners or points between them hold the face up, and it changes by degrees as
-/// the tool slides.
-double PressureContact::find_band(const Face& face, int level) const {
-  if (m_yielding == Yielding::no || m_passage) return 0.0;
-  return find_band_of_side(std::ldexp(face.size, -level));
-}
-
-double PressureContact::find_band_of_side(double side) const {
-  return std::min(0.5 * side * side / m_tool.radius(), 0.3 * side);
-}
-
-/// Of a piece of a triangle, the distance taken as linear on its pieces of `level`. As the distance changes
-/// by no more than the point moves, a piece whose centre is farther than its corners is wholly on one side.
-/// With a `band`, of a face whose corners count by how near they are.
-PressureContact::Cover PressureContact::measure_cover(const Face& face, const Piece& piece, int level,
-                                                      double band) {
-  const Vec3 centre = face.at(centre_of(piece));
-  std::array<Vec3, 3> x;
-  double reach = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    x[k] = face.at(piece[k]);
-    reach = std::max(reach, (x[k] - centre).norm());
-  }
-  const LeastDistance found = find_least_distance(centre, reach + band);
-  if (found.distance >= reach + band) return {};
-  const bool is_inside = found.distance <= -reach;
-  if (level > 0 && !is_inside) {
-    Cover sum;
-    for (const Piece& part : quarter(piece)) sum += measure_cover(face, part, level - 1, band);
-    return sum;
-  }
-  LeastDistance deepest = found;
-  Vec3 at = centre;
-  double share = 1.0;
-  if (!is_inside) {
-    std::array<double, 3> distance;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const LeastDistance corner = find_least_distance(x[k], kAnywhere);
-      distance[k] = corner.distance;
-      if (!(corner.distance < deepest.distance) || found.distance < 0.0) continue;
-      deepest = corner;
-      at = x[k];
-    }
-    share = band > 0.0 ? compute_share_within(distance, band) : compute_negative_share(distance);
-  }
-  const double area = share * 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
-  double facing = facing_share(found.outward, face.normal);
-  if (m_yielding == Yielding::no && !m_passage && facing < 1.0 && deepest.distance < 0.0)
-    facing = std::max(facing, find_held_facing(at, face.normal, *deepest.place));
-  return {area, area * facing, share == 0.0};
-}
-
-/// Radius of a disc as large as the patch, 0 where nothing is touched [m]: the one that is found with pieces
-/// of just that size. Between two halvings of the pieces it is interpolated, so that it has no jump.
-double PressureContact::find_patch_radius() {
-  double spacing = 0.0;
-  for (const Face& face : m_faces) spacing = std::max(spacing, face.size);
-  double coarser = 0.0;  // the radius with pieces twice as large
-  for (int pass = 0; pass <= m_most_levels; ++pass, spacing *= 0.5) {
-    Cover patch;
-    for (const Face& face : m_faces) {
-      const double levels = std::ceil(std::log2(face.size / spacing) - 1e-9);
-      patch += measure_cover(face, std::max(0, static_cast<int>(levels)));
-    }
-    if (patch.facing_area == 0.0 && !patch.may_touch) return 0.0;
-    // As large as this part of all that is covered, however little of it faces the tool.
-    const double least = kLeastRadius * std::sqrt(patch.area / std::numbers::pi);
-    const double radius = std::max(least, std::sqrt(patch.facing_area / std::numbers::pi));
-    if (spacing <= radius) {
-      if (coarser == 0.0) return radius;
-      const double above = std::log2(2.0 * spacing / coarser);
-      const double part = above / (above + std::log2(radius / spacing));
-      return std::pow(coarser, 1.0 - part) * std::pow(radius, part);
-    }
-    coarser = radius;
-  }
-  return 2.0 * spacing;  // smaller than can be told: as small as a piece
-}
-
-void PressureContact::add_contact(const std::array<int, 3>& vertex, const Vec3& weight,
+void PressureContact::add_contact(const std::array<int, 3>& vertex, int triangle, const Vec3& weight,
                                   const PointDepth& depth, double stiffness, const Vec3& point,
                                   Contacts& out) const {
   const bool touches = depth.mean > 0.0 || depth.begin > 0.0;
   if (!(stiffness > 0.0) || (!touches && !finds_near())) return;
-  Contact c;
+  Contact& c = (touches ? out.contacts : out.near).emplace_back();
   c.vertex = vertex;
   c.weight = {weight(0), weight(1), weight(2)};
+  c.triangle = triangle;
   c.normal = depth.outward;
-  c.force = stiffness * depth.mean * depth.outward;
-  c.stiffness = stiffness * depth.share;
+  c.force = stiffness * (touches ? depth.mean : depth.end) * depth.outward;
+  c.stiffness = touches ? stiffness * depth.share : stiffness;
   c.end_force = stiffness * std::max(0.0, depth.end);
   c.end_stiffness = depth.end > 0.0 ? stiffness : 0.0;
   c.passes = depth.end <= 0.0;
   c.spring = stiffness;
   c.begin_force = stiffness * std::max(0.0, depth.begin);
   c.point = point;
-  if (touches) {
-    out.contacts.push_back(c);
-  } else {
-    c.force = stiffness * depth.end * depth.outward;
-    c.stiffness = stiffness;
-    out.near.push_back(c);
-  }
 }
 
 void PressureContact::press_corners(const Face& face, double share) {
@@ -244,7 +84,7 @@ void PressureContact::press_corners(const Face& face, double share) {
 /// Each piece of `level` presses with its centre.
 PressureContact::Cover PressureContact::press_pieces(const Face& face, const Piece& piece, int level,
                                                      double share, Contacts& out) {
-  const Vec3 centre = centre_of(piece);
+  const Vec3 centre = find_centre(piece);
   const Vec3 x = face.at(centre);
   if (level > 0) {
     double reach = 0.0;
@@ -265,7 +105,7 @@ PressureContact::Cover PressureContact::press_pieces(const Face& face, const Pie
     const Vec3 b = face.at(piece[2]) - face.at(piece[0]);
     const double area = share * 0.5 * a.cross(b).norm() * facing_share(depth.outward, face.normal);
     const Eigen::Vector3i v = m_surface.col(face.number);
-    add_contact({v(0), v(1), v(2)}, centre, depth, area * stiffness_of(face), x, out);
+    add_contact({v(0), v(1), v(2)}, face.number, centre, depth, area * stiffness_of(face), x, out);
   }
   // Where κ hangs on the patch's area, once finer than the pressure.
   return m_needs_cover ? measure_cover(face, piece, yields ? 0 : 1) : Cover{};
@@ -275,6 +115,10 @@ PressureContact::Cover PressureContact::press_pieces(const Face& face, const Pie
 /// force has no jump as the patch grows. Where the body yields, faces that small press with their corners: as
 /// nodes do that a tool moves.
 void PressureContact::press_face(Face& face, double spacing, Contacts& out) {
+  if (face.size <= spacing && m_yielding == Yielding::yes) {
+    face.cover = face.whole;
+    return press_corners(face, 1.0);
+  }
   const double levels = std::clamp(std::log2(face.size / spacing), 0.0, static_cast<double>(m_most_levels));
   const int level = static_cast<int>(levels);
   // In which part of a halving one number of them gives way to the next: where the body yields, the force
@@ -301,8 +145,8 @@ void PressureContact::press_face(Face& face, double spacing, Contacts& out) {
 void PressureContact::press_all_corners(const Points& x, Contacts& out) {
   for (const Corner& corner : m_corners) {
     m_corner_of_vertex[static_cast<std::size_t>(corner.vertex)] = -1;
-    add_contact({corner.vertex, -1, -1}, Vec3::UnitX(), corner.depth, corner.stiffness, x.col(corner.vertex),
-                out);
+    add_contact({corner.vertex, -1, -1}, -1, Vec3::UnitX(), corner.depth, corner.stiffness,
+                x.col(corner.vertex), out);
   }
   m_corners.clear();
 }
@@ -357,6 +201,9 @@ void PressureContact::advance(const Points& x_before, const Points& x, std::opti
   if (!m_tree) prepare(x_before);
   m_motion = motion ? *motion : (x - x_before).cwiseAbs().maxCoeff();
   m_tree->advance(m_motion);
+  if (!m_ahead) return;
+  m_ahead->box = m_ahead->box.grown(-m_motion);
+  m_ahead->reach.radius -= find_nearing(m_motion);
 }
 
 void PressureContact::find_contacts(const Points& x, const Pose& pose_t0, const Pose& pose_t1,

@@ -59,7 +59,10 @@ class PressureContact {
   void exchange(std::span<StiffnessOfTriangle> list);
   SurfaceStiffness& stiffness() { return m_stiffness; }
   /// The next call may start anywhere.
-  void forget() { m_tree.reset(); }
+  void forget() {
+    m_tree.reset();
+    m_ahead.reset();
+  }
 
   /// Of the last contacts.
   Patch find_patch() const;
@@ -116,6 +119,20 @@ class PressureContact {
     bool may_touch = false;    ///< a piece lies outside by its corners but may be touched between them
     Cover& operator+=(const Cover& other);
   };
+  /// What m_candidates hold: all triangles that such a query meets, and of larger ones these.
+  struct Ahead {
+    mesh::Box box;
+    BoundingTree::Reach reach;
+  };
+  struct PlacedPiece {  // of a triangle
+    std::array<Vec3, 3> x;
+    Vec3 centre;
+    double reach = 0.0;  // from the centre to the farthest corner [m]
+  };
+  struct VertexDistance {
+    int vertex = -1;
+    LeastDistance least;
+  };
   struct Corner {  // of triangles that press with their corners
     int vertex = -1;
     PointDepth depth;
@@ -134,8 +151,17 @@ class PressureContact {
 
   void press(const Points& x, const Pose& pose_t0, const Pose& pose_t1, Yielding yielding,
              Contacts& contacts);
-  void place_tool(const Pose& pose_t0, const Pose& pose_t1);
+  // pressure_cover.cpp
   void find_faces(const Points& x);
+  void find_candidates(const mesh::Box& query, const BoundingTree::Reach& reach, const Points& x);
+  static double find_nearing(double motion);
+  bool find_face(const mesh::Box& query, const Points& x, Face& face);
+  LeastDistance find_vertex_distance(int vertex, const Vec3& x);
+  bool has_band() const { return m_yielding == Yielding::yes && !m_passage; }
+  static PlacedPiece place_piece(const std::array<Vec3, 3>& x, const Vec3& centre);
+  template <class FindCorner>
+  Cover cover_piece(const Face& face, const PlacedPiece& piece, double area, const LeastDistance& found,
+                    double band, FindCorner find_corner);
   double find_patch_radius();
   double find_band(const Face& face, int level) const;
   double find_band_of_side(double side) const;
@@ -143,8 +169,11 @@ class PressureContact {
   Cover measure_cover(const Face& face, int level) {
     return level == 0 ? face.whole : measure_cover(face, kWhole, level, find_band(face, level));
   }
+  // pressure_depth.cpp
+  void place_tool(const Pose& pose_t0, const Pose& pose_t1);
   ToolDistance find_distance(const Vec3& p, const Place& place, double far = kAnywhere);
   LeastDistance find_least_distance(const Vec3& p, double reach);
+  LeastDistance find_least_from_ball(const Vec3& p, double reach) const;
   const Place* find_near_place(const Vec3& p) const;
   int count_steps(double nearer) const;
   LeastDistance find_passage_distance(const Vec3& p, double reach);
@@ -153,14 +182,14 @@ class PressureContact {
   PointDepth find_held_depth(const Vec3& p, const Vec3& normal);
   PointDepth find_passage_depth(const Vec3& p);
   double find_held_facing(const Vec3& p, const Vec3& normal, const Place& place);
+  // pressure.cpp
   void press_face(Face& face, double spacing, Contacts& out);
   void press_corners(const Face& face, double share);
   Cover press_pieces(const Face& face, const Piece& piece, int level, double share, Contacts& out);
-  void add_contact(const std::array<int, 3>& vertex, const Vec3& weight, const PointDepth& depth,
-                   double stiffness, const Vec3& point, Contacts& out) const;
+  void add_contact(const std::array<int, 3>& vertex, int triangle, const Vec3& weight,
+                   const PointDepth& depth, double stiffness, const Vec3& point, Contacts& out) const;
   void press_all_corners(const Points& x, Contacts& out);
   double stiffness_of(const Face& face) const;
-  bool is_within_margin(const Face& face);
   bool finds_near() const { return m_is_solved_for && m_yielding == Yielding::yes && !m_passage; }
   double find_held_stiffness(bool will_yield) const;
   void hold_shape(bool will_yield, Contacts& out) const;
@@ -172,7 +201,9 @@ class PressureContact {
   bool m_is_solved_for;
   PenaltyKind m_penalty;
   std::optional<BoundingTree> m_tree;
-  double m_motion = 0.0;  // of the body before the present call, along any axis [m]
+  double m_motion = 0.0;          // of the body before the present call, along any axis [m]
+  std::vector<int> m_candidates;  // triangles that may be near the tool for some calls, by number
+  std::optional<Ahead> m_ahead;   // none: they have to be found anew
   Passage m_passages;
   // Of the present call.
   std::vector<Place> m_places;                 // along the tool's way, the end last
@@ -185,11 +216,12 @@ class PressureContact {
   int m_most_levels = 0;        // of splitting a triangle in four
   double m_margin = 0.0;        // how far from the tool points are near it [m]
   double m_patch_radius = 0.0;  // [m]; 0: nothing is touched
-  std::vector<int> m_candidates;
-  std::vector<Face> m_faces;  // near the tool's way, by number
+  std::vector<Face> m_faces;    // near the tool's way, by number
   std::vector<Corner> m_corners;
-  std::vector<int> m_corner_of_vertex;  // place in m_corners; −1: none
-  int m_guess = 0;                      // face of the tool near the last point
+  std::vector<int> m_corner_of_vertex;      // place in m_corners; −1: none
+  std::vector<VertexDistance> m_distances;  // of vertices of m_candidates
+  std::vector<int> m_place_of_vertex;       // in m_distances; −1: none
+  int m_guess = 0;                          // face of the tool near the last point
 };
 
 }  // namespace argil::contact

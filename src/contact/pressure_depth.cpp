@@ -58,6 +58,7 @@ ToolDistance PressureContact::find_distance(const Vec3& p, const Place& place, d
 /// far along the way to be nearer are left out.
 PressureContact::LeastDistance PressureContact::find_least_distance(const Vec3& p, double reach) {
   if (m_passage) return find_passage_distance(p, reach);
+  if (m_tool.is_ball()) return find_least_from_ball(p, reach);
   const Place* first = find_near_place(p);
   LeastDistance least{find_distance(p, *first, m_way + reach), first};
   if (m_places.size() == 1 || least.distance - m_way >= reach) return least;
@@ -69,6 +70,24 @@ PressureContact::LeastDistance PressureContact::find_least_distance(const Vec3& 
     i += count_steps(found.distance - least.distance);
   }
   return least;
+}
+
+/// The same of a ball, whose way out is found where it is nearest alone.
+PressureContact::LeastDistance PressureContact::find_least_from_ball(const Vec3& p, double reach) const {
+  const Place* nearest = &m_places.back();
+  const double at_end = (p - nearest->position).norm() - m_tool.radius();
+  double least = at_end;
+  const int last = static_cast<int>(m_places.size()) - 1;
+  for (int i = 0; last > 0 && i <= last && at_end - m_way < reach;) {
+    const Place& place = m_places[static_cast<std::size_t>(i)];
+    const double distance = i == last ? at_end : (p - place.position).norm() - m_tool.radius();
+    if (distance < least) {
+      least = distance;
+      nearest = &place;
+    }
+    i += count_steps(distance - least);
+  }
+  return {m_tool.find_from_ball(p - nearest->position), nearest};
 }
 
 /// Where the tool is likely to be nearest to a point: at the end of its way, or where what holds it is.

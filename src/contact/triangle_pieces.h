@@ -20,6 +20,11 @@ inline double compute_negative_share(const std::array<double, 3>& d) {
   return num_negative == 1 ? cut : 1.0 - cut;
 }
 
+/// Mean of a triangle's corners.
+inline Vec3 find_centre(const std::array<Vec3, 3>& x) {
+  return (x[0] + x[1] + x[2]) / 3.0;
+}
+
 /// The four parts into which the middles of its edges split a triangle.
 inline std::array<std::array<Vec3, 3>, 4> quarter(const std::array<Vec3, 3>& x) {
   const std::array<Vec3, 3> m = {0.5 * (x[0] + x[1]), 0.5 * (x[1] + x[2]), 0.5 * (x[2] + x[0])};

@@ -65,6 +65,7 @@ void ContactSurface::take_boundary(const Body& body, const solid::Elements& elem
   for (const int node : m_triangles.reshaped()) m_is_corner[static_cast<std::size_t>(node)] = 1;
   for (const int tet : body.topology.boundary_tet)
     m_tets.insert(m_tets.end(), static_cast<std::size_t>(elements.surface_per_face), tet);
+  note_tets(elements);
 }
 
 void ContactSurface::take_skin(const Triangles& triangles, const embed::Embedding& embedding,
@@ -81,6 +82,13 @@ void ContactSurface::take_skin(const Triangles& triangles, const embed::Embeddin
   for (Eigen::Index t = 0; t < m_triangles.cols(); ++t)
     for (Eigen::Index k = 0; k < 3; ++k)
       m_tets.push_back(embedding.tet[static_cast<std::size_t>(m_triangles(k, t))]);
+  note_tets(elements);
+}
+
+void ContactSurface::note_tets(const solid::Elements& elements) {
+  for (const auto& corners : m_triangles.colwise())
+    m_is_of_one_tet.push_back(is_of_one_tet(std::array{corners(0), corners(1), corners(2)}, elements) ? 1
+                                                                                                      : 0);
 }
 
 ARGIL_EVERY_PROCESSOR void ContactSurface::find_positions(const Points& x, Points& out) const {
@@ -143,28 +151,34 @@ bool ContactSurface::add_nodes(int vertex, double weight, solid::PointStiffness&
   return true;
 }
 
+bool ContactSurface::is_of_one_tet(std::span<const int> vertices, const solid::Elements& elements) const {
+  solid::PointStiffness whole;
+  const bool fits =
+      std::all_of(vertices.begin(), vertices.end(), [&](int v) { return add_nodes(v, 1.0, whole); });
+  return fits && shares_tet(whole, elements);
+}
+
 void ContactSurface::add_stiffness(const contact::Contact& contact, const Vec3& direction, double stiffness,
                                    const solid::Elements& elements,
                                    std::vector<solid::PointStiffness>& list) const {
-  const auto start = [&](double share) {
-    solid::PointStiffness s;
+  const auto start = [&](double share) -> solid::PointStiffness& {
+    solid::PointStiffness& s = list.emplace_back();
     s.normal = direction;
     s.stiffness = share * stiffness;
     return s;
   };
-  solid::PointStiffness whole = start(1.0);
-  bool fits = true;
-  for (std::size_t c = 0; c < 3 && contact.vertex[c] >= 0; ++c)
-    fits = fits && add_nodes(contact.vertex[c], contact.weight[c], whole);
-  const bool is_vertex = contact.vertex[1] < 0;  // whose nodes are those of one tet
-  if (fits && (is_vertex || shares_tet(whole, elements))) {
-    list.push_back(whole);
+  const auto end = std::find(contact.vertex.begin(), contact.vertex.end(), -1);
+  const std::span<const int> vertices(contact.vertex.begin(), end);
+  const auto triangle = static_cast<std::size_t>(contact.triangle);
+  // The nodes of one vertex are those of one tet.
+  const bool is_one = vertices.size() == 1 || (contact.triangle >= 0 ? m_is_of_one_tet[triangle] != 0
+                                                                     : is_of_one_tet(vertices, elements));
+  if (is_one) {
+    solid::PointStiffness& whole = start(1.0);
+    for (std::size_t c = 0; c < vertices.size(); ++c) add_nodes(vertices[c], contact.weight[c], whole);
     return;
   }
-  for (std::size_t c = 0; c < 3 && contact.vertex[c] >= 0; ++c) {
-    list.push_back(start(contact.weight[c]));
-    add_nodes(contact.vertex[c], 1.0, list.back());
-  }
+  for (std::size_t c = 0; c < vertices.size(); ++c) add_nodes(vertices[c], 1.0, start(contact.weight[c]));
 }
 
 void ContactSurface::find_touched_tets(const contact::Contacts& contacts, std::vector<int>& tet,

@@ -70,6 +70,7 @@ class ContactSurface {
   void take_boundary(const Body& body, const solid::Elements& elements);
   void take_skin(const Triangles& triangles, const embed::Embedding& embedding,
                  const solid::Elements& elements);
+  void note_tets(const solid::Elements& elements);
   template <class Value>
   std::span<const Value> slice(const std::vector<Value>& list, int vertex) const {
     const auto begin = static_cast<std::size_t>(m_begin[static_cast<std::size_t>(vertex)]);
@@ -77,6 +78,7 @@ class ContactSurface {
     return std::span(list).subspan(begin, end - begin);
   }
   bool add_nodes(int vertex, double weight, solid::PointStiffness& out) const;
+  bool is_of_one_tet(std::span<const int> vertices, const solid::Elements& elements) const;
 
   Triangles m_triangles;
   std::vector<char> m_is_corner;     // of a triangle, where vertices are nodes; else empty
@@ -84,6 +86,7 @@ class ContactSurface {
   std::vector<double> m_weight;      // N of each
   std::vector<int> m_tets;           // the tets under each triangle, m_tets_per_triangle of them
   int m_tets_per_triangle = 1;
+  std::vector<char> m_is_of_one_tet;  // of each triangle: its corners hang on nodes of one tet
 };
 
 }  // namespace argil::sim
