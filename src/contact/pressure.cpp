@@ -11,8 +11,10 @@
 namespace argil::contact {
 namespace {
 
-constexpr int kMostLevels = 10;        // of splitting a triangle in four
-constexpr double kMostPieces = 2.6e5;  // of all triangles near the tool
+// Where the body cannot give way:
+constexpr double kFinerOnRigid = 2.0;  // points along a line, over those where it can
+constexpr int kMostHalvings = 4;       // of pieces on which the way out of the tool turns,
+constexpr double kTurned = 0.9;        // whose cosine to that at the middle is less
 
 }  // namespace
 
@@ -31,7 +33,7 @@ PressureContact::PressureContact(const Triangles& surface, int num_vertices, Too
   m_candidates.reserve(static_cast<std::size_t>(surface.cols()));
   m_faces.reserve(m_candidates.capacity());
   m_corners.reserve(m_corner_of_vertex.size());
-  m_distances.reserve(m_corner_of_vertex.size());
+  m_nearness.reserve(m_corner_of_vertex.size());
 }
 
 void PressureContact::prepare(const Points& x) {
@@ -81,7 +83,22 @@ void PressureContact::press_corners(const Face& face, double share) {
   }
 }
 
-/// Each piece of `level` presses with its centre.
+/// Does the way out of the tool change its direction on a piece that it covers? From one side of a sharp tip
+/// to the other it jumps, where the tip is deepest.
+bool PressureContact::turns(const Face& face, const Piece& piece) {
+  const Vec3 centre = face.at(find_centre(piece));
+  const LeastDistance middle = find_least_distance(centre, kAnywhere);
+  double reach = 0.0;
+  for (const Vec3& corner : piece) reach = std::max(reach, (face.at(corner) - centre).norm());
+  if (middle.distance >= reach) return false;
+  return std::any_of(piece.begin(), piece.end(), [&](const Vec3& corner) {
+    const LeastDistance found = find_least_distance(face.at(corner), kAnywhere);
+    return found.distance < reach && found.outward.dot(middle.outward) < kTurned;
+  });
+}
+
+/// Each piece of `level` presses with its centre; on rigid faces those that the tool's edges cross are split
+/// on.
 PressureContact::Cover PressureContact::press_pieces(const Face& face, const Piece& piece, int level,
                                                      double share, Contacts& out) {
   const Vec3 centre = find_centre(piece);
@@ -98,6 +115,11 @@ PressureContact::Cover PressureContact::press_pieces(const Face& face, const Pie
       return sum;
     }
   }
+  if (level <= 0 && level > -kMostHalvings && is_rigid(face) && turns(face, piece)) {
+    Cover sum;
+    for (const Piece& part : quarter(piece)) sum += press_pieces(face, part, level - 1, share, out);
+    return sum;
+  }
   const bool yields = m_yielding == Yielding::yes;
   const PointDepth depth = yields ? find_depth(x) : find_held_depth(x, face.normal);
   if (depth.mean > 0.0 || depth.begin > 0.0 || finds_near()) {
@@ -111,10 +133,15 @@ PressureContact::Cover PressureContact::press_pieces(const Face& face, const Pie
   return m_needs_cover ? measure_cover(face, piece, yields ? 0 : 1) : Cover{};
 }
 
+bool PressureContact::is_rigid(const Face& face) const {
+  return !m_stiffness.is_rigid.empty() && m_stiffness.is_rigid[static_cast<std::size_t>(face.number)] != 0;
+}
+
 /// With pieces of about the size `spacing`: between two numbers of halvings, a mean of both, so that the
 /// force has no jump as the patch grows. Where the body yields, faces that small press with their corners: as
-/// nodes do that a tool moves.
+/// nodes do that a tool moves. Where no node can give way, nothing evens out what the points miss.
 void PressureContact::press_face(Face& face, double spacing, Contacts& out) {
+  if (is_rigid(face)) spacing /= kFinerOnRigid;
   if (face.size <= spacing && m_yielding == Yielding::yes) {
     face.cover = face.whole;
     return press_corners(face, 1.0);
@@ -234,9 +261,6 @@ void PressureContact::press(const Points& x, const Pose& pose_t0, const Pose& po
   place_tool(pose_t0, pose_t1);
   find_faces(x);
   if (m_faces.empty()) return;
-  // A tool that lies along the surface touches little of what is near at first.
-  const double levels = 0.5 * std::log2(kMostPieces / static_cast<double>(m_faces.size()));
-  m_most_levels = std::clamp(static_cast<int>(levels), 0, kMostLevels);
   // Of clay that yields, the force is the clay's, and the points only share it out; where it keeps its shape
   // they are all that counts.
   const double points_per_radius = yielding == Yielding::yes ? 3.0 : 4.0;

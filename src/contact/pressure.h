@@ -17,6 +17,7 @@ namespace argil::contact {
 struct SurfaceStiffness {
   Field per_area;  ///< κ [Pa/m] of a tool that the body yields to
   Field modulus;   ///< E/(1 − ν²) [Pa] of the body under it, for a tool that it does not yield to
+  std::vector<char> is_rigid = {};  ///< its corners cannot give way; empty: none of them is such
 };
 
 /// The same of one triangle.
@@ -129,9 +130,14 @@ class PressureContact {
     Vec3 centre;
     double reach = 0.0;  // from the centre to the farthest corner [m]
   };
-  struct VertexDistance {
+  /// The same without the way out.
+  struct Nearness {
+    double distance = 0.0;
+    const Place* place = nullptr;
+  };
+  struct VertexNearness {
     int vertex = -1;
-    LeastDistance least;
+    Nearness nearness;
   };
   struct Corner {  // of triangles that press with their corners
     int vertex = -1;
@@ -156,13 +162,14 @@ class PressureContact {
   void find_candidates(const mesh::Box& query, const BoundingTree::Reach& reach, const Points& x);
   static double find_nearing(double motion);
   bool find_face(const mesh::Box& query, const Points& x, Face& face);
-  LeastDistance find_vertex_distance(int vertex, const Vec3& x);
+  Nearness find_vertex_nearness(int vertex, const Vec3& x);
   bool has_band() const { return m_yielding == Yielding::yes && !m_passage; }
   static PlacedPiece place_piece(const std::array<Vec3, 3>& x, const Vec3& centre);
   template <class FindCorner>
   Cover cover_piece(const Face& face, const PlacedPiece& piece, double area, const LeastDistance& found,
                     double band, FindCorner find_corner);
   double find_patch_radius();
+  void limit_levels(int pass);
   double find_band(const Face& face, int level) const;
   double find_band_of_side(double side) const;
   Cover measure_cover(const Face& face, const Piece& piece, int level, double band = 0.0);
@@ -173,7 +180,11 @@ class PressureContact {
   void place_tool(const Pose& pose_t0, const Pose& pose_t1);
   ToolDistance find_distance(const Vec3& p, const Place& place, double far = kAnywhere);
   LeastDistance find_least_distance(const Vec3& p, double reach);
-  LeastDistance find_least_from_ball(const Vec3& p, double reach) const;
+  Nearness find_nearness(const Vec3& p, double reach);
+  Nearness find_ball_nearness(const Vec3& p, double reach) const;
+  double find_ball_distance(const Vec3& p, const Place& place) const {
+    return (p - place.position).norm() - m_tool.radius();
+  }
   const Place* find_near_place(const Vec3& p) const;
   int count_steps(double nearer) const;
   LeastDistance find_passage_distance(const Vec3& p, double reach);
@@ -183,6 +194,8 @@ class PressureContact {
   PointDepth find_passage_depth(const Vec3& p);
   double find_held_facing(const Vec3& p, const Vec3& normal, const Place& place);
   // pressure.cpp
+  bool is_rigid(const Face& face) const;
+  bool turns(const Face& face, const Piece& piece);
   void press_face(Face& face, double spacing, Contacts& out);
   void press_corners(const Face& face, double share);
   Cover press_pieces(const Face& face, const Piece& piece, int level, double share, Contacts& out);
@@ -213,15 +226,16 @@ class PressureContact {
   Mat3 m_turn = Mat3::Identity();              // from the tool's end back to its start
   Yielding m_yielding = Yielding::yes;
   bool m_needs_cover = false;
-  int m_most_levels = 0;        // of splitting a triangle in four
-  double m_margin = 0.0;        // how far from the tool points are near it [m]
-  double m_patch_radius = 0.0;  // [m]; 0: nothing is touched
-  std::vector<Face> m_faces;    // near the tool's way, by number
+  int m_most_levels = 0;           // of splitting a triangle in four
+  std::size_t m_num_measured = 0;  // pieces, in the present pass over all faces
+  double m_margin = 0.0;           // how far from the tool points are near it [m]
+  double m_patch_radius = 0.0;     // [m]; 0: nothing is touched
+  std::vector<Face> m_faces;       // near the tool's way, by number
   std::vector<Corner> m_corners;
-  std::vector<int> m_corner_of_vertex;      // place in m_corners; −1: none
-  std::vector<VertexDistance> m_distances;  // of vertices of m_candidates
-  std::vector<int> m_place_of_vertex;       // in m_distances; −1: none
-  int m_guess = 0;                          // face of the tool near the last point
+  std::vector<int> m_corner_of_vertex;     // place in m_corners; −1: none
+  std::vector<VertexNearness> m_nearness;  // of vertices of m_candidates
+  std::vector<int> m_place_of_vertex;      // in m_nearness; −1: none
+  int m_guess = 0;                         // face of the tool near the last point
 };
 
 }  // namespace argil::contact

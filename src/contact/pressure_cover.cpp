@@ -12,9 +12,12 @@ namespace {
 
 constexpr double kLeastRadius = 0.25;   // of that of the covered area
 constexpr double kFarthestNear = 0.25;  // of the tool's radius
+constexpr int kMostLevels = 14;         // of splitting a triangle in four
+constexpr double kMostPieces = 2.6e5;   // of all triangles near the tool
+constexpr double kWidestBand = 0.3;     // of the side
 // From the ball that holds what the tool sweeps, a face is near whose middle is as far as its corners and its
-// band, over the sum of the sides of its box: a corner is at most 2/3 of the longest edge away, a band 0.3 of
-// twice that.
+// band, over the sum of the sides of its box: a corner is at most 2/3 of the longest edge away, a band is
+// kWidestBand of twice that.
 constexpr double kPerSide = 1.07;
 const Vec3 kMiddle = find_centre({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()});  // weights
 
@@ -48,9 +51,9 @@ void PressureContact::find_faces(const Points& x) {
     face.number = number;
     if (!find_face(query, x, face)) m_faces.pop_back();
   }
-  for (const VertexDistance& known : m_distances)
+  for (const VertexNearness& known : m_nearness)
     m_place_of_vertex[static_cast<std::size_t>(known.vertex)] = -1;
-  m_distances.clear();
+  m_nearness.clear();
 }
 
 /// By how much nearer to the ball a triangle may count after a motion along any axis [m]: its box comes
@@ -83,15 +86,15 @@ void PressureContact::find_candidates(const mesh::Box& query, const BoundingTree
 bool PressureContact::find_face(const mesh::Box& query, const Points& x, Face& face) {
   const Eigen::Vector3i vertex = m_surface.col(face.number);
   for (Eigen::Index k = 0; k < 3; ++k) face.x[static_cast<std::size_t>(k)] = x.col(vertex(k));
-  mesh::Box box;
-  for (const Vec3& corner : face.x) box.include(corner);
-  if (!box.overlaps(query)) return false;
   const PlacedPiece whole = place_piece(face.x, face.at(kMiddle));
-  // No edge is longer than twice the way to the farthest corner.
-  const double widest = has_band() ? find_band_of_side(2.0 * whole.reach) : 0.0;
+  // No edge is longer than twice the way to the farthest corner, and no band wider than this of it.
+  const double widest = has_band() ? kWidestBand * 2.0 * whole.reach : 0.0;
   const double most = whole.reach + std::max(widest, m_margin);
   const LeastDistance found = find_least_distance(whole.centre, most);
   if (found.distance >= most) return false;
+  mesh::Box box;
+  for (const Vec3& corner : face.x) box.include(corner);
+  if (!box.overlaps(query)) return false;
   const Vec3 a = face.x[1] - face.x[0];
   const Vec3 b = face.x[2] - face.x[0];
   const Vec3 normal = a.cross(b);
@@ -101,23 +104,23 @@ bool PressureContact::find_face(const mesh::Box& query, const Points& x, Face& f
   if (m_passage && facing_share(m_passage->inward, face.normal) == 0.0) return false;
   const double longest = std::sqrt(std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()}));
   face.size = std::max(0.5 * longest, std::sqrt(4.0 / std::numbers::sqrt3 * face.area));
-  const double band = find_band(face, 0);
+  const double band = has_band() ? find_band_of_side(face.size) : 0.0;
   if (found.distance < whole.reach + band)
     face.whole = cover_piece(face, whole, face.area, found, band, [&](std::size_t k) {
-      return find_vertex_distance(vertex(static_cast<Eigen::Index>(k)), face.x[k]);
+      return find_vertex_nearness(vertex(static_cast<Eigen::Index>(k)), face.x[k]);
     });
   const bool is_within_margin = m_margin > 0.0 && found.distance < whole.reach + m_margin;
   return face.whole.area > 0.0 || face.whole.may_touch || is_within_margin;
 }
 
 /// The same for all faces of a vertex.
-PressureContact::LeastDistance PressureContact::find_vertex_distance(int vertex, const Vec3& x) {
+PressureContact::Nearness PressureContact::find_vertex_nearness(int vertex, const Vec3& x) {
   int& place = m_place_of_vertex[static_cast<std::size_t>(vertex)];
   if (place < 0) {
-    place = static_cast<int>(m_distances.size());
-    m_distances.push_back({vertex, find_least_distance(x, kAnywhere)});
+    place = static_cast<int>(m_nearness.size());
+    m_nearness.push_back({vertex, find_nearness(x, kAnywhere)});
   }
-  return m_distances[static_cast<std::size_t>(place)].least;
+  return m_nearness[static_cast<std::size_t>(place)].nearness;
 }
 
 PressureContact::PlacedPiece PressureContact::place_piece(const std::array<Vec3, 3>& x, const Vec3& centre) {
@@ -142,7 +145,7 @@ double PressureContact::find_band(const Face& face, int level) const {
 }
 
 double PressureContact::find_band_of_side(double side) const {
-  return std::min(0.5 * side * side / m_tool.radius(), 0.3 * side);
+  return std::min(0.5 * side * side / m_tool.radius(), kWidestBand * side);
 }
 
 /// Of a piece of a triangle, the distance taken as linear on its pieces of `level`. As the distance changes
@@ -150,6 +153,7 @@ double PressureContact::find_band_of_side(double side) const {
 /// With a `band`, of a face whose corners count by how near they are.
 PressureContact::Cover PressureContact::measure_cover(const Face& face, const Piece& piece, int level,
                                                       double band) {
+  ++m_num_measured;
   const PlacedPiece placed =
       place_piece({face.at(piece[0]), face.at(piece[1]), face.at(piece[2])}, face.at(find_centre(piece)));
   const LeastDistance found = find_least_distance(placed.centre, placed.reach + band);
@@ -161,7 +165,7 @@ PressureContact::Cover PressureContact::measure_cover(const Face& face, const Pi
   }
   const double area = 0.5 * (placed.x[1] - placed.x[0]).cross(placed.x[2] - placed.x[0]).norm();
   return cover_piece(face, placed, area, found, band,
-                     [&](std::size_t k) { return find_least_distance(placed.x[k], kAnywhere); });
+                     [&](std::size_t k) { return find_nearness(placed.x[k], kAnywhere); });
 }
 
 /// Of a piece of this area whose middle is `found` from the tool, and corner k find_corner(k).
@@ -169,25 +173,34 @@ template <class FindCorner>
 PressureContact::Cover PressureContact::cover_piece(const Face& face, const PlacedPiece& piece, double area,
                                                     const LeastDistance& found, double band,
                                                     FindCorner find_corner) {
-  LeastDistance deepest = found;
-  Vec3 at = piece.centre;
+  Nearness deepest{found.distance, found.place};
+  const Vec3* at = &piece.centre;
   double share = 1.0;
   if (found.distance > -piece.reach) {
     std::array<double, 3> distance;
     for (std::size_t k = 0; k < 3; ++k) {
-      const LeastDistance corner = find_corner(k);
+      const Nearness corner = find_corner(k);
       distance[k] = corner.distance;
       if (!(corner.distance < deepest.distance) || found.distance < 0.0) continue;
       deepest = corner;
-      at = piece.x[k];
+      at = &piece.x[k];
     }
     share = band > 0.0 ? compute_share_within(distance, band) : compute_negative_share(distance);
   }
   area *= share;
   double facing = facing_share(found.outward, face.normal);
   if (m_yielding == Yielding::no && !m_passage && facing < 1.0 && deepest.distance < 0.0)
-    facing = std::max(facing, find_held_facing(at, face.normal, *deepest.place));
+    facing = std::max(facing, find_held_facing(*at, face.normal, *deepest.place));
   return {area, area * facing, share == 0.0};
+}
+
+/// A tool that lies along the surface touches little of what is near at first. After a pass over all faces
+/// with pieces of this level, each further one takes four times as many pieces at most.
+void PressureContact::limit_levels(int pass) {
+  const auto count = [](std::size_t pieces) {
+    return static_cast<int>(std::max(0.0, 0.5 * std::log2(kMostPieces / static_cast<double>(pieces))));
+  };
+  m_most_levels = std::min(kMostLevels, std::max(count(m_faces.size()), pass + count(m_num_measured)));
 }
 
 /// Radius of a disc as large as the patch, 0 where nothing is touched [m]: the one that is found with pieces
@@ -196,12 +209,15 @@ double PressureContact::find_patch_radius() {
   double spacing = 0.0;
   for (const Face& face : m_faces) spacing = std::max(spacing, face.size);
   double coarser = 0.0;  // the radius with pieces twice as large
+  m_most_levels = kMostLevels;
   for (int pass = 0; pass <= m_most_levels; ++pass, spacing *= 0.5) {
     Cover patch;
+    m_num_measured = m_faces.size();
     for (const Face& face : m_faces) {
       const double levels = face.size > spacing ? std::ceil(std::log2(face.size / spacing) - 1e-9) : 0.0;
       patch += measure_cover(face, static_cast<int>(levels));
     }
+    limit_levels(pass);
     if (patch.facing_area == 0.0 && !patch.may_touch) return 0.0;
     // As large as this part of all that is covered, however little of it faces the tool.
     const double least = kLeastRadius * std::sqrt(patch.area / std::numbers::pi);

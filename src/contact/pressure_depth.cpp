@@ -58,7 +58,10 @@ ToolDistance PressureContact::find_distance(const Vec3& p, const Place& place, d
 /// far along the way to be nearer are left out.
 PressureContact::LeastDistance PressureContact::find_least_distance(const Vec3& p, double reach) {
   if (m_passage) return find_passage_distance(p, reach);
-  if (m_tool.is_ball()) return find_least_from_ball(p, reach);
+  if (m_tool.is_ball()) {
+    const Nearness nearest = find_ball_nearness(p, reach);
+    return {m_tool.find_from_ball(p - nearest.place->position), nearest.place};
+  }
   const Place* first = find_near_place(p);
   LeastDistance least{find_distance(p, *first, m_way + reach), first};
   if (m_places.size() == 1 || least.distance - m_way >= reach) return least;
@@ -72,22 +75,28 @@ PressureContact::LeastDistance PressureContact::find_least_distance(const Vec3& 
   return least;
 }
 
-/// The same of a ball, whose way out is found where it is nearest alone.
-PressureContact::LeastDistance PressureContact::find_least_from_ball(const Vec3& p, double reach) const {
-  const Place* nearest = &m_places.back();
-  const double at_end = (p - nearest->position).norm() - m_tool.radius();
-  double least = at_end;
+PressureContact::Nearness PressureContact::find_nearness(const Vec3& p, double reach) {
+  if (m_tool.is_ball() && !m_passage) return find_ball_nearness(p, reach);
+  const LeastDistance found = find_least_distance(p, reach);
+  return {found.distance, found.place};
+}
+
+PressureContact::Nearness PressureContact::find_ball_nearness(const Vec3& p, double reach) const {
+  const double at_end = find_ball_distance(p, m_places.back());
+  Nearness nearest{at_end, &m_places.back()};
   const int last = static_cast<int>(m_places.size()) - 1;
-  for (int i = 0; last > 0 && i <= last && at_end - m_way < reach;) {
-    const Place& place = m_places[static_cast<std::size_t>(i)];
-    const double distance = i == last ? at_end : (p - place.position).norm() - m_tool.radius();
-    if (distance < least) {
-      least = distance;
-      nearest = &place;
-    }
-    i += count_steps(distance - least);
+  if (last == 0 || at_end - m_way >= reach) return nearest;
+  if (last == 1) {
+    const double at_begin = find_ball_distance(p, m_places.front());
+    return at_begin < at_end ? Nearness{at_begin, &m_places.front()} : nearest;
   }
-  return {m_tool.find_from_ball(p - nearest->position), nearest};
+  for (int i = 0; i <= last;) {
+    const Place& place = m_places[static_cast<std::size_t>(i)];
+    const double distance = i == last ? at_end : find_ball_distance(p, place);
+    if (distance < nearest.distance) nearest = {distance, &place};
+    i += count_steps(distance - nearest.distance);
+  }
+  return nearest;
 }
 
 /// Where the tool is likely to be nearest to a point: at the end of its way, or where what holds it is.
@@ -181,6 +190,13 @@ double PressureContact::find_held_facing(const Vec3& p, const Vec3& normal, cons
 /// tool and not behind it, where it comes back by itself.
 PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
   if (m_passage) return find_passage_depth(p);
+  if (m_tool.is_ball() && m_is_solved_for && m_places.size() == 2) {
+    // The usual case of what follows.
+    const double begin = -find_ball_distance(p, m_places.front());
+    const ToolDistance end = m_tool.find_from_ball(p - m_places.back().position);
+    if (begin > 0.0 || end.distance < 0.0) return {-end.distance, begin, -end.distance, 1.0, end.outward};
+    if (begin < 0.0 && end.distance > 0.0) return {0.0, begin, -end.distance, 0.0, end.outward};
+  }
   PointDepth point;
   const double pieces = static_cast<double>(m_places.size() - 1);
   // From a place that is farther away, the tool does not come to the point in one piece of its way.

@@ -29,13 +29,25 @@ contact::StiffnessOfTriangle SurfaceModuli::find(int triangle, int tet) const {
   return {triangle, m_params.pressure_stiffness > 0.0 ? m_params.pressure_stiffness : chosen, modulus};
 }
 
+/// Are all nodes held that carry its corners?
+bool SurfaceModuli::is_held(int triangle) const {
+  const solid::Constraints& constraints = m_solid.model.constraints;
+  const auto corners = m_surface.triangles().col(triangle);
+  return std::all_of(corners.begin(), corners.end(), [&](int vertex) {
+    const std::span<const int> nodes = m_surface.nodes(vertex);
+    return std::all_of(nodes.begin(), nodes.end(), [&](int node) { return constraints.is_held(node); });
+  });
+}
+
 contact::SurfaceStiffness SurfaceModuli::find_all() const {
   const Eigen::Index count = m_surface.triangles().cols();
-  contact::SurfaceStiffness all{Field(count), Field(count)};
+  contact::SurfaceStiffness all{Field(count), Field(count),
+                                std::vector<char>(static_cast<std::size_t>(count))};
   for (const auto& [tet, triangle] : m_above) {
     const contact::StiffnessOfTriangle found = find(triangle, tet);
     all.per_area(triangle) = found.per_area;
     all.modulus(triangle) = found.modulus;
+    all.is_rigid[static_cast<std::size_t>(triangle)] = is_held(triangle) ? 1 : 0;
   }
   return all;
 }

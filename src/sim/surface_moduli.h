@@ -27,6 +27,7 @@ class SurfaceModuli {
 
  private:
   contact::StiffnessOfTriangle find(int triangle, int tet) const;
+  bool is_held(int triangle) const;
 
   const ContactSurface& m_surface;
   const solid::Body& m_solid;

@@ -23,6 +23,7 @@ using test::kRadius;
 using test::kStiffness;
 using test::kTip;
 using test::make_flat_slab;
+using test::make_slab;
 using test::make_turned;
 using test::Misses;
 using test::press;
@@ -58,6 +59,41 @@ TEST(Pressure, OfAToolThatLiesAlongTheSurfaceTakesFewPoints) {
     if (depth > 1e-10) {
       EXPECT_NEAR(found.force_on_tool.z() / cap, 1.0, 0.1);
     }
+  }
+}
+
+/// A pyramid of three sides with its tip at the origin, the same on both sides of y = 0.
+mesh::TriangleMesh make_three_sided_tip() {
+  mesh::TriangleMesh tip;
+  tip.vertices.resize(3, 4);
+  tip.vertices << 0.0, 0.01, -0.005, -0.005, 0.0, 0.0, 0.00866, -0.00866, 0.0, 0.03, 0.03, 0.03;
+  tip.triangles.resize(3, 4);
+  tip.triangles << 0, 0, 0, 1, 2, 3, 1, 2, 1, 2, 3, 3;
+  return tip;
+}
+
+/// Two faces of 40 mm that cannot give way under a tip of less than a millimetre: the force along the groove
+/// is zero by the mirror, that out of it the one over faces a hundredth as large.
+TEST(Pressure, InAGrooveOfLargeRigidFacesPointsNowhereAlongIt) {
+  const auto groove = [](double x, double) { return 0.5 * std::abs(x); };
+  const mesh::TriangleMesh tip = make_three_sided_tip();
+  require_closed_surface(tip, "tip");
+  const auto press_into = [&](int n, double depth) {
+    const mesh::TriangleMesh body = make_slab(n, 0.04, 0.02, groove);
+    const Eigen::Index count = body.triangles.cols();
+    PressureContact pressure(body.triangles, body.num_vertices(), ToolSolid(tip),
+                             {Field::Constant(count, kStiffness), Field::Constant(count, kModulus),
+                              std::vector<char>(static_cast<std::size_t>(count), 1)});
+    Contacts found;
+    const Pose pose{{0.0, 0.00371, -depth}};
+    pressure.find_contacts(body.vertices, pose, pose, Yielding::yes, found);
+    EXPECT_LT(found.contacts.size(), 10'000U);
+    return found.force_on_tool;
+  };
+  for (const double depth : {0.0005, 0.001, 0.002, 0.003}) {
+    const Vec3 force = press_into(2, depth);
+    EXPECT_LT(std::abs(force.y()), 0.025 * force.z()) << depth;
+    EXPECT_NEAR(force.z() / press_into(200, depth).z(), 1.0, 0.03) << depth;
   }
 }
 

@@ -20,6 +20,7 @@ using test::find_spread;
 using test::kBall;
 using test::kModulus;
 using test::kRadius;
+using test::kStiffness;
 using test::kTip;
 using test::make_contact;
 using test::make_flat_slab;
@@ -236,6 +237,44 @@ TEST(HeldPressure, IsSmoothOverEdgesAndNodes) {
     EXPECT_LT(side / peak, 0.01) << n;
     EXPECT_LT(find_spread(normal), 0.02) << n;
   }
+}
+
+/// What may be near the tool is found for some calls ahead. A ball that slides and turns back over a slab
+/// whose surface swings presses the same points, to the bit, as one that looks at all of it in each call.
+TEST(Pressure, FacesThatAreFoundAheadAreAllThatTheToolMeets) {
+  const mesh::TriangleMesh slab = make_flat_slab(60);
+  const Eigen::Index count = slab.triangles.cols();
+  const auto make = [&] {
+    return PressureContact(slab.triangles, slab.num_vertices(), ToolSolid(kBall),
+                           {Field::Constant(count, kStiffness), Field::Constant(count, kModulus)}, true);
+  };
+  PressureContact ahead = make(), anew = make();
+  Points x = slab.vertices;
+  Pose pose{{-0.02, 0.001, kRadius + 0.0003}};
+  const auto same = [](const std::vector<Contact>& a, const std::vector<Contact>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Contact& p, const Contact& q) {
+      return p.vertex == q.vertex && p.weight == q.weight && p.force == q.force && p.stiffness == q.stiffness;
+    });
+  };
+  Contacts found, expected;
+  std::size_t most = 0;
+  for (int call = 1; call <= 400; ++call) {
+    Points next = x;
+    const double swing = call % 40 < 20 ? 2e-6 : 6e-5;  // [m] a call, slow and fast by turns
+    for (Eigen::Index v = 0; v < next.cols(); ++v)
+      next(2, v) = slab.vertices(2, v) + 10.0 * swing * std::sin(0.1 * call + 200.0 * slab.vertices(0, v));
+    const Pose to{{0.02 * std::sin(0.004 * call - 1.5), 0.001, kRadius - 0.0008}};
+    const double motion = (next - x).cwiseAbs().maxCoeff();
+    anew.forget();
+    for (PressureContact* pressure : {&ahead, &anew}) pressure->advance(x, next, motion);
+    ahead.find_contacts(next, pose, to, Yielding::yes, found);
+    anew.find_contacts(next, pose, to, Yielding::yes, expected);
+    ASSERT_TRUE(same(found.contacts, expected.contacts) && same(found.near, expected.near)) << call;
+    most = std::max(most, found.contacts.size() + found.near.size());
+    x = next;
+    pose = to;
+  }
+  EXPECT_GT(most, 20U);
 }
 
 }  // namespace
