@@ -20,7 +20,7 @@ def run_along(argil, folder, places, scene):
 
 
 def find_force(argil, folder, places, *, radius, friction=0.0, ticks_of_step=1, between="hold", modulus=1e5, target_tets=8000,
-               cells="graded"):
+               cells="graded", iteration="one"):
     """The same of the ball's middle over the block. `modulus` is E [Pa]."""
     scene = {
         "about": "A ball on a block.",
@@ -30,6 +30,7 @@ def find_force(argil, folder, places, *, radius, friction=0.0, ticks_of_step=1, 
                      "clay_kernel": {"form": "off"}},
         "tool": {"shape": {"kind": "sphere", "radius_m": radius}, "mode": "push"},
         "contact": {"law": "pressure", "friction": friction},
+        "dynamics": {"iteration": iteration},
         "haptics": {"physics_period_ticks": ticks_of_step, "water_period_ticks": ticks_of_step,
                     "frame_period_ticks": 100 * ticks_of_step, "between_frames": between, "chatter_limit": 1},
     }
