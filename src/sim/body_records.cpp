@@ -39,11 +39,10 @@ PhysicsRecord BodySide::make_record() {
 
 double BodySide::find_worst_shape() const {
   double worst = 1.0;
-  const int points_per_tet = m_solid.model.elements.points_per_tet;
   m_region.part().batches.each_in_order(
-      m_solid.model.elements.num_points(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-        for (std::ptrdiff_t point = begin; point < end; point += points_per_tet) {
-          const auto corner = m_body.mesh.tets.col(point / points_per_tet);
+      m_solid.model.elements.num_tets(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        for (std::ptrdiff_t tet = begin; tet < end; ++tet) {
+          const auto corner = m_body.mesh.tets.col(tet);
           const Points& x = m_state.solid.x;
           worst = std::min(worst, mesh::compute_shape({x.col(corner(0)), x.col(corner(1)), x.col(corner(2)),
                                                        x.col(corner(3))}));

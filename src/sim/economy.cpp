@@ -119,7 +119,8 @@ void Economy::watch_strain(const BodyState& state) {
   if (m_fidelity.is_full() || state.steps % kSteps != 0) return;
   const auto weigh = [&](std::ptrdiff_t begin, std::ptrdiff_t end, bool by_strain) {
     double sum = 0.0;
-    for (auto p = static_cast<int>(begin); p < static_cast<int>(end); ++p) {
+    const int Q = m_solid.model.elements.points_per_tet;
+    for (int p = Q * static_cast<int>(begin); p < Q * static_cast<int>(end); ++p) {
       const Vec6 strain = m_solid.kinematics.strain().col(p);
       const Vec6 elastic = strain - state.solid.plastic_strain.col(p);
       sum += m_solid.materials.of(m_solid.model.elements.tet_of_point(p)).mu * m_solid.materials.weight()(p) *
@@ -129,7 +130,7 @@ void Economy::watch_strain(const BodyState& state) {
   };
   const auto sum = [&](bool by_strain) {
     return m_region.part().batches.sum(
-        m_solid.model.elements.num_points(),
+        m_solid.model.elements.num_tets(),
         [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return weigh(begin, end, by_strain); });
   };
   const double energy = sum(false);

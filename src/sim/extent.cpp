@@ -11,8 +11,8 @@ namespace {
 /// A region needs elements that go in lanes and a solve of part of the rows.
 std::optional<RegionObstacle> find_obstacle(const solid::SolidParams& p, bool is_isotropic) {
   using linear::SolverKind;
-  if (p.element != solid::ElementKind::p1 || !solid::find_law(p.model).lanes.forces || !is_isotropic)
-    return {{"is for p1 elements of the isotropic linear, corotational, hencky and curnier laws",
+  if (p.element == solid::ElementKind::p1_nodal || !solid::find_law(p.model).lanes.forces || !is_isotropic)
+    return {{"is for p1 and p2 elements of the isotropic linear, corotational, hencky and curnier laws",
              "change /dynamics or /material"}};
   if (p.integrator != solid::Integrator::backward_euler || p.iteration != solid::Iteration::one)
     return {{"takes one linearised solve of backward_euler",

@@ -13,7 +13,7 @@ PlasticFlow::PlasticFlow(const Params& params, const solid::Body& solid, const s
     : m_params(params), m_solid(solid), m_region(region) {
   m_split = find_law(params.solid.model).plastic_split;
   m_rule = material::make_flow_rule(params.plasticity, params.rates.step_seconds());
-  m_is_flowing.resize(static_cast<std::size_t>(solid.model.elements.num_points() / kLanes + 1), 0);
+  m_is_flowing.resize(static_cast<std::size_t>(solid.model.elements.num_tets() / kLanes + 1), 0);
   m_was_flowing = m_is_flowing;
 }
 
@@ -35,9 +35,17 @@ void PlasticFlow::serialize(Archive& archive) {
 
 double PlasticFlow::apply(TensorField& plastic_strain) {
   if (!m_params.plasticity.enabled || m_split == solid::PlasticSplit::none) return 0.0;
-  const double dissipated = m_region.part().batches.sum(
-      m_solid.model.elements.num_points(),
-      [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return apply_to_points(begin, end, plastic_strain); });
+  const solid::Elements& elements = m_solid.model.elements;
+  const double dissipated =
+      m_region.part().batches.sum(elements.num_tets(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        bool is_flowing = false;
+        double of_run = 0.0;
+        solid::each_points(elements, begin, end, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+          of_run += apply_to_points(first, last, plastic_strain, is_flowing);
+        });
+        m_is_flowing[static_cast<std::size_t>(begin / kLanes)] = is_flowing;
+        return of_run;
+      });
   m_is_anywhere = is_flowing_anywhere();
   return dissipated;
 }
@@ -48,7 +56,7 @@ bool PlasticFlow::is_driven() const {
          (!m_solid.materials.is_isotropic() || m_split == solid::PlasticSplit::multiplicative);
 }
 
-/// Does any run of points that moves?
+/// Does any run of tets that moves?
 bool PlasticFlow::is_flowing_anywhere() const {
   const std::vector<int>* batches = m_region.part().batches.list();
   if (!batches) return std::any_of(m_is_flowing.begin(), m_is_flowing.end(), [](char c) { return c != 0; });
@@ -57,13 +65,14 @@ bool PlasticFlow::is_flowing_anywhere() const {
 }
 
 /// Of at most kLanes points, which are not looked at one by one where none of them flows.
-double PlasticFlow::apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain) {
-  if (m_split == solid::PlasticSplit::logarithmic) return flow_by_law(begin, end, plastic_strain);
+double PlasticFlow::apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain,
+                                    bool& is_flowing) const {
+  if (m_split == solid::PlasticSplit::logarithmic) return flow_by_law(begin, end, plastic_strain, is_flowing);
   unsigned flowing =
       is_driven() ? (1U << (end - begin)) - 1U
                   : material::find_flowing(m_solid.kinematics.strain().data(), plastic_strain.data(),
                                            m_solid.materials.yield().data(), m_params.plasticity, begin, end);
-  m_is_flowing[static_cast<std::size_t>(begin / kLanes)] = flowing != 0;
+  is_flowing = is_flowing || flowing != 0;
   double dissipated = 0.0;
   for (; flowing != 0; flowing &= flowing - 1)
     dissipated += apply_to_point(static_cast<int>(begin) + std::countr_zero(flowing), plastic_strain);
@@ -71,13 +80,14 @@ double PlasticFlow::apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, Te
 }
 
 /// Of a law that lets them flow itself. Shape alone is released: μ V of the squares.
-double PlasticFlow::flow_by_law(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain) {
+double PlasticFlow::flow_by_law(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain,
+                                bool& is_flowing) const {
   double released[kLanes];
   unsigned flowed = find_law(m_params.solid.model)
                         .flow({m_solid.kinematics.strain().data(), plastic_strain.data(),
                                m_solid.materials.yield().data(), m_rule, m_solid.elastic.arrays()},
                               begin, end, released);
-  m_is_flowing[static_cast<std::size_t>(begin / kLanes)] = flowed != 0;
+  is_flowing = is_flowing || flowed != 0;
   double dissipated = 0.0;
   for (; flowed != 0; flowed &= flowed - 1) {
     const int lane = std::countr_zero(flowed);

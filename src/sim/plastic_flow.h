@@ -20,7 +20,7 @@ class PlasticFlow {
   double apply(TensorField& plastic_strain);
 
   bool is_anywhere() const { return m_is_anywhere; }  ///< in the last step
-  /// Of each run of kLanes points, in the last step.
+  /// Of each run of kLanes tets, in the last step.
   const std::vector<char>& is_flowing() const { return m_is_flowing; }
   /// Likewise, in the step before.
   const std::vector<char>& was_flowing() const { return m_was_flowing; }
@@ -31,8 +31,10 @@ class PlasticFlow {
  private:
   bool is_flowing_anywhere() const;
   bool is_driven() const;
-  double flow_by_law(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain);
-  double apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain);
+  double flow_by_law(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain,
+                     bool& is_flowing) const;
+  double apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain,
+                         bool& is_flowing) const;
   double apply_to_point(int point, TensorField& plastic_strain) const;
   Vec6 compute_flow(int point, const Vec6& before) const;
 

@@ -13,15 +13,15 @@ Body::Body(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vecto
       materials(model),
       committed(make_rest_state(model)),
       trial(committed),
-      kinematics(model.elements, params.model, has_lagging_frames(model), model.keeps_tet_stiffness(),
-                 threads),
-      elastic(model.has_logarithmic_tets() ? model.elements.num_tets() : 0),
+      kinematics(model.elements, params.model, has_lagging_frames(model), model.has_deformed_frames()),
+      elastic(model.elements, model.has_logarithmic_points()),
       system(model, materials),
       energies(model.elements) {
   const Eigen::Index num_nodes = model.elements.num_nodes();
   prediction.x_hat = prediction.held_x = committed.x;
   prediction.v_hat = committed.v;
   forces.corner.setZero(3, model.elements.nodes.size() + 1);
+  if (model.elements.points_per_tet > 1) forces.of_points.setZero(3, 4 * model.elements.num_points());
   forces.internal.setZero(3, num_nodes);
   scratch.product.setZero(3, num_nodes);
   scratch.left.resize(3, model.num_free());

@@ -23,10 +23,11 @@ void copy_motion(const Part& part, const SolidState& from, SolidState& to) {
 void copy_to_committed(Body& body, const Part& part, const SolidState& state,
                        const std::vector<char>& is_flowing) {
   copy_motion(part, state, body.committed);
-  part.batches.each(body.model.elements.num_points(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const std::ptrdiff_t Q = body.model.elements.points_per_tet;
+  part.batches.each(body.model.elements.num_tets(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     if (is_flowing.empty() || is_flowing[static_cast<std::size_t>(begin / kLanes)] != 0)
-      body.committed.plastic_strain.middleCols(begin, end - begin) =
-          state.plastic_strain.middleCols(begin, end - begin);
+      body.committed.plastic_strain.middleCols(Q * begin, Q * (end - begin)) =
+          state.plastic_strain.middleCols(Q * begin, Q * (end - begin));
   });
 }
 

@@ -20,7 +20,7 @@ void set_start(Body& body, ActiveRegion& region, const SolidState& state);
 void make_ready(Body& body, ActiveRegion& region, const SolidState& state, const Points& force);
 
 /// The step that led to `state` counts from now on; it flowed where `is_flowing` is set, of each run of
-/// kLanes points (empty: maybe anywhere).
+/// kLanes tets (empty: maybe anywhere).
 void commit(Body& body, ActiveRegion& region, const SolidState& state,
             const std::vector<char>& is_flowing = {});
 

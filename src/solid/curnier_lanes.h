@@ -4,9 +4,9 @@
 
 namespace argil::solid {
 
-// Curnier's law of 4-node tets, eight at a time; at one point: law_curnier.cpp.
+// Curnier's law at eight points at a time; at one: law_curnier.cpp.
 
-/// fᵢ = V P ∇Nᵢ of tets begin … end−1, at most kLanes of them.
+/// fᵢ = V P ∇Nᵢ of points begin … end−1, at most kLanes of them.
 void compute_curnier_forces(const ForceArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
 
 /// Their elastic energy V (μ E:E + ½ λ θ²) [J].

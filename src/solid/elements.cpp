@@ -10,10 +10,6 @@
 namespace argil::solid {
 namespace {
 
-/// Four points of degree 2 [Hammer1956]: one barycentric coordinate is a, the others are b.
-const double kPointFar = (5.0 + 3.0 * std::sqrt(5.0)) / 20.0;
-const double kPointNear = (5.0 - std::sqrt(5.0)) / 20.0;
-
 void lay_out_linear(const mesh::TetMesh& mesh, const mesh::Topology& topology, Elements& e) {
   e.rest = mesh.vertices;
   e.nodes = mesh.tets;
@@ -47,17 +43,27 @@ void lay_out_quadratic(const mesh::TetMesh& mesh, const mesh::Topology& topology
       e.node_corners[static_cast<std::size_t>(count[static_cast<std::size_t>(e.nodes(k, t))]++)] = 10 * t + k;
 }
 
-/// ∇N of the ten shape functions where the barycentric coordinates are L, from those of the four.
-void set_quadratic_gradient(const Mat34& g, const Vec4& L, Eigen::Ref<Eigen::Matrix<double, 3, 10>> out) {
-  for (int i = 0; i < 4; ++i) out.col(i) = (4.0 * L(i) - 1.0) * g.col(i);
+}  // namespace
+
+template <>
+Eigen::Matrix<double, 3, 4> find_node_gradients<4>(const Eigen::Matrix3Xd& gradient, Eigen::Index point) {
+  return gradient.middleCols<4>(4 * point);
+}
+
+template <>
+Eigen::Matrix<double, 3, 10> find_node_gradients<10>(const Eigen::Matrix3Xd& gradient, Eigen::Index point) {
+  const Mat34 g = gradient.middleCols<4>(4 * point);
+  Vec4 L = Vec4::Constant(kPointNear);
+  L(point % 4) = kPointFar;
+  Eigen::Matrix<double, 3, 10> of_nodes;
+  for (int i = 0; i < 4; ++i) of_nodes.col(i) = (4.0 * L(i) - 1.0) * g.col(i);
   for (int k = 0; k < 6; ++k) {
     const int a = mesh::kTetEdges[k][0];
     const int b = mesh::kTetEdges[k][1];
-    out.col(4 + k) = 4.0 * (L(a) * g.col(b) + L(b) * g.col(a));
+    of_nodes.col(4 + k) = 4.0 * (L(a) * g.col(b) + L(b) * g.col(a));
   }
+  return of_nodes;
 }
-
-}  // namespace
 
 Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology, ElementKind kind) {
   Elements e;
@@ -69,7 +75,7 @@ Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology
   const int N = e.nodes_per_tet;
   const int Q = e.points_per_tet;
   e.weight.resize(static_cast<Eigen::Index>(Q) * mesh.num_tets());
-  e.gradient.resize(3, N * e.weight.size());
+  e.gradient.resize(3, 4 * e.weight.size());
   e.node_volume.setZero(e.num_nodes());
   e.shape_volume.setZero(e.num_nodes());
   for (Eigen::Index t = 0; t < mesh.num_tets(); ++t) {
@@ -82,15 +88,7 @@ Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology
       e.node_volume(e.nodes(i, t)) += tet.volume * e.mass_share(i);
       e.shape_volume(e.nodes(i, t)) += tet.volume * e.shape_share(i);
     }
-    if (kind != ElementKind::p2) {
-      e.gradient.middleCols<4>(4 * t) = tet.gradient;
-      continue;
-    }
-    for (int q = 0; q < Q; ++q) {
-      Vec4 L = Vec4::Constant(kPointNear);
-      L(q) = kPointFar;
-      set_quadratic_gradient(tet.gradient, L, e.gradient.middleCols<10>(10 * (Q * t + q)));
-    }
+    for (Eigen::Index p = Q * t; p < Q * (t + 1); ++p) e.gradient.middleCols<4>(4 * p) = tet.gradient;
   }
   return e;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
+#include "base/lanes.h"
 #include "mesh/topology.h"
 #include "solid/parameters.h"
 
@@ -14,7 +16,7 @@ struct Elements {
   Points rest;                    ///< 3×n nodes [m]; the mesh's vertices come first
   Eigen::MatrixXi nodes;          ///< N×m node numbers, corners first
   Field weight;                   ///< volume of each point [m³], tet by tet; sums to the rest volume
-  Eigen::Matrix3Xd gradient;      ///< ∇N [1/m]: N columns a point
+  Eigen::Matrix3Xd gradient;      ///< ∇λ [1/m] of the barycentric coordinates: four columns a point
   Field node_volume;              ///< lumped rest volume of each node [m³]
   Field shape_volume;             ///< ∫Nᵢ dV [m³]: carries body forces; p2's corners below 0
   std::vector<int> node_begin;    ///< n+1: where each node's corners begin in node_corners
@@ -37,6 +39,22 @@ struct Elements {
   double mass_share(int i) const { return nodes_per_tet == 4 ? 0.25 : (i < 4 ? 6.0 : 32.0) / 216.0; }
   double shape_share(int i) const { return nodes_per_tet == 4 ? 0.25 : (i < 4 ? -0.05 : 0.2); }
 };
+
+/// Four points of degree 2 [Hammer1956]: one barycentric coordinate of each is far, the others are near.
+inline constexpr double kPointFar = 0.58541019662496845446;
+inline constexpr double kPointNear = 0.13819660112501051518;
+
+/// ∇N [1/m] of the N nodes of a tet at a point, from `gradient`, ∇λ there.
+template <int N>
+Eigen::Matrix<double, 3, N> find_node_gradients(const Eigen::Matrix3Xd& gradient, Eigen::Index point);
+
+/// body(begin, end) for the points of tets begin … end−1 of a run, kLanes at a time.
+template <class Body>
+void each_points(const Elements& elements, std::ptrdiff_t begin, std::ptrdiff_t end, Body body) {
+  const std::ptrdiff_t last = elements.points_per_tet * end;
+  for (std::ptrdiff_t p = elements.points_per_tet * begin; p < last; p += kLanes)
+    body(p, std::min<std::ptrdiff_t>(p + kLanes, last));
+}
 
 /// p1, p1_nodal: one point, mass in quarters. p2: four points, which is exact for straight-sided tets; mass
 /// lumped in proportion to the consistent diagonal [Hinton1976], so that no node has a negative one.

@@ -30,7 +30,7 @@ double compute_elastic_energy(const Strained& body, Field& change) {
   NodalVolume* nodal = body.materials.nodal();
   if (has_plain_tets(body.model, body.materials) && !nodal) {
     const ForceArrays tets = make_force_arrays(body, nullptr);
-    const std::ptrdiff_t count = body.model.elements.num_tets();
+    const std::ptrdiff_t count = body.model.elements.num_points();
     const auto compute = find_law(body.law()).lanes.energy;
     return ordered_sum((count + kLanes - 1) / kLanes, [&](std::ptrdiff_t batch) {
       return compute(tets, batch * kLanes, std::min((batch + 1) * kLanes, count));
@@ -56,7 +56,7 @@ StrainSummary summarise(const Strained& body, EnergySums& sums, Field& change) {
   if (!has_plain_tets(body.model, body.materials) || body.materials.nodal())
     return {compute_elastic_energy(body, change), find_largest(0, plastic_strain.cols())};
   const ForceArrays tets = make_force_arrays(body, nullptr);
-  const std::ptrdiff_t num_tets = body.model.elements.num_tets();
+  const Elements& elements = body.model.elements;
   const auto is_new = [&sums](std::ptrdiff_t batch) {
     return sums.is_batch_new.begin() + std::min<std::ptrdiff_t>(batch, std::ssize(sums.is_batch_new));
   };
@@ -69,10 +69,15 @@ StrainSummary summarise(const Strained& body, EnergySums& sums, Field& change) {
     for (auto at = begin; at != end; ++at) {
       const std::ptrdiff_t batch = at - sums.is_batch_new.begin();
       if (*at != 0) {
+        double of_batch = 0.0, largest_of_batch = 0.0;
         const std::ptrdiff_t first = batch * kLanes;
-        const std::ptrdiff_t last = std::min(first + kLanes, num_tets);
-        sums.batch_energy(batch) = find_law(body.law()).lanes.energy(tets, first, last);
-        sums.batch_plastic_strain(batch) = find_largest(first, last);
+        each_points(elements, first, std::min<std::ptrdiff_t>(first + kLanes, elements.num_tets()),
+                    [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+                      of_batch += find_law(body.law()).lanes.energy(tets, from, to);
+                      largest_of_batch = std::max(largest_of_batch, find_largest(from, to));
+                    });
+        sums.batch_energy(batch) = of_batch;
+        sums.batch_plastic_strain(batch) = largest_of_batch;
         *at = 0;
       }
       energy += sums.batch_energy(batch);

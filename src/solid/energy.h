@@ -13,7 +13,7 @@ struct StrainSummary {
   double largest_plastic_strain = 0.0;  ///< ‖ε_p‖
 };
 
-/// Energies of runs of kLanes 4-node tets, found anew only where they moved.
+/// Energies of runs of kLanes tets, found anew only where they moved.
 struct EnergySums {
   explicit EnergySums(const Elements& elements);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "solid/quadratic_lanes.h"
 
 namespace argil::solid {
 namespace {
@@ -21,7 +22,7 @@ void set_corner_forces(const Strained& body, Eigen::Matrix3Xd& corner_force) {
       const Mat3 P =
           body.materials.weight()(p) *
           compute_piola(body.law(), body.kinematics.at(static_cast<int>(p)), body.plastic_strain.col(p), e);
-      force.noalias() += P * body.materials.gradient().middleCols<N>(N * p);
+      force.noalias() += P * find_node_gradients<N>(body.materials.gradient(), p);
     }
     corner_force.middleCols<N>(N * t) = force;
   });
@@ -50,9 +51,14 @@ void assemble_forces(const Strained& body, const Part& part, Forces& forces) {
   update_volume_change(body, forces.volume);
   const Elements& elements = body.model.elements;
   if (has_plain_tets(body.model, body.materials)) {
-    const ForceArrays tets = make_force_arrays(body, forces.corner.data());
+    const bool is_quadratic = elements.nodes_per_tet == 10;
+    const ForceArrays points =
+        make_force_arrays(body, is_quadratic ? forces.of_points.data() : forces.corner.data());
     part.batches.each(elements.num_tets(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      find_law(body.law()).lanes.forces(tets, begin, end);
+      each_points(elements, begin, end, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        find_law(body.law()).lanes.forces(points, first, last);
+      });
+      if (is_quadratic) set_node_forces(forces.of_points.data(), begin, end, forces.corner.data());
     });
   } else if (elements.nodes_per_tet == 4) {
     set_corner_forces<4>(body, forces.corner);

@@ -7,9 +7,10 @@ namespace argil::solid {
 
 /// Internal forces at the present iterate.
 struct Forces {
-  Eigen::Matrix3Xd corner;  ///< of each corner, N columns a tet, and one more [N]
-  Points internal;          ///< 3×n: their sum at each node [N]
-  VolumeChange volume;      ///< p1_nodal
+  Eigen::Matrix3Xd corner;     ///< of each corner, N columns a tet, and one more [N]
+  Eigen::Matrix3Xd of_points;  ///< p2: V P ∇λ of each point, four columns a point [N]
+  Points internal;             ///< 3×n: their sum at each node [N]
+  VolumeChange volume;         ///< p1_nodal
 };
 
 /// Derivative of the elastic energy by the nodes' positions, of the nodes of `part`. `body` is strained with

@@ -78,18 +78,18 @@ double find_frame_tolerance(const Body& body) {
   // A deformation that lags leaves a share of what the step adds, a rotation one of all that damping holds.
   constexpr double kOfDeformation = 10.0;
   const double tolerance = body.model.params.solver.tolerance;
-  if (body.model.keeps_tet_stiffness()) return std::min(kLargest, kOfDeformation * tolerance);
+  if (body.model.has_deformed_frames()) return std::min(kLargest, kOfDeformation * tolerance);
   return std::min(kLargest, std::max(tolerance, body.history.frame_lag.slack));
 }
 
 bool has_lagging_frames(const Model& model) {
   const SolidParams& params = model.params;
-  return model.elements.nodes_per_tet == 4 && params.iteration != Iteration::newton &&
-         !linear::is_direct(params.solver.kind) && params.solver.tolerance > 0.0;
+  return params.iteration != Iteration::newton && !linear::is_direct(params.solver.kind) &&
+         params.solver.tolerance > 0.0;
 }
 
 bool may_lag_further(const Body& body) {
-  return has_plain_tets(body.model, body.materials) && find_law(body.model.params.model).is_quadratic &&
+  return has_isotropic_tets(body.model, body.materials) && find_law(body.model.params.model).is_quadratic &&
          find_frame_tolerance(body) > 0.0;
 }
 

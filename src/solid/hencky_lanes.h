@@ -5,9 +5,9 @@
 
 namespace argil::solid {
 
-// Hencky's law of 4-node tets, eight at a time; at one point: law_hencky.cpp.
+// Hencky's law at eight points at a time; at one: law_hencky.cpp.
 
-/// fᵢ = V P ∇Nᵢ, P = τ F⁻ᵀ, of tets begin … end−1, at most kLanes of them.
+/// fᵢ = V P ∇Nᵢ, P = τ F⁻ᵀ, of points begin … end−1, at most kLanes of them.
 void compute_hencky_forces(const ForceArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
 
 /// Their elastic energy V (μ ε:ε + ½ λ (tr ε)²) [J].

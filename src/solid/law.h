@@ -72,12 +72,12 @@ struct ElasticLaw {
   /// ∂P/∂F without its negative modes, where the law knows a way; else null.
   Function<Mat9> positive_tangent;
 
-  /// Of isotropic 4-node tets begin … end−1, which go eight at a time: forces, energy, and the stiffness of a
-  /// law that is not quadratic. All null: point by point.
+  /// Of isotropic points begin … end−1, which go eight at a time: forces, energy and stiffness. All null:
+  /// point by point.
   struct Lanes {
-    void (*forces)(const ForceArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
-    double (*energy)(const ForceArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
-    void (*stiffness)(const TangentArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
+    void (*forces)(const ForceArrays& points, std::ptrdiff_t begin, std::ptrdiff_t end);
+    double (*energy)(const ForceArrays& points, std::ptrdiff_t begin, std::ptrdiff_t end);
+    void (*stiffness)(const TangentArrays& points, std::ptrdiff_t begin, std::ptrdiff_t end);
   } lanes;
 };
 

@@ -83,7 +83,7 @@ constexpr ElasticLaw kCorotationalLaw{
     .volume_gradient = compute_trace_gradient,
     .flow = nullptr,
     .positive_tangent = nullptr,
-    .lanes = {compute_corner_forces, compute_energy, nullptr},
+    .lanes = {compute_corner_forces, compute_energy, compute_kept_stiffness},
 };
 
 }  // namespace argil::solid

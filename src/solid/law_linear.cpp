@@ -47,7 +47,7 @@ constexpr ElasticLaw kLinearLaw{
     .volume_gradient = compute_trace_gradient,
     .flow = nullptr,
     .positive_tangent = nullptr,
-    .lanes = {compute_corner_forces, compute_energy, nullptr},
+    .lanes = {compute_corner_forces, compute_energy, compute_kept_stiffness},
 };
 
 }  // namespace argil::solid

@@ -73,9 +73,14 @@ double MotionLimiter::find_margin(const SolidState& state, int tet) const {
   for (int p = tet * elements.points_per_tet; p < (tet + 1) * elements.points_per_tet; ++p) {
     Mat3 before = Mat3::Zero();
     Mat3 after = Mat3::Zero();
+    Eigen::Matrix<double, 3, 10> of_nodes;
+    if (elements.nodes_per_tet == 4)
+      of_nodes.leftCols<4>() = find_node_gradients<4>(gradient, p);
+    else
+      of_nodes = find_node_gradients<10>(gradient, p);
     for (int i = 0; i < elements.nodes_per_tet; ++i) {
       const int node = elements.nodes(i, tet);
-      const auto at = gradient.col(static_cast<Eigen::Index>(p) * elements.nodes_per_tet + i).transpose();
+      const auto at = of_nodes.col(i).transpose();
       before += m_body.committed.x.col(node) * at;
       after += find_place(state, node, m_share[static_cast<std::size_t>(node)]) * at;
     }

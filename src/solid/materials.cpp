@@ -15,6 +15,10 @@ Materials::Materials(const Model& model)
   m_lambda.setZero(num_tets);
   m_mu.setZero(num_tets);
   m_yield.setZero(model.elements.num_points());
+  if (model.elements.points_per_tet > 1) {
+    m_point_lambda.setZero(m_yield.size());
+    m_point_mu.setZero(m_yield.size());
+  }
   if (!model.has_nodal_volume()) return;
   m_own_lambda.setZero(num_tets);
   m_excess_bulk.setZero(num_tets);
@@ -26,6 +30,10 @@ void Materials::set_moduli(int tet, const TetMaterial& material) {
   m_mu(tet) = material.mu;
   const Eigen::Index Q = m_model.elements.points_per_tet;
   m_yield.segment(Q * tet, Q).setConstant(material.yield);
+  if (Q > 1) {
+    m_point_lambda.segment(Q * tet, Q).setConstant(material.lambda);
+    m_point_mu.segment(Q * tet, Q).setConstant(material.mu);
+  }
   if (!m_C.empty()) {
     m_C[static_cast<std::size_t>(tet)] = make_isotropic_stiffness(material.lambda, material.mu);
     m_shape_stiffness[static_cast<std::size_t>(tet)] = 2.0 * material.mu;
@@ -56,7 +64,7 @@ void Materials::set_swelling(int tet, double volume_ratio) {
     m_swollen_weight = dry.weight;
   }
   const Eigen::Index Q = dry.points_per_tet;
-  const Eigen::Index columns = Q * dry.nodes_per_tet;
+  const Eigen::Index columns = 4 * Q;
   m_swollen_gradient.middleCols(columns * tet, columns) =
       dry.gradient.middleCols(columns * tet, columns) / std::cbrt(volume_ratio);
   m_swollen_weight.segment(Q * tet, Q) = volume_ratio * dry.weight.segment(Q * tet, Q);

@@ -43,13 +43,16 @@ class Materials {
 
   const Field& lambda() const { return m_lambda; }  ///< of each tet [Pa]
   const Field& mu() const { return m_mu; }          ///< of each tet [Pa]
-  /// λ that a tet keeps to itself [Pa]: without p1_nodal's excess, which is κ [Pa].
-  const Field& own_lambda() const { return m_nodal ? m_own_lambda : m_lambda; }
+  /// Of each point [Pa]; λ that a tet keeps to itself: without p1_nodal's excess, which is κ [Pa].
+  const Field& point_lambda() const {
+    return m_nodal ? m_own_lambda : m_point_lambda.size() > 0 ? m_point_lambda : m_lambda;
+  }
+  const Field& point_mu() const { return m_point_mu.size() > 0 ? m_point_mu : m_mu; }
   const Field& excess_bulk() const { return m_excess_bulk; }
   const Field& yield() const { return m_yield; }  ///< of each point: elastic strain norm [–]
 
   // Of the shape at rest as it has grown; forces and energy are those of it.
-  /// ∇N [1/m]: as many columns a point as it has nodes.
+  /// ∇λ [1/m] of the barycentric coordinates, four columns a point (find_node_gradients).
   const Eigen::Matrix3Xd& gradient() const {
     return m_swollen_weight.size() > 0 ? m_swollen_gradient : m_model.elements.gradient;
   }
@@ -66,6 +69,7 @@ class Materials {
  private:
   const Model& m_model;
   Field m_lambda, m_mu, m_yield;
+  Field m_point_lambda, m_point_mu;   // where a tet has several
   Field m_own_lambda, m_excess_bulk;  // p1_nodal
   std::vector<Mat6> m_C;              // empty while every tet is isotropic, as is the next
   std::vector<double> m_shape_stiffness;

@@ -10,6 +10,7 @@
 #include "solid/body.h"
 #include "solid/element.h"
 #include "solid/hencky_lanes.h"
+#include "solid/quadratic_lanes.h"
 
 namespace argil::solid {
 namespace {
@@ -32,27 +33,36 @@ Mat3 compute_anisotropic_block(const Vec3& gi, const Vec3& gj, const Mat3& R, co
 }
 
 bool takes_pairs(const Body& body) {
-  return body.model.keeps_tet_stiffness() && !body.prediction.is_static;
+  return body.model.keeps_tet_stiffness() && body.materials.is_isotropic() && !body.prediction.is_static;
 }
 
 /// Stiffness of tets that have changed, which all lie in the part, or of all.
 void set_pairs(Body& body, const Part& part, bool all) {
   const MatrixShares share = compute_shares(body);
   System& system = body.system;
-  const TangentArrays tets{body.materials.gradient().data(),
-                           body.kinematics.frame().data(),
-                           body.plastic_strain->data(),
-                           body.materials.weight().data(),
-                           body.materials.own_lambda().data(),
-                           body.materials.mu().data(),
-                           share.exact,
-                           share.kept,
-                           system.pairs.data(),
-                           body.model.params.flows_in_solve ? body.materials.yield().data() : nullptr};
+  const Elements& elements = body.model.elements;
+  const bool is_quadratic = elements.nodes_per_tet == 10;
+  const TangentArrays points{body.materials.gradient().data(),
+                             body.kinematics.frame().data(),
+                             body.plastic_strain->data(),
+                             body.materials.weight().data(),
+                             body.materials.point_lambda().data(),
+                             body.materials.point_mu().data(),
+                             share.exact,
+                             share.kept,
+                             is_quadratic ? system.point_pairs.data() : system.pairs.data(),
+                             body.model.params.flows_in_solve ? body.materials.yield().data() : nullptr};
   const auto set = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    const auto first = system.is_tet_changed.begin() + begin, last = system.is_tet_changed.begin() + end;
-    if (all || std::find(first, last, char{1}) != last)
-      find_law(body.model.params.model).lanes.stiffness(tets, begin, end);
+    const auto is_changed = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+      const auto first = system.is_tet_changed.begin() + from, last = system.is_tet_changed.begin() + to;
+      return all || std::find(first, last, char{1}) != last;
+    };
+    const std::ptrdiff_t Q = elements.points_per_tet;
+    each_points(elements, begin, end, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+      if (!is_changed(first / Q, last / Q)) return;
+      find_law(body.model.params.model).lanes.stiffness(points, first, last);
+      if (is_quadratic) set_node_pairs(system.point_pairs.data(), first / Q, last / Q, system.pairs.data());
+    });
   };
   if (all)
     OrderedRuns(body.model.threads).each(body.model.elements.num_tets(), set);
@@ -101,29 +111,26 @@ void mark_rows(Body& body, const Part& part, bool all) {
 template <int N>
 void add_point(const Body& body, const MatrixShares& share, const Elasticity& e, Eigen::Index p, int i,
                const int* blocks, linear::BlockMatrix& matrix) {
-  const Eigen::Matrix3Xd& turned = body.kinematics.turned_gradient();
-  const Eigen::Matrix3Xd& gradient = body.materials.gradient();
+  const Eigen::Matrix<double, 3, N> gradient = find_node_gradients<N>(body.materials.gradient(), p);
   const double weight = body.materials.weight()(p);
   if (share.kept != 0.0 && !e.C) {
-    const Vec3 ci = turned.col(N * p + i);
+    const Eigen::Matrix<double, 3, N> turned = find_node_gradients<N>(body.kinematics.turned_gradient(), p);
+    const Vec3 ci = turned.col(i);
     const double lambda = share.kept * weight * e.lambda;
     const double mu = share.kept * weight * e.mu;
     for (int j = 0; j < N; ++j)
-      if (blocks[j] >= 0)
-        matrix.block(blocks[j]) += compute_isotropic_block(ci, turned.col(N * p + j), lambda, mu);
+      if (blocks[j] >= 0) matrix.block(blocks[j]) += compute_isotropic_block(ci, turned.col(j), lambda, mu);
   } else if (share.kept != 0.0) {
     const Mat3 R = kept_rotation(body, static_cast<int>(p));
     for (int j = 0; j < N; ++j)
       if (blocks[j] >= 0)
         matrix.block(blocks[j]) +=
-            share.kept * weight *
-            compute_anisotropic_block(gradient.col(N * p + i), gradient.col(N * p + j), R, *e.C);
+            share.kept * weight * compute_anisotropic_block(gradient.col(i), gradient.col(j), R, *e.C);
   }
   if (share.exact == 0.0) return;
   const Mat9 A = share.exact * weight * body.system.tangent.col(p).reshaped(9, 9);
   for (int j = 0; j < N; ++j)
-    if (blocks[j] >= 0)
-      matrix.block(blocks[j]) += compute_tangent_block(gradient.col(N * p + i), A, gradient.col(N * p + j));
+    if (blocks[j] >= 0) matrix.block(blocks[j]) += compute_tangent_block(gradient.col(i), A, gradient.col(j));
 }
 
 void clear_row(std::size_t row, linear::BlockMatrix& matrix) {
@@ -151,6 +158,7 @@ void gather_row(Body& body, int row, const MatrixShares& share) {
 }
 
 /// Of a row that is too long for set_row_of_pairs.
+template <int N>
 void gather_pairs(Body& body, int row) {
   const Elements& elements = body.model.elements;
   linear::BlockMatrix& matrix = body.system.matrix;
@@ -159,13 +167,13 @@ void gather_pairs(Body& body, int row) {
   const auto node = static_cast<std::size_t>(body.model.node_of_row[r]);
   for (int c = elements.node_begin[node]; c < elements.node_begin[node + 1]; ++c) {
     const int corner = elements.node_corners[static_cast<std::size_t>(c)];
-    const int i = corner % 4;
-    for (int j = 0; j < 4; ++j) {
+    const int i = corner % N;
+    for (int j = 0; j < N; ++j) {
       if (j == i) continue;
-      const Eigen::Index pair = kPairBlocks * static_cast<Eigen::Index>(corner / 4) + find_pair(i, j);
+      const Eigen::Index pair = N * (N - 1) / 2 * static_cast<Eigen::Index>(corner / N) + find_pair<N>(i, j);
       const Mat3 stored = body.system.pairs.col(pair).reshaped(3, 3);
       const Mat3 block = i < j ? stored : Mat3(stored.transpose());
-      const int place = body.system.block_of_corner_pair[static_cast<std::size_t>(4 * corner + j)];
+      const int place = body.system.block_of_corner_pair[static_cast<std::size_t>(N * corner + j)];
       if (place >= 0) matrix.block(place) += block;
       matrix.block(matrix.diagonal[r]) -= block;
     }
@@ -180,16 +188,17 @@ void assemble_rows(Body& body, const Part& part) {
   linear::BlockMatrix& matrix = system.matrix;
   const MatrixShares share = compute_shares(body);
   const bool has_pairs = takes_pairs(body);
-  const bool keeps_rest = elements.nodes_per_tet == 4 && !system.has_nodal_blocks(body.materials) &&
-                          share == system.stored_shares && (share.exact == 0.0 || has_pairs);
+  const bool keeps_rest = (elements.nodes_per_tet == 4 || has_pairs) &&
+                          !system.has_nodal_blocks(body.materials) && share == system.stored_shares &&
+                          (share.exact == 0.0 || has_pairs);
   if (has_pairs) set_pairs(body, part, !keeps_rest);
   mark_rows(body, part, !keeps_rest);
   system.stored_shares = share;
   const bool is_simple = has_isotropic_tets(body.model, body.materials) && share.exact == 0.0;
   const RowArrays rows{body.kinematics.turned_gradient().data(),
                        body.materials.weight().data(),
-                       body.materials.own_lambda().data(),
-                       body.materials.mu().data(),
+                       body.materials.point_lambda().data(),
+                       body.materials.point_mu().data(),
                        share.kept,
                        elements.node_corners.data(),
                        system.block_of_corner_pair.data(),
@@ -202,12 +211,14 @@ void assemble_rows(Body& body, const Part& part) {
     const auto node = static_cast<std::size_t>(body.model.node_of_row[r]);
     const int begin = matrix.row_begin[r];
     const int num_blocks = matrix.row_begin[r + 1] - begin;
-    if (has_pairs && num_blocks <= kLongestRow)
-      set_row_of_pairs(pair_rows, elements.node_begin[node], elements.node_begin[node + 1], begin,
-                       num_blocks);
+    const bool is_quadratic = elements.nodes_per_tet == 10;
+    const bool is_short = num_blocks <= (is_quadratic ? kLongestQuadraticRow : kLongestRow);
+    if (has_pairs && is_short)
+      (is_quadratic ? set_row_of_quadratic_pairs : set_row_of_pairs)(
+          pair_rows, elements.node_begin[node], elements.node_begin[node + 1], begin, num_blocks);
     else if (has_pairs)
-      gather_pairs(body, static_cast<int>(row));
-    else if (is_simple && num_blocks <= kLongestRow)
+      (is_quadratic ? gather_pairs<10> : gather_pairs<4>)(body, static_cast<int>(row));
+    else if (is_simple && is_short)
       set_isotropic_row(rows, elements.node_begin[node], elements.node_begin[node + 1], begin, num_blocks);
     else if (elements.nodes_per_tet == 4)
       gather_row<4>(body, static_cast<int>(row), share);

@@ -49,14 +49,19 @@ Model::Model(const mesh::TetMesh& mesh, const mesh::Topology& topology, std::vec
 }
 
 bool Model::keeps_tet_stiffness() const {
-  return find_law(params.model).lanes.stiffness && params.element != ElementKind::p2 &&
-         params.iteration == Iteration::one && !has_only_diagonal();
+  const ElasticLaw& law = find_law(params.model);
+  const bool has_no_other_way = !law.is_quadratic || params.element == ElementKind::p2;
+  return law.lanes.stiffness && has_no_other_way && params.iteration == Iteration::one &&
+         !has_only_diagonal();
 }
 
-bool Model::has_logarithmic_tets() const {
+bool Model::has_deformed_frames() const {
+  return keeps_tet_stiffness() && !find_law(params.model).is_quadratic;
+}
+
+bool Model::has_logarithmic_points() const {
   const ElasticLaw& law = find_law(params.model);
-  return params.element != ElementKind::p2 && law.lanes.forces &&
-         law.plastic_split == PlasticSplit::logarithmic;
+  return law.lanes.forces && law.plastic_split == PlasticSplit::logarithmic;
 }
 
 Vec3 find_free_part(const Model& model, const Vec3& force, Eigen::Index node) {

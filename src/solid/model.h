@@ -33,8 +33,10 @@ struct Model {
   /// Is the stiffness of each tet kept, from which rows are gathered? Where it changes with the strain, in
   /// steps with one linearisation.
   bool keeps_tet_stiffness() const;
-  /// Do 4-node tets find their elastic strain by a logarithm?
-  bool has_logarithmic_tets() const;
+  /// Does it follow the deformation, not the rotation alone?
+  bool has_deformed_frames() const;
+  /// Do points find their elastic strain by a logarithm?
+  bool has_logarithmic_points() const;
   bool has_nodal_volume() const { return params.element == ElementKind::p1_nodal; }
   /// Does the matrix hold its diagonal blocks alone?
   bool has_only_diagonal() const { return params.solver.kind == linear::SolverKind::pcg_matrix_free; }

@@ -1,11 +1,12 @@
 #pragma once
 
-// Stiffness of 4-node tets of an isotropic law of large strain, eight side by side.
+// Stiffness of points of an isotropic law, eight side by side.
 
 #include <algorithm>
 
 #include "base/mandel.h"
 #include "solid/lane_algebra.h"
+#include "solid/polar_newton.h"
 #include "solid/principal_tangent.h"
 #include "solid/tet_lanes.h"
 
@@ -53,6 +54,15 @@ ARGIL_INLINE void write_blocks(const Lanes* blocks, std::ptrdiff_t begin, std::p
   write_rows<6>(eight, kCount, first + k);
 }
 
+/// λ cᵢ⊗cⱼ + μ cⱼ⊗cᵢ + μ cᵢ·cⱼ 1.
+ARGIL_INLINE void add_kept_block(const Lanes& lambda, const Lanes& mu, const Lanes* ci, const Lanes* cj,
+                                 Real33<Lanes>& block) {
+  const Lanes dot = mu * (ci[0] * cj[0] + ci[1] * cj[1] + ci[2] * cj[2]);
+  for (int s = 0; s < 3; ++s)
+    for (int r = 0; r < 3; ++r) block.m[3 * s + r] += lambda * (ci[r] * cj[s]) + mu * (cj[r] * ci[s]);
+  for (int k = 0; k < 3; ++k) block.m[4 * k] += dot;
+}
+
 /// A block of the stiffness in the directions of b. g: ∇N after the motion; c: at rest, turned.
 struct PairBlock {
   const PrincipalTangent<Lanes>& tangent;
@@ -77,12 +87,7 @@ struct PairBlock {
     for (int s = 0; flows && s < 3; ++s)
       for (int r = 0; r < 3; ++r)
         block.m[3 * s + r] -= (tangent.spent[r] * gi[r]) * (tangent.spent[s] * gj[s]);
-    if (!has_kept) return;
-    const Lanes dot = kept_mu * (ci[0] * cj[0] + ci[1] * cj[1] + ci[2] * cj[2]);
-    for (int s = 0; s < 3; ++s)
-      for (int r = 0; r < 3; ++r)
-        block.m[3 * s + r] += kept_lambda * (ci[r] * cj[s]) + kept_mu * (cj[r] * ci[s]);
-    for (int k = 0; k < 3; ++k) block.m[4 * k] += dot;
+    if (has_kept) add_kept_block(kept_lambda, kept_mu, ci, cj, block);
   }
 };
 

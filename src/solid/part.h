@@ -13,7 +13,7 @@ struct Part {
   OrderedRuns rows;       ///< of the system, that are solved for
   OrderedRuns near_rows;  ///< and those that tets around these rows pull at
   OrderedItems nodes;     ///< of tets that may move
-  OrderedRuns batches;    ///< of kLanes tets that may move; of 4-node tets also their points
+  OrderedRuns batches;    ///< of kLanes tets that may move (each_points: their points)
 };
 
 static_assert(OrderedRuns::kLength == kLanes);
@@ -23,7 +23,7 @@ inline Part::Part(const Model& model)
   rows.prepare(model.num_free());
   near_rows.prepare(model.num_free());
   nodes.prepare(model.elements.num_nodes());
-  batches.prepare(model.elements.num_points());
+  batches.prepare(model.elements.num_tets());
 }
 
 }  // namespace argil::solid

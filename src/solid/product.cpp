@@ -33,9 +33,9 @@ class CornerProduct {
   Mat3 displacement_gradient(std::ptrdiff_t p) const {
     const Elements& elements = m_body.model.elements;
     const int tet = elements.tet_of_point(static_cast<int>(p));
+    const Eigen::Matrix<double, 3, N> gradient = find_node_gradients<N>(m_body.materials.gradient(), p);
     Mat3 H = Mat3::Zero();
-    for (int i = 0; i < N; ++i)
-      H.noalias() += m_u.col(elements.nodes(i, tet)) * m_body.materials.gradient().col(N * p + i).transpose();
+    for (int i = 0; i < N; ++i) H.noalias() += m_u.col(elements.nodes(i, tet)) * gradient.col(i).transpose();
     return H;
   }
   /// p1_nodal: the nodes' mean volume change.
@@ -73,7 +73,8 @@ class CornerProduct {
     for (int q = 0; q < Q; ++q) {
       const std::ptrdiff_t p = Q * t + q;
       const Mat3 P = compute_piola(t, p, e);
-      force.noalias() += m_body.materials.weight()(p) * P * m_body.materials.gradient().middleCols<N>(N * p);
+      force.noalias() +=
+          m_body.materials.weight()(p) * P * find_node_gradients<N>(m_body.materials.gradient(), p);
     }
     m_body.forces.corner.middleCols<N>(N * t) = force;
   }

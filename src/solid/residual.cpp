@@ -22,6 +22,16 @@ double gravity_mass(const Body& body, Eigen::Index node) {
   return body.prediction.is_static ? body.materials.static_mass()(node) : body.materials.mass()(node);
 }
 
+/// ‖∇N‖ of a node at a point, or of all nodes [1/m].
+double find_gradient_norm(const Elements& elements, const Eigen::Matrix3Xd& gradient, Eigen::Index point,
+                          int node = -1) {
+  const auto find = [node](const auto& of_nodes) {
+    return node < 0 ? of_nodes.norm() : of_nodes.col(node).norm();
+  };
+  return elements.nodes_per_tet == 4 ? find(find_node_gradients<4>(gradient, point))
+                                     : find(find_node_gradients<10>(gradient, point));
+}
+
 /// What rounding alone may leave of the sum of internal forces at each node [N]: that of its tets' corner
 /// forces, and of positions, ε |x| times their stiffness, as independent errors. Nothing smaller can be asked
 /// for, and a body at rest has nothing else. By nodes, so that a stiff or thin tet does not speak for the
@@ -46,8 +56,8 @@ void set_rounding(Body& body) {
       double stiffness = 0.0;
       for (Eigen::Index p = Q * (corner / N); p < Q * (corner / N + 1); ++p)
         stiffness += (material.lambda + 2.0 * material.mu) * materials.weight()(p) *
-                     materials.gradient().col(N * p + corner % N).norm() *
-                     materials.gradient().middleCols(N * p, N).norm();
+                     find_gradient_norm(elements, materials.gradient(), p, corner % N) *
+                     find_gradient_norm(elements, materials.gradient(), p);
       squares +=
           std::pow(rounding * stiffness, 2) + std::pow(kRounding * body.forces.corner.col(corner).norm(), 2);
     }

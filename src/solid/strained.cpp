@@ -19,7 +19,7 @@ bool has_isotropic_tets(const Model& model, const Materials& materials) {
 }
 
 bool has_plain_tets(const Model& model, const Materials& materials) {
-  return has_isotropic_tets(model, materials) && find_law(model.params.model).lanes.forces;
+  return materials.is_isotropic() && find_law(model.params.model).lanes.forces;
 }
 
 ForceArrays make_force_arrays(const Strained& body, double* corner_force) {
@@ -28,8 +28,8 @@ ForceArrays make_force_arrays(const Strained& body, double* corner_force) {
           body.kinematics.strain().data(),
           body.plastic_strain.data(),
           body.materials.weight().data(),
-          body.materials.own_lambda().data(),
-          body.materials.mu().data(),
+          body.materials.point_lambda().data(),
+          body.materials.point_mu().data(),
           body.materials.nodal() ? body.volume.pressure.data() : nullptr,
           find_law(body.law()).is_linear,
           corner_force,

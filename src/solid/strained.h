@@ -28,12 +28,12 @@ struct Strained {
   Mat3 volume_gradient(int tet) const;
 };
 
-/// 4-node tets of an isotropic law: those that go eight at a time.
+/// Are all 4-node tets of an isotropic law?
 bool has_isotropic_tets(const Model& model, const Materials& materials);
-/// And of a law whose forces and energies do.
+/// Do the points of all tets go eight at a time for forces and energies?
 bool has_plain_tets(const Model& model, const Materials& materials);
 
-/// Of such tets, what forces and energies are computed from; corner_force may be null.
+/// Of such points, what forces and energies are computed from; corner_force may be null.
 ForceArrays make_force_arrays(const Strained& body, double* corner_force);
 
 /// p1_nodal: θ of each tet.

@@ -78,7 +78,12 @@ System::System(const Model& model, const Materials& materials) {
   make_pattern(model, materials, *this);
   is_tet_changed.resize(static_cast<std::size_t>(model.elements.num_tets()), 1);
   is_row_stale.resize(static_cast<std::size_t>(model.num_free()), 1);
-  if (model.keeps_tet_stiffness()) pairs.setZero(9, kPairBlocks * model.elements.num_tets());
+  if (model.keeps_tet_stiffness()) {
+    const Elements& elements = model.elements;
+    const bool is_quadratic = elements.nodes_per_tet == 10;
+    pairs.setZero(9, (is_quadratic ? kQuadraticPairs : kPairBlocks) * elements.num_tets());
+    if (is_quadratic) point_pairs.setZero(9, kPairBlocks * elements.num_points());
+  }
   rhs.setZero(3, model.num_free());
   delta.setZero(3, model.num_free());
   v_base.setZero(3, model.elements.num_nodes());

@@ -28,8 +28,10 @@ struct System {
   std::vector<char> is_tet_changed;       ///< its stiffness or frame, since then
   std::vector<char> is_row_stale;         ///< holds something that the next matrix may not
   Eigen::Matrix<double, 81, Eigen::Dynamic> tangent;  ///< ∂P/∂F of each point, where it is wanted [Pa]
-  Eigen::Matrix<double, 9, Eigen::Dynamic> pairs;     ///< kPairBlocks a tet, where they are kept [N/m]
-  bool is_projected = true;                           ///< with its negative modes set to zero
+  Eigen::Matrix<double, 9, Eigen::Dynamic>
+      pairs;  ///< of a tet's nodes (find_pair), where they are kept [N/m]
+  Eigen::Matrix<double, 9, Eigen::Dynamic> point_pairs;  ///< p2: kPairBlocks a point, of its corners [N/m]
+  bool is_projected = true;                              ///< with its negative modes set to zero
   std::unique_ptr<NodalProduct> nodal_product;  ///< p1_nodal's nodal stiffness where the matrix lacks it
   Points rhs, delta;                            ///< a column a row: r [N s] and δ [m/s]
   Points v_base;                                ///< 3×n velocities that δ is added to [m/s]

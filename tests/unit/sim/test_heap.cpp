@@ -125,6 +125,14 @@ const Case kCases[] = {
        p.rates.between_frames = BetweenFrames::compliant;
      }},
     {"p2", [](Params& p) { p.solid.element = solid::ElementKind::p2; }},
+    {"p2_hencky_fidelity_local",
+     [](Params& p) {
+       p.solid.element = solid::ElementKind::p2;
+       p.solid.model = solid::StrainModel::hencky;
+       p.plasticity.max = 0.0;
+       p.fidelity.mode = FidelityMode::automatic;
+       p.extent = Extent::local;
+     }},
     {"linear", [](Params& p) { p.solid.model = solid::StrainModel::linear; }},
     {"neo_hookean", [](Params& p) { p.solid.model = solid::StrainModel::neo_hookean; }},
     {"hencky",

@@ -84,6 +84,29 @@ double largest_difference(const PressRun& a, const PressRun& b) {
   return largest;
 }
 
+/// What goes the same way for tets of either kind and for laws of small and of large strain.
+class LocalExtentOf : public testing::TestWithParam<std::tuple<solid::ElementKind, solid::StrainModel>> {
+ protected:
+  bool is_quadratic() const { return std::get<0>(GetParam()) == solid::ElementKind::p2; }
+  void set_kind(Params& params) const {
+    params.solid.element = std::get<0>(GetParam());
+    params.solid.model = std::get<1>(GetParam());
+    if (params.solid.model == solid::StrainModel::hencky) params.plasticity.max = 0.0;
+  }
+  Body make_small_bar() const {
+    return is_quadratic() ? test::make_block_body(40, 2, 2, Vec3(0.4, 0.02, 0.015)) : make_bar();
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Kinds, LocalExtentOf,
+                         testing::Combine(testing::Values(solid::ElementKind::p1, solid::ElementKind::p2),
+                                          testing::Values(solid::StrainModel::corotational,
+                                                          solid::StrainModel::hencky)),
+                         [](const auto& kind) {
+                           const bool is_quadratic = std::get<0>(kind.param) == solid::ElementKind::p2;
+                           return std::string(is_quadratic ? "p2_" : "p1_") +
+                                  solid::find_law(std::get<1>(kind.param)).name;
+                         });
+
 TEST(LocalExtent, IsTheWholeBodyWhereNothingMayBeLeftOut) {
   Params params = make_params(Extent::whole, 1e-300);
   params.solid.gravity = Vec3(0, 0, -9.81);  // the body does not sleep when the run begins
@@ -160,10 +183,12 @@ TEST(LocalExtent, RecordsTheEnergyAndPlasticStrainOfTheWholeBody) {
 
 /// The region follows what the hand feels: by the reciprocity of forces and displacements. In an elastic
 /// block what is far from the tool yields, too, and is felt.
-TEST(LocalExtent, UnderFidelityKeepsTheForceWithinItsBound) {
-  const Body block = test::make_block_body(24, 24, 8, Vec3(0.12, 0.12, 0.04));
+TEST_P(LocalExtentOf, UnderFidelityKeepsTheForceWithinItsBound) {
+  const int cells = is_quadratic() ? 4 : 8;
+  const Body block = test::make_block_body(3 * cells, 3 * cells, cells, Vec3(0.12, 0.12, 0.04));
   const Vec3 middle(0.0097, 0.0498, 0.025);
   Params params = make_params(Extent::whole, 1e-3);
+  set_kind(params);
   params.plasticity.enabled = false;
   params.kernel.form = material::KernelForm::off;
   const PressRun whole = run(params, block, middle);
@@ -201,12 +226,13 @@ TEST(LocalExtent, UnderFidelitySleepsWhileTheHandHoldsStill) {
 }
 
 /// What a step leaves of nodes that have fallen asleep may not come back when they wake.
-TEST(LocalExtent, UnderFidelityReturnsToTheSameBits) {
+TEST_P(LocalExtentOf, UnderFidelityReturnsToTheSameBits) {
   Params params = make_params(Extent::local, 1e-3);
+  set_kind(params);
   params.fidelity.mode = FidelityMode::automatic;
   params.fidelity.force_floor = 0.002;
   const auto make = [&] {
-    return Simulation(make_bar(), contact::make_sphere_tool(kToolRadius, 2), params, hand_at(0));
+    return Simulation(make_small_bar(), contact::make_sphere_tool(kToolRadius, 2), params, hand_at(0));
   };
   const auto run_on = [](Simulation& simulation, Tick last) {
     while (simulation.clock().tick < last)
@@ -291,14 +317,15 @@ TEST(LocalExtent, IsTakenByItselfWhereItSaves) {
   EXPECT_EQ(in_small, of_small);
 }
 
-TEST(LocalExtent, GivesEqualBitsOnAnyNumberOfThreads) {
+TEST_P(LocalExtentOf, GivesEqualBitsOnAnyNumberOfThreads) {
   for (const FidelityMode mode : {FidelityMode::full, FidelityMode::automatic}) {
     Params params = make_params(Extent::local, 0.02);
+    set_kind(params);
     params.fidelity.mode = mode;
-    const PressRun one = run(params);
+    const PressRun one = run(params, make_small_bar());
     for (const int threads : {2, 3}) {
       params.threads = threads;
-      const PressRun more = run(params);
+      const PressRun more = run(params, make_small_bar());
       EXPECT_TRUE((more.x.array() == one.x.array()).all()) << threads;
       EXPECT_EQ(more.most_active, one.most_active);
     }

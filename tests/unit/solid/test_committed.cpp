@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solid/material_changes.h"
 #include "support/solid_scene.h"
 
 namespace argil::solid {
@@ -49,10 +50,11 @@ struct PulledBar {
   double slack;
   double poisson;
   int steps = 0;
-  std::vector<char> is_flowing;
+  std::vector<char> is_flowing, was_flowing;
 
   explicit PulledBar(const Kind& kind) : scene(make_scene(kind)), slack(kind.slack), poisson(kind.poisson) {
-    is_flowing.resize(static_cast<std::size_t>(scene.solid.model.elements.num_points() / kLanes + 1), 0);
+    is_flowing.resize(static_cast<std::size_t>(scene.solid.model.elements.num_tets() / kLanes + 1), 0);
+    was_flowing = is_flowing;
     make_ready(scene.solid, scene.region, scene.state, scene.load);
     commit(scene.solid, scene.region, scene.state);
   }
@@ -89,19 +91,21 @@ struct PulledBar {
     ARGIL_TRY(update_kinematics(scene.solid, scene.region, scene.state.x, steps));
     keep_start(scene.solid, scene.state);
     flow();
+    note_flow(scene.solid, is_flowing, was_flowing);
     scene.region.put_to_sleep(scene.state, is_flowing);
     return StepStatus::ok();
   }
   /// Some points, others in each step.
   void flow() {
-    const auto num_points = static_cast<std::size_t>(scene.state.plastic_strain.cols());
+    const Elements& elements = scene.solid.model.elements;
     std::fill(is_flowing.begin(), is_flowing.end(), char{0});
-    const std::size_t point = static_cast<std::size_t>(37 * (steps + 1)) % num_points;
+    const auto tet = static_cast<std::size_t>(37 * (steps + 1) % elements.num_tets());
     const std::vector<int>* moving = scene.region.part().batches.list();
     if (moving && moving->empty()) return;
     const std::size_t batch =
-        moving ? static_cast<std::size_t>((*moving)[point % moving->size()]) : point / kLanes;
-    scene.state.plastic_strain(3, static_cast<Eigen::Index>(batch * kLanes)) += 1e-4;
+        moving ? static_cast<std::size_t>((*moving)[tet % moving->size()]) : tet / kLanes;
+    scene.state.plastic_strain(3, elements.points_per_tet * static_cast<Eigen::Index>(batch * kLanes)) +=
+        1e-4;
     is_flowing[batch] = 1;
   }
   void make_steps(int count) {
@@ -110,6 +114,7 @@ struct PulledBar {
       const StepStatus status = step();
       ASSERT_TRUE(status.is_ok()) << steps << ' ' << status.failure().quantity;
       commit(scene.solid, scene.region, scene.state, is_flowing);
+      was_flowing = is_flowing;
       scene.time += kStep;
     }
   }
@@ -178,7 +183,20 @@ const Kind kKinds[] = {
        p.iteration = Iteration::newton;
      },
      0.0, 0.45},
+    {"curnier", [](SolidParams& p) { p.model = StrainModel::curnier; }},
     {"p2", [](SolidParams& p) { p.element = ElementKind::p2; }},
+    {"p2_local", [](SolidParams& p) { p.element = ElementKind::p2; }, 0.0, 0.3, true},
+    {"p2_curnier_local_lag",
+     [](SolidParams& p) {
+       p.element = ElementKind::p2;
+       p.model = StrainModel::curnier;
+     },
+     1e-2, 0.3, true},
+    {"p2_hencky",
+     [](SolidParams& p) {
+       p.element = ElementKind::p2;
+       p.model = StrainModel::hencky;
+     }},
 };
 
 const Fault kFaults[] = {

@@ -56,7 +56,7 @@ struct Tets {
     frame.setZero();
   }
   void move(StrainModel model) {
-    const TetArrays arrays{x.data(),  nodes.data(),  gradient.data(),     model == StrainModel::linear,
+    const PointArrays arrays{x.data(),  nodes.data(),  gradient.data(),     model == StrainModel::linear,
                            F.data(),  R.data(),      turned.data(),       frame.data(),
                            tolerance, strain.data(), volume_ratio.data(), is_turned.data()};
     OrderedRuns(1).each(
