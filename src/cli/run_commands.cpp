@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <sstream>
 
 #include "base/error.h"
 #include "cli/commands.h"
@@ -159,6 +160,15 @@ void add_run_commands(CLI::App& app, int& code) {
   run->add_option("-o,--output", o->run.output, "result file (default: the scenario's name with .h5)");
   run->add_option("--threads", o->run.threads, "threads; results do not depend on them")
       ->check(CLI::Range(1, run::kMostThreads));
+  run->add_option_function<double>(
+         "--accuracy",
+         [o](double wanted) {
+           std::ostringstream text;
+           text << "/fidelity/accuracy=" << wanted;
+           o->run.settings.push_back(text.str());
+         },
+         "wanted error of the force at the hand, e.g. 0.02: cells are chosen for it (/fidelity/accuracy)")
+      ->check(finite_number(false));
   run->add_flag("--resume", o->run.resume, "go on from the result's last checkpoint, if there is one");
   run->add_flag("--dry-run", o->run.dry_run, "check and build everything, write nothing");
   add_strict(run);

@@ -246,6 +246,9 @@ std::string describe_result(const ResultReader& reader) {
       !limits.empty())
     out << label("limits") << limits << '\n';
   if (const auto fidelity = reader.find_fidelity()) describe_fidelity(out, *fidelity);
+  if (const auto accuracy = reader.find_accuracy())
+    out << label("accuracy") << "of the force at the hand about " << rounded(100.0 * (*accuracy)[1])
+        << " %, wanted " << rounded(100.0 * (*accuracy)[0]) << " %\n";
   out << label("frames") << frames.size();
   if (!frames.empty())
     out << ", last at tick " << frames.back().tick << ", state " << frames.back().state_hash;

@@ -446,4 +446,15 @@ void ResultFile::finish(const std::optional<Failure>& failure, bool interrupted)
   file.close();
 }
 
+void write_accuracy(const std::string& result_file, double wanted, double estimated) {
+  File file = File::open_for_writing(result_file);
+  {
+    Group group = file.root().create_group(schema::kAccuracy);
+    group.write_attribute("wanted", wanted);
+    group.write_attribute("estimated", estimated);
+  }
+  file.flush();
+  file.close();
+}
+
 }  // namespace argil::output

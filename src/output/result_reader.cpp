@@ -355,6 +355,12 @@ void check_place(const std::string& file, std::optional<std::size_t> row, const 
 
 }  // namespace
 
+std::optional<std::array<double, 2>> ResultReader::find_accuracy() const {
+  if (!m_root.has(schema::kAccuracy)) return std::nullopt;
+  const hdf5::Group group = m_root.open_group(schema::kAccuracy);
+  return std::array{group.read_real("wanted"), group.read_real("estimated")};
+}
+
 std::optional<Session> ResultReader::find_session() const {
   if (!m_root.has(schema::kSession)) return std::nullopt;
   const Group group = m_root.open_group(schema::kSession);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -52,6 +53,8 @@ class ResultReader {
   sim::Frame read_frame(const FrameInfo& info) const;
   /// State from which an unfinished run can go on; nothing when there is none.
   std::optional<Snapshot> find_checkpoint() const;
+  /// Of a run to /fidelity/accuracy that is complete: the wanted error of the force and the estimated one.
+  std::optional<std::array<double, 2>> find_accuracy() const;
   /// The live session that this is, as far as its ticks are in the file; nothing for other runs.
   std::optional<Session> find_session() const;
   /// Last value of every entry of /timing, by name.

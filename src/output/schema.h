@@ -146,6 +146,7 @@ inline hdf5::Group open_mesh(const hdf5::Group& root, int epoch) {
       .open_group(name_number(static_cast<std::uint64_t>(epoch)))
       .open_group("mesh");
 }
+inline constexpr const char* kAccuracy = "accuracy";  ///< group: attributes of a run to /fidelity/accuracy
 inline constexpr const char* kEpochsEnd =
     "last_cells_tick";                          ///< root: after it cells were not made anew any more
 inline constexpr const char* kEpoch = "epoch";  ///< attribute of a frame; none in the first

@@ -10,6 +10,7 @@
 #include "output/info.h"
 #include "output/result_file.h"
 #include "output/result_reader.h"
+#include "run/accuracy.h"
 #include "run/files.h"
 #include "run/identity.h"
 #include "run/loop.h"
@@ -172,6 +173,7 @@ void print_notes(const scenario::Scene& scene, const RunOptions& options) {
 }
 
 RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
+  if (s.accuracy > 0.0 && !options.is_planned) return run_to_accuracy(s, options);
   const std::string result = name_result(s, options);
   check_result_name(s, result);
   for (const std::string& patch : options.patches) require_other_file(result, patch, "the patch", "-o");
@@ -184,6 +186,7 @@ RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
   ReadyRun run(s, options.trace, note);
   sim::Simulation& simulation = run.simulation;
   FullModel* const full = run.full.get();
+  run.scene.notes.insert(run.scene.notes.end(), options.notes.begin(), options.notes.end());
   print_notes(run.scene, options);
   if (options.dry_run) return print_ready(s, simulation, count_ticks(s, run.scene.trace));
   const Identity identity = find_identity(s);

@@ -24,6 +24,8 @@ struct RunOptions {
   bool quiet = false;
   bool is_live = false;                        ///< a device gives the motion: /trace need not
   bool strict = false;                         ///< /dynamics/strict
+  std::vector<std::string> notes;              ///< for the user, beside the scene's
+  bool is_planned = false;                     ///< /fidelity/accuracy has been looked after
   std::string remedy = "go on with --resume";  ///< of a run that was stopped or found no room, in its message
 };
 

@@ -174,14 +174,16 @@ std::string describe(const CellSizes& sizes, int before, int after) {
 
 }  // namespace
 
+int count_fewest_tets(const BodySpec& body) {
+  const bool has_limbs = body.kind == BodyKind::surface || body.shape.kind == shapes::ShapeKind::dinosaur ||
+                         body.shape.kind == shapes::ShapeKind::figure;
+  return has_limbs ? 1500 : 300;
+}
+
 int count_first_tets(const BodySpec& body) {
   const int target = body.target_tets;
   if (body.cells.near_tool > 0.0) return target;
-  // Limbs want so many; other shapes stand for themselves with fewer.
-  const bool has_limbs = body.kind == BodyKind::surface || body.shape.kind == shapes::ShapeKind::dinosaur ||
-                         body.shape.kind == shapes::ShapeKind::figure;
-  const int fewest = has_limbs ? 1500 : 300;
-  return std::min(target, std::max(fewest, target / 6));
+  return std::min(target, std::max(count_fewest_tets(body), target / 6));
 }
 
 mesh::TetMesh grade_cage(const embed::Cage& cage, embed::Fit fit, const mesh::TriangleMesh& surface,
@@ -266,6 +268,11 @@ std::string propose_smaller_cells(const Scenario& s, double radius) {
 }
 
 }  // namespace
+
+double find_contact_radius(const Scenario& s, const device::Trace& trace,
+                           const mesh::TriangleMesh& tool_surface, const sim::Body& body) {
+  return find_largest_radius(find_places(s, trace, tool_surface, make_touched_tree(s, body)));
+}
 
 std::string describe_contact_cells(const Scenario& s, const device::Trace& trace,
                                    const mesh::TriangleMesh& tool_surface, const sim::Body& body) {

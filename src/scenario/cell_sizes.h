@@ -33,6 +33,9 @@ struct CellSizes {
   double find(const Vec3& x) const;
 };
 
+/// Of a body that argil makes, before cells are graded: with fewer, limbs and edges get lost.
+int count_fewest_tets(const BodySpec& body);
+
 /// Tets to begin with, before cells are graded: less than are wanted in the end, where that is left open.
 int count_first_tets(const BodySpec& body);
 
@@ -64,6 +67,10 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
                                     std::vector<std::string>& notes);
+
+/// Of the largest patch that the motion presses on the body at rest [m]; 0: none.
+double find_contact_radius(const Scenario& s, const device::Trace& trace,
+                           const mesh::TriangleMesh& tool_surface, const sim::Body& body);
 
 /// How many cells lie along the radius of contact, where they are fewest of the places that the motion
 /// presses at least half as wide as at its widest; what error that makes of an elastic force, and what mends

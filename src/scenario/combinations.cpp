@@ -316,6 +316,18 @@ void check_kernel(Scenario& s) {
     throw InputError(s.file, "/material/clay_kernel/radius_m", "is 0", "give R_D in metres, or form \"off\"");
 }
 
+/// Cells are chosen by the motion, and by a force that converges as they get smaller.
+void check_accuracy(const Scenario& s) {
+  if (s.accuracy == 0.0) return;
+  const std::string place = "/fidelity/accuracy";
+  if (s.mode == Mode::equilibrium)
+    throw InputError(s.file, place, "is that of the force at the hand, but a static run has none",
+                     "leave it out, or set /dynamics/mode to dynamic");
+  if (s.params.contact.law != contact::ContactLaw::pressure)
+    throw InputError(s.file, place, "is given, but the force of pairs follows the number of triangles",
+                     "set /contact/law to pressure");
+}
+
 }  // namespace
 
 void check_combinations(Scenario& s, Faults& faults) {
@@ -336,6 +348,7 @@ void check_combinations(Scenario& s, Faults& faults) {
   if (has_tables) check(check_medium);
   check_only(check_tool);
   check(check_kernel);
+  check_only(check_accuracy);
 }
 
 }  // namespace argil::scenario

@@ -469,7 +469,8 @@ void bind_dynamics(Binder& b, Scenario& s) {
             "Run nearly incompressible 4-node tets although they lock.");
 }
 
-void bind_fidelity(Binder& b, sim::FidelityParams& f) {
+void bind_fidelity(Binder& b, Scenario& s) {
+  sim::FidelityParams& f = s.params.fidelity;
   using sim::FidelityMode;
   b.choice<FidelityMode>(
       "/fidelity/mode", f.mode,
@@ -480,6 +481,10 @@ void bind_fidelity(Binder& b, sim::FidelityParams& f) {
            "auto: error of the force at the hand over that force.");
   b.number("/fidelity/force_floor_N", f.force_floor, positive(), "N",
            "auto: error of the force at the hand that never counts.");
+  b.number(
+      "/fidelity/accuracy", s.accuracy, between(0.0, 0.5), "",
+      "Wanted: root mean square error of the force at the hand while it touches, over the force's. Ten-node "
+      "tets are chosen for it, small where the tool comes, by a pass or more over the motion; 0: as given.");
 }
 
 void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
@@ -541,7 +546,7 @@ std::vector<Parameter> make_parameter_table(Scenario& s, const std::string& file
   bind_material(b, s.params);
   bind_water_and_tool(b, s, folder);
   bind_dynamics(b, s);
-  bind_fidelity(b, s.params.fidelity);
+  bind_fidelity(b, s);
   bind_haptics(b, s, folder);
   std::vector<Parameter> rows = b.take();
   for (Parameter& row : rows)

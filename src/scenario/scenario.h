@@ -119,10 +119,11 @@ struct Scenario {
   HandSpec hand;
   sim::Params params;
   int checkpoint_period_ticks = 1000;  ///< of runs with a trace; 0: none but where a signal ends it
-  bool allow_locking = false;          ///< run nearly incompressible tets although they lock
-  std::string medium_status;           ///< where eq. 6 stands at all that the run can reach; empty when it
-                                       ///< takes the mesh's fields to know (then Scene has it)
-  std::vector<std::string> warnings;   ///< of validation; a run prints them and writes them to its file
+  double accuracy = 0.0;       ///< wanted of the force at the hand [–]: cells are chosen; 0: as given
+  bool allow_locking = false;  ///< run nearly incompressible tets although they lock
+  std::string medium_status;   ///< where eq. 6 stands at all that the run can reach; empty when it
+                               ///< takes the mesh's fields to know (then Scene has it)
+  std::vector<std::string> warnings;  ///< of validation; a run prints them and writes them to its file
 };
 
 /// One `--set /json/pointer=value`.

@@ -1,0 +1,218 @@
+#include "run/accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "base/error.h"
+#include "output/result_file.h"
+#include "output/result_reader.h"
+#include "run/files.h"
+#include "scenario/build.h"
+#include "scenario/cell_sizes.h"
+#include "scenario/scenario_text.h"
+
+namespace argil::run {
+namespace {
+
+constexpr double kOrder = 1.5;         // in the size of cells
+constexpr double kOfOneCell = 0.03;    // error on one cell along the radius of contact, by experience
+constexpr double kRefinement = 1.6;    // from the first pass to the second
+constexpr double kFloor = 0.01;        // [N] of the error that never counts
+constexpr int kMostRuns = 4;           // three passes and the run
+constexpr double kMostTets = 400'000;  // of a pass
+
+double find_contact_radius(const scenario::Scenario& s) {
+  const scenario::Scene scene = scenario::build_scene(s);
+  return scenario::find_contact_radius(s, scene.trace, scene.tool, scene.body);
+}
+
+std::string print(double number) {
+  std::ostringstream text;
+  text.precision(17);
+  text << number;
+  return text.str();
+}
+
+std::string print_short(double number) {
+  std::ostringstream text;
+  text.precision(2);
+  text << number;
+  return text.str();
+}
+
+/// The run of a plan: settings over those that were given.
+class Planner {
+ public:
+  Planner(const scenario::Scenario& s, const RunOptions& options)
+      : m_options(options), m_wanted(s.accuracy), m_result(name_result(s, options)) {
+    m_options.is_planned = true;
+    m_options.resume = false;
+    m_options.output = m_result;
+    m_options.settings.insert(m_options.settings.end(), {"/dynamics/element=p2", "/body/cells/kind=graded"});
+    m_fewest = scenario::count_fewest_tets(s.body);
+    m_target = s.body.kind == scenario::BodyKind::shape ? "/body/shape/target_tets="
+               : s.body.kind == scenario::BodyKind::surface && s.body.cage_file.empty()
+                   ? "/body/surface/target_tets="
+                   : "";
+  }
+
+  RunEnd run() {
+    const double radius = find_contact_radius(load(with_cells(0.0, 1.0)));
+    if (!(radius > 0.0)) return run_where_nothing_is_touched();
+    for (;;) {
+      const double cells = choose_cells(m_passes, m_wanted);
+      const double near = radius / cells;
+      const bool goes_on = m_near_of_result == near;
+      const bool is_probe = !m_options.dry_run && (m_passes.empty() || (m_near_of_result && !goes_on));
+      RunOptions options = with_cells(near, cells);
+      options.resume = goes_on;
+      if (is_probe) {
+        options.output = m_result + ".pass.h5";
+        options.writes_xdmf = false;
+        options.quiet = true;
+      } else {
+        options.notes.push_back(describe_plan(cells));
+      }
+      const RunEnd end = run_loaded(load(options), options);
+      if (goes_on) m_near_of_result.reset();
+      if (end.code == kDone && !options.dry_run) take(options.output, cells);
+      if (is_probe) std::filesystem::remove(options.output);
+      if (end.code != kDone || options.dry_run || is_enough()) return end;
+    }
+  }
+
+  /// The passes once more, up to the one whose result is there already, in part or to its end.
+  RunEnd resume() {
+    std::optional<std::string> text;
+    bool is_complete = false;
+    {
+      const output::ResultReader reader(m_result);
+      text = reader.find_provenance("scenario");
+      is_complete = reader.find_accuracy().has_value();
+    }
+    if (!text) throw InputError(m_result, "/provenance/scenario", "is not there", "leave --resume out");
+    const scenario::Scenario of_result = scenario::load_text(*text, m_options.scenario, {});
+    const double near = of_result.body.cells.near_tool;
+    if (is_complete) {
+      RunOptions options = with_tets(near, of_result.body.target_tets);
+      options.resume = true;
+      return run_loaded(load(options), options);
+    }
+    if (near > 0.0) m_near_of_result = near;
+    return run();
+  }
+
+ private:
+  RunOptions with_tets(double near, double tets) const {
+    RunOptions options = m_options;
+    if (near > 0.0) options.settings.push_back("/body/cells/near_tool_m=" + print(near));
+    if (!m_target.empty())
+      options.settings.push_back(m_target + std::to_string(static_cast<int>(std::min(tets, kMostTets))));
+    return options;
+  }
+  /// What is far from the tool is made finer with the rest.
+  RunOptions with_cells(double near, double cells) const {
+    constexpr double kEnough = 1.66;  // cells along the radius of contact, for as few tets as there can be
+    return with_tets(near, std::max(1.0, std::pow(cells / kEnough, kOrder)) * m_fewest);
+  }
+  RunEnd run_where_nothing_is_touched() {
+    RunOptions options = with_cells(0.0, 1.0);
+    options.notes.emplace_back("accuracy: the tool touches nothing at rest, so no cells follow from it");
+    return run_loaded(load(options), options);
+  }
+  void take(const std::string& result, double cells) {
+    const output::ResultReader reader(result);
+    m_passes.push_back({cells, static_cast<int>(reader.read_cells(0).tets.cols()), reader.read_haptic(),
+                        kOfOneCell * std::pow(cells, -kOrder)});
+    if (m_passes.size() == 1) return say(describe_pass(m_passes.back()) + ": to compare with");
+    AccuracyPass& fine = m_passes.back();
+    const AccuracyPass& coarse = m_passes[m_passes.size() - 2];
+    fine.error = estimate_error(coarse, fine, kFloor / m_wanted);
+    say(describe_pass(fine) + ": the force is about " + print_short(100.0 * fine.error) + " % off");
+  }
+  bool is_enough() {
+    if (m_passes.size() < 2) return false;
+    const std::string of_others = "was written by another scenario or with other settings";
+    const bool is_lost = m_near_of_result && m_passes.size() == kMostRuns;
+    if (is_lost)
+      throw InputError(m_result, "/provenance/scenario", of_others, "leave --resume out to begin anew");
+    if (m_near_of_result) return false;
+    const AccuracyPass& last = m_passes.back();
+    const bool is_exact = last.error <= m_wanted;
+    const bool is_end = static_cast<int>(m_passes.size()) == kMostRuns || last.num_tets > kMostTets / 3.0;
+    if (!is_exact && is_end)
+      say("accuracy: " + print_short(100.0 * m_wanted) +
+          " % were asked: give /body/cells/near_tool_m and "
+          "/dynamics/element by hand, or ask for less");
+    if (is_exact || is_end) output::write_accuracy(m_result, m_wanted, last.error);
+    return is_exact || is_end;
+  }
+  std::string describe_pass(const AccuracyPass& pass) const {
+    return "accuracy: " + std::to_string(pass.num_tets) + " ten-node tets, " + print_short(pass.cells) +
+           " cells along the radius of contact";
+  }
+  /// Of the run that comes.
+  std::string describe_plan(double cells) const {
+    std::string text = "accuracy: " + print_short(cells) + " cells along the radius of contact";
+    for (const AccuracyPass& pass : m_passes)
+      text += "; a pass had " + print_short(pass.cells) + " and " + std::to_string(pass.num_tets) + " tets";
+    return text;
+  }
+  void say(const std::string& text) const {
+    if (!m_options.quiet) std::fprintf(stderr, "argil: note: %s\n", text.c_str());
+  }
+
+  RunOptions m_options;
+  double m_wanted;
+  std::string m_result;
+  std::string m_target;  // key of the number of tets, and "="
+  int m_fewest = 0;
+  std::optional<double> m_near_of_result;  // size of its cells [m], until the pass that made it comes
+  std::vector<AccuracyPass> m_passes;
+};
+
+}  // namespace
+
+double compare_forces(const std::vector<sim::HapticRecord>& a, const std::vector<sim::HapticRecord>& b,
+                      double floor) {
+  double difference = 0.0, size = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    if (a[i].num_contacts == 0 && b[i].num_contacts == 0) continue;
+    difference += (a[i].force - b[i].force).squaredNorm();
+    size += b[i].force.squaredNorm();
+    ++count;
+  }
+  return count == 0 ? 0.0 : std::sqrt(difference / count) / std::max(floor, std::sqrt(size / count));
+}
+
+double estimate_error(const AccuracyPass& coarse, const AccuracyPass& fine, double floor) {
+  return compare_forces(coarse.haptic, fine.haptic, floor) / std::pow(fine.cells / coarse.cells, kOrder);
+}
+
+double choose_cells(const std::vector<AccuracyPass>& passes, double wanted) {
+  constexpr double kMargin = 0.7;
+  constexpr double kFewest = 0.75;             // on fewer, the error says nothing of that on more
+  constexpr double kLeast = 1.3, kMost = 2.0;  // times those of the pass before
+  const double by_experience =
+      std::max(kFewest * kRefinement, std::pow(kOfOneCell / (kMargin * wanted), 1.0 / kOrder));
+  if (passes.empty()) return by_experience / kRefinement;
+  if (passes.size() == 1) return by_experience;
+  const AccuracyPass& last = passes.back();
+  const double more = std::pow(last.error / (kMargin * wanted), 1.0 / kOrder);
+  return last.cells * std::clamp(more, kLeast, kMost);
+}
+
+RunEnd run_to_accuracy(const scenario::Scenario& s, const RunOptions& options) {
+  const std::string result = name_result(s, options);
+  check_result_name(s, result);
+  Planner planner(s, options);
+  return options.resume && std::filesystem::exists(result) ? planner.resume() : planner.run();
+}
+
+}  // namespace argil::run
