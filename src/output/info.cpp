@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <sstream>
 
 #include "output/text.h"
@@ -62,6 +63,23 @@ void describe_peak(std::ostream& out, const std::vector<sim::HapticRecord>& reco
       << with_prefix(peak->time, "s") << " (" << to_string(peak->mode) << "), "
       << with_prefix(peak->device_force.stableNorm(), "N") << " as the device gives it, torque "
       << with_prefix(peak->torque.stableNorm(), "N m") << '\n';
+}
+
+void describe_force_error(std::ostream& out, const std::vector<sim::HapticRecord>& records) {
+  const sim::HapticRecord* peak = nullptr;
+  double squares = 0.0, error_squares = 0.0;
+  for (const sim::HapticRecord& record : records) {
+    if (!peak || record.force.stableNorm() > peak->force.stableNorm()) peak = &record;
+    squares += record.force.squaredNorm();
+    error_squares += record.error.total() * record.error.total();
+  }
+  if (!peak || !(squares > 0.0)) return;
+  const sim::ForceErrorParts& parts = peak->error;
+  out << label("force error") << "estimated " << with_prefix(parts.total(), "N") << " at the peak: mesh "
+      << with_prefix(parts.mesh, "N") << ", step " << with_prefix(parts.step, "N") << ", contact "
+      << with_prefix(parts.contact, "N") << ", solver " << with_prefix(parts.solver, "N") << ", left out "
+      << with_prefix(parts.left_out, "N") << "; in all "
+      << rounded(100.0 * std::sqrt(error_squares / squares)) << " % of the force (rms over rms)\n";
 }
 
 void describe_haptic(std::ostream& out, const std::vector<sim::HapticRecord>& records, double period) {
@@ -240,6 +258,7 @@ std::string describe_result(const ResultReader& reader) {
     out << label("cells") << "made anew " << count(static_cast<std::size_t>(epochs), "time")
         << ", the last time " << reader.read_cells(epochs).tets.cols() << " tets\n";
   describe_haptic(out, haptic, header.haptic_period);
+  if (reader.has_force_error()) describe_force_error(out, haptic);
   const std::vector<sim::PhysicsRecord> steps = reader.read_physics();
   describe_physics(out, steps);
   if (const std::string limits = describe_limits(steps, haptic, static_cast<int>(header.tets.cols()));

@@ -1,6 +1,7 @@
 #include "output/result_file.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -117,6 +118,7 @@ struct ResultFile::Impl {
   int epoch = 0;
   bool has_ended_epochs = false;
   std::optional<Table> fidelity = {};
+  std::optional<Table> force_error = {};
   bool is_checked = false;  // fidelity has errors
   std::optional<Table> session = {}, tick_timing = {}, step_timing = {};
   bool is_broken = false;  // a write failed: what follows would have a hole
@@ -133,7 +135,7 @@ struct ResultFile::Impl {
     if (root.has(schema::kCheckpoint)) root.remove(schema::kCheckpoint);
   }
   void write_all() {
-    for (std::optional<Table>* table : {&fidelity, &session, &tick_timing, &step_timing})
+    for (std::optional<Table>* table : {&fidelity, &force_error, &session, &tick_timing, &step_timing})
       if (*table) (*table)->write();
     haptic.write();
     physics.write();
@@ -161,6 +163,9 @@ ResultFile::ResultFile(const std::string& name, const ResultHeader& header) {
   file.flush();
   m_impl = std::make_unique<Impl>(Impl{std::move(file), std::move(root), std::move(frames), std::move(timing),
                                        std::move(haptic), std::move(physics)});
+  if (header.estimates_error)
+    m_impl->force_error =
+        Table::create(m_impl->root.open_group("haptic"), schema::kForceError, schema::kHapticChunk);
   if (header.fidelity == sim::FidelityMode::full) return;
   m_impl->is_checked = header.fidelity == sim::FidelityMode::check;
   m_impl->fidelity = Table::create(m_impl->root.create_group(schema::kFidelity),
@@ -216,6 +221,9 @@ ResultFile::ResultFile(const std::string& name, Tick last_tick, std::uint64_t nu
                                        std::move(haptic), std::move(physics), num_frames, epoch});
   m_impl->has_ended_epochs = m_impl->root.has_attribute(schema::kEpochsEnd) &&
                              m_impl->root.read_integer(schema::kEpochsEnd) <= last_tick;
+  if (haptic_group.has(schema::kForceError[0].name))
+    m_impl->force_error = Table::reopen(haptic_group, schema::kForceError, schema::kHapticChunk,
+                                        count_rows_until(haptic_group, last_tick));
   if (!m_impl->root.has(schema::kFidelity)) return;
   const Group group = m_impl->root.open_group(schema::kFidelity);
   m_impl->is_checked = group.has(schema::kFidelityError.name);
@@ -248,6 +256,13 @@ void ResultFile::append(const sim::HapticRecord& record) {
   table.put(record.gate_events);
   table.put(record.port_energy);
   table.put(record.passivity_energy);
+  if (m_impl->force_error) {
+    const sim::ForceErrorParts& parts = record.error;
+    m_impl->force_error->put(parts.total());
+    const std::array list{parts.mesh, parts.step, parts.contact, parts.solver, parts.left_out};
+    m_impl->force_error->put(list.data(), static_cast<unsigned>(list.size()));
+    m_impl->end_quiet_row(*m_impl->force_error);
+  }
   if (table.end_row()) m_impl->guarded([&] { table.write(), m_impl->file.flush(); });
 }
 

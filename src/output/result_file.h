@@ -26,6 +26,7 @@ struct ResultHeader {
   std::vector<sim::TouchedPlace> touched_places;  ///< by which cells were graded
   double haptic_period = 0.0;                     ///< [s]
   sim::FidelityMode fidelity = sim::FidelityMode::full;
+  bool estimates_error = false;  ///< of the force at the hand
   std::vector<std::pair<std::string, std::string>>
       provenance;  ///< name → text: resolved scenario, contact's stiffness, hashes, numerics tag
 };

@@ -227,7 +227,17 @@ std::vector<sim::HapticRecord> ResultReader::read_haptic() const {
     record.port_energy = port_energy(i);
     record.passivity_energy = passivity_energy(i);
   }
+  if (!has_force_error()) return records;
+  const ColumnReader<double> parts(group, "force_error_parts", rows, 5);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double* row = parts.row(i);
+    records[i].error = {row[0], row[1], row[2], row[3], row[4]};
+  }
   return records;
+}
+
+bool ResultReader::has_force_error() const {
+  return m_root.open_group("haptic").has(schema::kForceError[0].name);
 }
 
 std::vector<sim::PhysicsRecord> ResultReader::read_physics() const {

@@ -45,7 +45,9 @@ class ResultReader {
   std::optional<sim::Body> find_last_cells(Tick until) const;
   /// Text of /provenance by its name; nothing when it is not there.
   std::optional<std::string> find_provenance(const std::string& name) const;
+  /// `error` of a record is 0 where the run has not estimated it.
   std::vector<sim::HapticRecord> read_haptic() const;
+  bool has_force_error() const;
   std::vector<sim::PhysicsRecord> read_physics() const;
   /// What each physics step left out; none in a run that computed all of it. `error` is 0 but in `check`.
   std::optional<std::vector<sim::FidelityRecord>> find_fidelity() const;

@@ -52,6 +52,21 @@ inline constexpr std::array kHaptic = {
            {"J", "energy that the passivity controller has kept from the hand since the start"}},
 };
 
+/// In the same group, in runs that estimate it: by how much the force is off.
+inline constexpr std::array kForceError = {
+    Column{"force_error",
+           real64,
+           1,
+           {"N", "estimate: by how much the force on the hand is off, the sum of the parts"}},
+    Column{
+        "force_error_parts",
+        real64,
+        5,
+        {"N",
+         "mesh, step, contact, solver, left out; mesh (>= 0, too stiff) and contact (<= 0, too soft) have a "
+         "sign and count as the size of their sum"}},
+};
+
 inline constexpr std::array kPhysics = {
     Column{"tick", int64, 1, {"1", "haptic tick of the physics step"}},
     Column{"time", real64, 1, {"s", "time since the start, tick times haptic period"}},

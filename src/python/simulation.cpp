@@ -145,6 +145,12 @@ class SteppedRun {
 };
 
 /// As in /physics of a result.
+py::dict list_parts(const sim::ForceErrorParts& parts) {
+  using namespace py::literals;
+  return py::dict("mesh"_a = parts.mesh, "step"_a = parts.step, "contact"_a = parts.contact,
+                  "solver"_a = parts.solver, "left_out"_a = parts.left_out);
+}
+
 py::dict list_physics(const sim::PhysicsRecord& r) {
   using namespace py::literals;
   return py::dict("tick"_a = r.tick, "time"_a = r.time, "kinetic_energy"_a = r.kinetic_energy,
@@ -205,6 +211,10 @@ void bind_simulation(py::module_& module) {
       .def_property_readonly("force", haptic([](const sim::HapticRecord& r) { return keep_vector(r.force); }))
       .def_property_readonly("torque",
                              haptic([](const sim::HapticRecord& r) { return keep_vector(r.torque); }))
+      .def_property_readonly("force_error",
+                             haptic([](const sim::HapticRecord& r) { return r.error.total(); }))
+      .def_property_readonly("force_error_parts",
+                             haptic([](const sim::HapticRecord& r) { return list_parts(r.error); }))
       .def_property_readonly("device_force",
                              haptic([](const sim::HapticRecord& r) { return keep_vector(r.device_force); }))
       .def_property_readonly("tool_position",

@@ -39,6 +39,7 @@ output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulat
   header.tool = tool;
   header.touched_places = simulation.body().touched_places;
   header.haptic_period = s.params.rates.haptic_period;
+  header.estimates_error = s.params.estimates_error;
   if (s.params.fidelity.mode != sim::FidelityMode::full) header.fidelity = sim::FidelityMode::automatic;
   std::string notes;
   for (const std::string& note : scene.notes) notes += note + "\n";

@@ -511,6 +511,9 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
   b.number("/haptics/chatter_limit", s.params.chatter_limit, {0.0, 1.0, true, false}, "",
            "The force at the hand chatters when it has trembled for 0.3 s: its rms above 50 Hz is "
            "more than this share of its rms. 1: never.");
+  b.boolean("/haptics/force_error", s.params.estimates_error,
+            "Estimate in every tick by how much the force is off: by mesh, step, contact, solver and what is "
+            "left out.");
   device::DeviceLimits& l = s.params.device;
   b.number("/haptics/device/max_force_N", l.max_force, positive(), "N", "Largest force the device is sent.");
   b.number("/haptics/device/max_torque_Nm", l.max_torque, not_negative(), "N m",

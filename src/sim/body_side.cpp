@@ -38,6 +38,7 @@ BodySide::BodySide(Body body, const Params& params)
       m_materials(m_body, params, m_water, m_solid, m_region),
       m_flow(params, m_solid, m_region),
       m_economy(params, m_body, m_solid, m_region),
+      m_error(params, m_solid, m_region),
       m_limiter(m_solid) {
   m_loads.changed = &m_force.changed();
   m_state.solid = solid::make_rest_state(m_solid.model);
@@ -73,6 +74,7 @@ void BodySide::go_on_from(const BodySide& before, const RemappedState& clay) {
   if (lost > kRounding * before.m_water.mass()) water.removed.add(lost);
   m_water.restore(water);
   m_region.wake_all();
+  m_error.go_on_from(before.m_error);
   begin_strained(clay.elastic);
 }
 
@@ -142,6 +144,7 @@ BodyBetweenSteps BodySide::between_steps(Tick tick) {
 
 StepStatus BodySide::step(const ContactLoad& load, StepResult& result) {
   const StepStatus status = make_step(load, result);
+  result.error = m_error.rates(m_economy);
   result.is_limited = m_limit.num_tets > 0;
   if (status.is_ok() || m_params.is_strict) return status;
   hold_still(load, status.failure(), result);
@@ -172,6 +175,7 @@ void BodySide::begin_step(const ContactLoad& load, StepResult& result) {
   ++m_state.steps;
   m_state.hand = load.hand;
   m_force.set_contacts(load, m_surface);
+  m_error.begin_step(load);
   result.step = m_state.steps;
   result.has_moved = false;
   result.is_held = false;
@@ -192,6 +196,7 @@ void BodySide::commit() {
   m_materials.commit();
   m_flow.commit();
   m_economy.commit();
+  m_error.commit();
   m_has_moved_water = m_has_begun_solid = false;
 }
 
@@ -201,6 +206,7 @@ void BodySide::roll_back() {
   m_materials.roll_back();
   m_flow.roll_back();
   m_economy.roll_back();
+  m_error.roll_back();
   const StepStatus status = solid::roll_back(m_solid, m_region, m_state.solid, tick());
   ARGIL_ASSERT(status.is_ok());
   m_has_moved_water = m_has_begun_solid = false;

@@ -11,6 +11,7 @@
 #include "sim/contact_surface.h"
 #include "sim/economy.h"
 #include "sim/external_force.h"
+#include "sim/force_error.h"
 #include "sim/params.h"
 #include "sim/plastic_flow.h"
 #include "sim/record.h"
@@ -125,6 +126,7 @@ class BodySide {
   BodyMaterials m_materials;
   PlasticFlow m_flow;
   Economy m_economy;
+  ForceErrorEstimate m_error;
   solid::MotionLimiter m_limiter;
   solid::MotionLimit m_limit;      // of the last step; all tets: of the whole body, or the step was not made
   bool m_has_moved_water = false;  // since the last commit, as is the next

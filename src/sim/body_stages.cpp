@@ -57,6 +57,7 @@ StepStatus BodySide::predict(const ContactLoad& load) {
 bool BodySide::assemble_or_stop() {
   const StageScope scope(m_observer, Stage::assemble);
   const bool is_solved = solid::assemble(m_solid, m_region, m_loads);
+  m_error.check_last_step();
   return m_economy.stops(m_state, m_loads, m_force.contacts(), m_flow.is_anywhere()) || is_solved;
 }
 

@@ -115,6 +115,7 @@ void HandSide::limit_force(device::Wrench& felt) const {
 
 void HandSide::receive(StepResult& result) {
   if (result.is_limited) limit_force(result.felt);
+  note_answer(result);
   if (!m_state.has_felt_anew && !result.is_held) {
     m_state.hand_force = result.felt.force;
     m_state.hand_torque = result.felt.torque;
@@ -126,6 +127,32 @@ void HandSide::receive(StepResult& result) {
     m_stiffness_before.swap(result.stiffness);
   }
   if (m_between && !result.is_held) m_between->receive(result.felt, result.friction);
+}
+
+/// Keeps by how much the answer is off what the hand has felt until now, less the way that the tool has gone
+/// in this tick where the force follows it.
+void HandSide::note_answer(const StepResult& result) {
+  m_state.error = result.error;
+  const Vec3& answer = result.felt.force;
+  const double jump = (answer - m_state.hand_force).norm();
+  const double change = (answer - m_state.last_answer).norm();
+  const bool follows = m_params.rates.between_frames != BetweenFrames::hold;
+  m_state.force_jump = std::max(0.0, follows ? jump - change / m_params.rates.physics_period_ticks : jump);
+  m_state.last_answer = answer;
+}
+
+/// A force that is held, or carried on, is off by a share of the last jump that grows from tick to tick.
+ForceErrorParts HandSide::find_error() const {
+  ForceErrorParts parts;
+  const double force = m_state.hand_force.norm();
+  if (!m_params.estimates_error || !(force > 0.0)) return parts;
+  const double age = static_cast<double>(m_state.ticks_since_step) / m_params.rates.physics_period_ticks;
+  parts.mesh = m_state.error.mesh * force;
+  parts.step = m_state.error.step * force + age * m_state.force_jump;
+  parts.contact = -m_state.error.contact * force;
+  parts.solver = m_state.error.solver;
+  parts.left_out = m_state.error.left_out;
+  return parts;
 }
 
 /// The device holds its last force on the way to where the hand is at the end of the tick, so that the work
@@ -299,6 +326,7 @@ HapticRecord HandSide::make_record() const {
   record.gate_events = m_state.gated.events;
   record.port_energy = m_state.port_energy;
   record.passivity_energy = m_state.passivity_energy;
+  record.error = find_error();
   return record;
 }
 

@@ -113,6 +113,8 @@ class HandSide {
   bool finds_same_contacts();
   void gather_contact_forces();
   void limit_force(device::Wrench& felt) const;
+  void note_answer(const StepResult& result);
+  ForceErrorParts find_error() const;
   // snapshot.cpp, as serialize()
   void serialize_contacts(Archive& archive);
   void serialize_springs(Archive& archive);

@@ -71,6 +71,8 @@ struct Params {
   /// A step that cannot be made ends the run. Else its motion is limited, or the body stands still for it,
   /// and the run goes on.
   bool is_strict = true;
+  /// Estimate in every step by how much the force at the hand is off.
+  bool estimates_error = false;
   int threads = 1;
 
   /// The body gets the contacts of one detection a step, over the tool's whole motion since the last.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "base/types.h"
@@ -7,6 +8,18 @@
 #include "sim/fidelity.h"
 
 namespace argil::sim {
+
+/// By how much the force at the hand is off, part by part [N]. What has a known sign has it: above 0 the
+/// found force is the larger one.
+struct ForceErrorParts {
+  double mesh = 0.0;      ///< ≥ 0: cells of this size are too stiff
+  double step = 0.0;      ///< by the length of the steps, and by a force that is held between them
+  double contact = 0.0;   ///< ≤ 0: the contact's stiffness κ lets the tool sink in
+  double solver = 0.0;    ///< by what the linear solve left
+  double left_out = 0.0;  ///< by what the step left out: a region at rest, or all of the body
+
+  double total() const { return std::abs(mesh + contact) + step + solver + left_out; }
+};
 
 /// One haptic tick, as written to /haptic.
 struct HapticRecord {
@@ -23,6 +36,7 @@ struct HapticRecord {
   std::uint8_t gate_events = 0;
   double port_energy = 0.0;       ///< [J] given to the hand since the start; above 0: made by the simulation
   double passivity_energy = 0.0;  ///< [J] kept from the hand since the start by the passivity controller
+  ForceErrorParts error;          ///< of `force`; zero where nothing is estimated
 };
 
 /// One physics step, as written to /physics.

@@ -1,6 +1,7 @@
 // Everything that a tick takes from earlier ones, each field named once for both ways.
 
 #include "base/check.h"
+#include "sim/force_error.h"
 #include "sim/simulation.h"
 #include "solid/committed.h"
 #include "solid/step_solver.h"
@@ -49,6 +50,11 @@ void HandSide::serialize(Archive& archive) {
   serialize_contacts(archive);
   archive.number("ledger/port_energy", m_state.port_energy);
   archive.number("ledger/passivity_energy", m_state.passivity_energy);
+  if (m_params.estimates_error) {
+    serialize_rates(archive, "hand/error_", m_state.error);
+    archive.number("hand/force_jump", m_state.force_jump);
+    archive.array("hand/last_answer", m_state.last_answer);
+  }
   if (!archive.is_restoring()) return;
   m_still_detections = 0;  // m_contacts are of another state
   commit();
@@ -71,6 +77,7 @@ void BodySide::serialize(Archive& archive) {
   solid::serialize(archive, m_solid, m_region, m_state.solid);
   m_flow.serialize(archive);
   m_economy.serialize(archive);
+  m_error.serialize(archive);
   if (!archive.is_restoring()) return;
   if (!archive.keeps_history()) m_region.wake_all();
   const StepStatus status =

@@ -53,6 +53,15 @@ struct HandPose {
   device::Wrench felt;  ///< before passivity and gate
 };
 
+/// How the body's side expects the force at the hand to be off, from one step to the next.
+struct ForceErrorRates {
+  double mesh = 0.0;      ///< of the force [–]
+  double step = 0.0;      ///< likewise
+  double contact = 0.0;   ///< likewise
+  double solver = 0.0;    ///< [N]
+  double left_out = 0.0;  ///< [N]
+};
+
 /// What the hand's side changes in every tick. The touched surface, the contacts and the gathered load, whose
 /// size is the scene's, keep their own.
 struct HandState {
@@ -76,8 +85,11 @@ struct HandState {
   int num_contacts = 0;             ///< of the last detection
   contact::Yielding yielding = contact::Yielding::yes;  ///< pressure: of the body, since the tool touches it
   // ledgers
-  double port_energy = 0.0;       ///< [J] work of the device's force on the hand since the start
-  double passivity_energy = 0.0;  ///< [J] that the passivity controller has kept from the hand
+  ForceErrorRates error;            ///< of the last step
+  double force_jump = 0.0;          ///< [N] by which a step's answer was off what the hand felt before it
+  Vec3 last_answer = Vec3::Zero();  ///< of a step [N]
+  double port_energy = 0.0;         ///< [J] work of the device's force on the hand since the start
+  double passivity_energy = 0.0;    ///< [J] that the passivity controller has kept from the hand
 
   explicit HandState(const Params& params);
 };

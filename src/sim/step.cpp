@@ -62,11 +62,13 @@ StepStatus BodySide::move_solid(const ContactLoad& load, StepResult& result) {
   apply_deflection(load, result);                                 // what contacts lose as the body moves on
   solid::take_velocity(m_solid, m_region.part(), m_state.solid);  // v ← v'
   scale_velocity(load.patch);                                     // v ← G_d^{h/h_ref} v (eq. 9)
-  solid::move(m_solid, m_region.part(), m_state.solid);           // x ← x̂ + τ v
+  m_error.keep_solution(load, m_force.contacts(), m_state.solid.v);
+  solid::move(m_solid, m_region.part(), m_state.solid);  // x ← x̂ + τ v
   ARGIL_TRY(check_energy());
   ARGIL_TRY(update_kinematics());  // F → R → ε
   flow();                          // ε_p
   m_economy.finish_step(m_state);  // what the next step may leave out
+  m_error.finish_step(load, m_state);
   find_surface(result);
   return StepStatus::ok();
 }

@@ -5,6 +5,7 @@
 #include "base/types.h"
 #include "contact/pressure.h"
 #include "device/gate.h"
+#include "sim/state.h"
 
 namespace argil::sim {
 
@@ -17,6 +18,8 @@ struct StepResult {
   std::vector<int> moved;
   Points surface_x;  ///< places of all vertices of the touched surface, or of these [m], where it has moved
   device::Wrench felt;  ///< what the hand felt, less what the body's deflection has taken from it
+
+  ForceErrorRates error;  ///< of that force
 
   bool is_limited = false;  ///< motion was held back: `felt` is that of the step that was solved for
 

@@ -89,6 +89,10 @@ class Simulation:
     time = property(lambda self: self._run.time, doc="Since the start [s].")
     force = property(lambda self: self._run.force, doc="On the hand [N], 3, before passivity and gate.")
     torque = property(lambda self: self._run.torque, doc="On the hand about its point [N m], 3, likewise.")
+    force_error = property(lambda self: self._run.force_error,
+                           doc="Estimate [N] of by how much the force is off; 0 without /haptics/force_error.")
+    force_error_parts = property(lambda self: self._run.force_error_parts,
+                                 doc="Its parts [N]: mesh, step, contact, solver, left_out.")
     device_force = property(lambda self: self._run.device_force, doc="As the device renders it [N], 3, after the gate.")
     tool_position = property(lambda self: self._run.tool_position, doc="Hand's point [m], 3.")
     tool_orientation = property(lambda self: self._run.tool_orientation,

@@ -16,6 +16,7 @@ class Run(NamedTuple):
     time: np.ndarray  # [s]
     force: np.ndarray  # [N]
     deforming: np.ndarray  # the tool pushes or pulls
+    band: tuple = None  # lower and upper end of where the force should be [N], where the run has estimated it
 
 
 def moving_mean(time, values, window):
@@ -26,19 +27,30 @@ def moving_mean(time, values, window):
         np.ones(len(values)), ones, "full")[width // 2:][:len(values)]
 
 
+def read_band(result, force):
+    """The force less what is known to be too much of it, and what may be either; None where nothing was estimated."""
+    if "force_error_parts" not in result["haptic"]:
+        return None
+    parts = result["haptic/force_error_parts"][:]
+    signed, either = parts[:, 0] + parts[:, 2], parts[:, 1] + parts[:, 3] + parts[:, 4]
+    return np.maximum(0, force - np.maximum(signed, 0) - either), force + np.maximum(-signed, 0) + either
+
+
 def read_run(source, label, align_press, smooth=0.0):
     """Of a result, by its name or opened."""
     with opened(source) as result:
         time, force, deforming = result["haptic/time"][:], force_norm(result), is_deforming(result)
+        band = read_band(result, force)
     if len(time) == 0:
         raise InputError(f"{name_of(source)}: has no haptic ticks")
     if smooth > 0.0:
         force = moving_mean(time, force, smooth)
+        band = band and tuple(moving_mean(time, end, smooth) for end in band)
     if align_press:
         if not deforming.any():
             raise InputError(f"{name_of(source)}: the tool never pushes or pulls, so there is no press to align")
         time = time - time[np.argmax(deforming)]
-    return Run(label, time, force, deforming)
+    return Run(label, time, force, deforming, band)
 
 
 def find_peak(runs):
@@ -62,6 +74,8 @@ def draw_lines(axes, runs, time_label):
     for number, run in enumerate(runs):
         axes.plot(run.time, run.force, label=run.label, color=COLOURS[number % len(COLOURS)],
                   linestyle=DASHES[number % len(DASHES)])
+        if run.band:
+            axes.fill_between(run.time, *run.band, color=COLOURS[number % len(COLOURS)], alpha=0.2, linewidth=0)
     axes.set_xlabel(time_label)
 
 
