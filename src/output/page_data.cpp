@@ -156,14 +156,25 @@ void add_path(PageBlock& block, const std::vector<sim::HapticRecord>& records) {
 
 std::size_t add_force(PageBlock& block, const std::vector<sim::HapticRecord>& records) {
   const std::size_t stride = find_stride(records);
-  std::vector<float> time, low, high;
+  std::vector<float> time, low, high, error_low, error_high;
   std::vector<std::uint8_t> mode;
+  bool is_estimated = false;
   for (std::size_t begin = 0; begin < records.size(); begin += stride) {
     double least = records[begin].force.stableNorm(), most = least;
     for (std::size_t i = begin; i < std::min(begin + stride, records.size()); ++i) {
       least = std::min(least, records[i].force.stableNorm());
       most = std::max(most, records[i].force.stableNorm());
     }
+    double below = least, above = most;
+    for (std::size_t i = begin; i < std::min(begin + stride, records.size()); ++i) {
+      const double force = records[i].force.stableNorm();
+      const sim::ForceErrorParts& parts = records[i].error;
+      below = std::min(below, force - parts.most_above());
+      above = std::max(above, force + parts.most_below());
+      is_estimated = is_estimated || parts.total() > 0.0;
+    }
+    error_low.push_back(static_cast<float>(std::max(0.0, below)));
+    error_high.push_back(static_cast<float>(above));
     time.push_back(static_cast<float>(records[begin].time));
     low.push_back(static_cast<float>(least));
     high.push_back(static_cast<float>(most));
@@ -173,6 +184,9 @@ std::size_t add_force(PageBlock& block, const std::vector<sim::HapticRecord>& re
   block.add("force_low", low);
   block.add("force_high", high);
   block.add("force_mode", mode);
+  if (!is_estimated) return stride;
+  block.add("error_low", error_low);
+  block.add("error_high", error_high);
   return stride;
 }
 

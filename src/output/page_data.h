@@ -66,7 +66,8 @@ PageSurface add_surface(PageBlock& block, const SurfaceFrames& surface, const st
 void add_tool(PageBlock& block, const mesh::TriangleMesh& tool);
 
 /// Adds the force: force_time [s], force_low and force_high [N], force_mode. At most 4000 points, each the
-/// range of as many ticks; returns how many ticks a point stands for.
+/// range of as many ticks; returns how many ticks a point stands for. Where its error was estimated also
+/// error_low and error_high [N], between which the force should be.
 std::size_t add_force(PageBlock& block, const std::vector<sim::HapticRecord>& records);
 
 /// Adds tool_path [m]: the hand's point at the same ticks and at the last one, x y z each.

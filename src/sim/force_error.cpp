@@ -59,13 +59,11 @@ void ForceErrorEstimate::keep_solution(const ContactLoad& load, const NodalForce
   if (!is_due()) return;
   m_state.is_kept = true;
   Vec3 force = Vec3::Zero();
-  m_state.hand_power = 0.0;
-  for (const int n : contacts.nodes()) {
-    force += contacts.at.col(n);
-    m_state.hand_power += std::abs(contacts.at.col(n).dot(v.col(n)));
-  }
-  const double speed = (load.hand.tool.position - m_state.tool).norm() / m_params.rates.step_seconds();
-  m_state.hand_power = std::max(m_state.hand_power, force.norm() * speed);
+  for (const int n : contacts.nodes()) force += contacts.at.col(n);
+  const double of_tool = (load.hand.tool.position - m_state.tool).norm() / m_params.rates.step_seconds();
+  const double fastest = std::sqrt(m_region.part().nodes.find_largest(
+      v.cols(), [&](std::ptrdiff_t n) { return v.col(n).squaredNorm(); }));
+  m_state.hand_power = force.norm() * std::max(of_tool, fastest);
   m_state.solved_power = m_region.part().nodes.sum(
       v.cols(), [&](std::ptrdiff_t n) { return v.col(n).dot(m_solid.forces.internal.col(n)); });
   m_state.solved_power += m_solid.prediction.tau * find_stiffness_power(v);

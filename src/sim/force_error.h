@@ -56,7 +56,7 @@ class ForceErrorEstimate {
     // Of a step that the next one checks:
     bool is_kept = false;
     double solved_power = 0.0;  // [W] that the internal forces at its end were solved to take
-    double hand_power = 0.0;    // [W] of the hand, or Σ|f·v| of the contacts where that is more
+    double hand_power = 0.0;    // [W] of its force, at the speed of the tool or of the fastest node
     Vec3 tool = Vec3::Zero();   // where it was at the end of the last step [m]
     double reach = 0.0;         // root of Σ (uᵢ/u)² of the displacements uᵢ, u the largest
   };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -18,6 +19,9 @@ struct ForceErrorParts {
   double solver = 0.0;    ///< by what the linear solve left
   double left_out = 0.0;  ///< by what the step left out: a region at rest, or all of the body
 
+  /// By how much the found force may be the larger one, and the smaller one [N].
+  double most_above() const { return std::max(0.0, mesh + contact) + step + solver + left_out; }
+  double most_below() const { return std::max(0.0, -mesh - contact) + step + solver + left_out; }
   double total() const { return std::abs(mesh + contact) + step + solver + left_out; }
 };
 

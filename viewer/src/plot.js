@@ -53,6 +53,7 @@ export class ForcePlot {
     pen.font = '12px "DejaVu Sans", system-ui, sans-serif';
     this.drawModes(pen);
     this.drawAxes(pen);
+    this.drawErrorBar(pen);
     this.drawForce(pen);
     return layer;
   }
@@ -92,6 +93,20 @@ export class ForcePlot {
     pen.textAlign = "center";
     pen.fillText("force on the hand [N]", 0, 0);
     pen.restore();
+  }
+
+  /** Where the force should be, by what the run has estimated. */
+  drawErrorBar(pen) {
+    const { force_time: time, error_low: low, error_high: high } = this.result.arrays;
+    if (!low) return;
+    pen.beginPath();
+    for (let i = 0; i < time.length; ++i) pen.lineTo(this.x(time[i]), this.y(high[i]));
+    for (let i = time.length - 1; i >= 0; --i) pen.lineTo(this.x(time[i]), this.y(low[i]));
+    pen.closePath();
+    pen.globalAlpha = 0.22;
+    pen.fillStyle = FORCE;
+    pen.fill();
+    pen.globalAlpha = 1;
   }
 
   drawForce(pen) {

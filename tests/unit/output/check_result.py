@@ -16,6 +16,7 @@ HAPTIC = {
     "device_force": ((3,), "<f8", "N"), "mode": ((), "|u1", "1"), "force_age": ((), "<i4", "1"),
     "num_contacts": ((), "<i4", "1"), "gate_events": ((), "|u1", "1"),
     "port_energy": ((), "<f8", "J"), "passivity_energy": ((), "<f8", "J"),
+    "force_error": ((), "<f8", "N"), "force_error_parts": ((5,), "<f8", "N"),
 }
 PHYSICS = {
     "tick": ("<i8", "1"), "time": ("<f8", "s"), "kinetic_energy": ("<f8", "J"), "elastic_energy": ("<f8", "J"),
@@ -81,6 +82,9 @@ def check_series(file, ticks):
     same(haptic["gate_events"], np.arange(ticks) % 16, "gate_events")
     same(haptic["port_energy"], 7.0 - t, "port_energy")
     same(haptic["passivity_energy"], 8.0 + t, "passivity_energy")
+    parts = np.stack([0.5 * t, 0 * t + 0.25, -0.125 * t, 0 * t + 2, 0 * t + 0.0625], axis=1)
+    same(haptic["force_error_parts"], parts, "force_error_parts")
+    same(haptic["force_error"], 0.375 * t + 2.3125, "force_error")  # exact in binary
 
     physics = file["physics"]
     check(set(physics) == set(PHYSICS), f"/physics holds {set(physics)}")

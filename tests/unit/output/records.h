@@ -28,6 +28,7 @@ inline ResultHeader make_header(bool with_skin = true) {
   header.tool.triangles.resize(3, 1);
   header.tool.triangles << 0, 1, 2;
   header.haptic_period = 0.001;
+  header.estimates_error = true;
   header.provenance = {{"scenario", "{\"about\": \"ε\"}"}, {"numerics_tag", ""}};
   return header;
 }
@@ -48,6 +49,7 @@ inline sim::HapticRecord make_haptic(Tick tick) {
   record.gate_events = static_cast<std::uint8_t>(tick % 16);
   record.port_energy = 7.0 - t;
   record.passivity_energy = 8.0 + t;
+  record.error = {0.5 * t, 0.25, -0.125 * t, 2.0, 0.0625};
   return record;
 }
 

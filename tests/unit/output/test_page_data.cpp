@@ -73,6 +73,20 @@ TEST(AddForce, GivesTheRangeOfAsManyTicksAsDoNotFit) {
   EXPECT_EQ(high.back(), 8000.0F);
 }
 
+TEST(AddForce, GivesTheBandOfTheEstimatedErrorOnlyWhereThereIsOne) {
+  std::vector<sim::HapticRecord> records(3);
+  for (sim::HapticRecord& record : records) record.force = Vec3(0, 0, 4);
+  PageBlock without;
+  add_force(without, records);
+  for (const PageSection& section : without.sections()) EXPECT_NE(section.name, "error_low");
+  records[1].error = {1.0, 0.25, -0.5, 0.125, 0.0};   // found too large by ½, or by ⅜ either way
+  records[2].error = {0.5, 0.25, -1.0, 0.125, 0.25};  // too small by ½, or by ⅝ either way
+  PageBlock block;
+  add_force(block, records);
+  EXPECT_EQ(read_section<float>(block, "error_low"), (std::vector<float>{4.0F, 3.125F, 3.375F}));
+  EXPECT_EQ(read_section<float>(block, "error_high"), (std::vector<float>{4.0F, 4.375F, 5.125F}));
+}
+
 TEST(AddPath, GoesFromTheFirstTickToTheLast) {
   std::vector<sim::HapticRecord> records(8003);
   for (std::size_t i = 0; i < records.size(); ++i)

@@ -64,6 +64,9 @@ TEST(ResultReader, GivesBackEveryHapticRecordToTheBit) {
     ASSERT_EQ(records[i].gate_events, wanted.gate_events);
     ASSERT_EQ(records[i].port_energy, wanted.port_energy);
     ASSERT_EQ(records[i].passivity_energy, wanted.passivity_energy);
+    ASSERT_EQ(records[i].error.mesh, wanted.error.mesh);
+    ASSERT_EQ(records[i].error.contact, wanted.error.contact);
+    ASSERT_EQ(records[i].error.total(), wanted.error.total());
   }
 }
 

@@ -170,6 +170,17 @@ const Case kCases[] = {
     {"local", [](Params& p) { p.extent = Extent::local; }},
     {"pcg_jacobi", [](Params& p) { p.solid.solver.kind = linear::SolverKind::pcg_jacobi; }},
     {"without_friction", [](Params& p) { p.contact.friction = 0.0; }},
+    {"force_error", [](Params& p) { p.estimates_error = true; }},
+    {"force_error_of_a_pressure",
+     [](Params& p) {
+       use_pressure(p);
+       p.estimates_error = true;
+     }},
+    {"force_error_p2",
+     [](Params& p) {
+       p.solid.element = solid::ElementKind::p2;
+       p.estimates_error = true;
+     }},
     {"fidelity", [](Params& p) { p.fidelity.mode = FidelityMode::automatic; }},
     {"fidelity_two_threads",
      [](Params& p) {

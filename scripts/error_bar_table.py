@@ -1,0 +1,159 @@
+#!/usr/bin/python3
+"""The estimated error of the force at the hand beside the true one: scenes on the cells that they come with and on finer ones with stiffer
+contact. A tick counts where the true error is above 0.5 % of the scene's peak and above the error that the reference estimates of itself,
+and counts as certain where it is above five times that. Effectivity is estimate over true error; clay that flows may be within 0.3 and 3,
+all else within 0.5 and 2.
+
+Usage: error_bar_table.py ARGIL [-o STEM] [--scene NAME ...]       writes STEM.csv, STEM.png and STEM.pdf
+"""
+import argparse
+import json
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+import argil_plot as ap
+import h5py
+from argil_plot import np, plt
+from table_file import write_table
+
+ROOT = Path(__file__).resolve().parent.parent
+EDGE, RADIUS, GAP = 0.04, 0.01, 0.0002  # of the block, of the ball, before the touch [m]
+PUNCH = 0.004  # half the side of the punch's face [m]
+PEAK_SHARE = 0.005  # of the peak, above which an error counts
+REFERENCE_TIMES = 5  # the reference's own error
+
+
+class Scene(NamedTuple):
+    """One scene: what is run, what makes it a reference, and within which factor the estimate should be."""
+
+    name: str
+    scenario: dict  # or the name of a file in scenarios
+    places: np.ndarray = None  # of the tool, one a tick [m]
+    settings: tuple = ()
+    finer: tuple = ()
+    factor: float = 2.0
+
+
+def press(depth, ticks, radius=RADIUS):
+    t = np.arange(ticks + 1) / ticks
+    return np.c_[0 * t + 0.0006, 0 * t - 0.0007, EDGE + radius + GAP - (GAP + depth) * t]
+
+
+def slide(depth, ticks):
+    t = np.arange(ticks + 1) / ticks
+    down, along = np.minimum(1, t / 0.4), np.maximum(0, t - 0.4) / 0.6
+    return np.c_[-0.004 + 0.008 * along, 0 * t + 0.0003, EDGE + RADIUS + GAP - (GAP + depth) * down]
+
+
+def block(cells="graded", tets=4000, friction=0.0, strength=None, tool=None, model="hencky"):
+    plasticity = {"strength_Pa": strength} if strength else {"enabled": False}
+    return {
+        "about": "A tool on a block.",
+        "body": {"cells": {"kind": cells, "remesh": "never"},
+                 "shape": {"kind": "box", "size_m": EDGE, "target_tets": tets, "skin_triangles": 0},
+                 "fixed": [{"kind": "plane", "normal": [0, 0, 1], "offset_m": 0}]},
+        "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3, "plasticity": plasticity, "clay_kernel": {"form": "off"}},
+        "tool": {"shape": tool or {"kind": "sphere", "radius_m": RADIUS}},
+        "contact": {"friction": friction},
+        "dynamics": {"rayleigh_stiffness_s": 0.0005, "model": model},
+        "haptics": {"frame_period_ticks": 1000, "chatter_limit": 1},
+    }
+
+
+def tets(number):
+    return (f"/body/shape/target_tets={number}",)
+
+
+def near(size, first=8000):
+    return (f"/body/cells/near_tool_m={size}", *tets(first))
+
+
+def write_punch(folder):
+    """A flat punch with a square face, its point at the middle of the face."""
+    r = PUNCH
+    corners = [(x, y, z) for z in (0, 2 * r) for y in (-r, r) for x in (-r, r)]
+    faces = [(1, 3, 4), (1, 4, 2), (5, 6, 8), (5, 8, 7), (1, 2, 6), (1, 6, 5), (3, 7, 8), (3, 8, 4), (1, 5, 7), (1, 7, 3), (2, 4, 8), (2, 8, 6)]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a} {b} {c}" for a, b, c in faces]
+    (folder / "punch.obj").write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
+def list_scenes():
+    stylus = {"kind": "stylus", "tip_radius_m": 0.001, "radius_m": 0.006, "length_m": 0.012}
+    dry = ("/trace/duration_s=0.9", "/haptics/physics_period_ticks=2", "/material/clay_kernel/form=off", "/body/cells/remesh=never")
+    wet = (*dry, "/body/initial_saturation=0.8")
+    return [
+        Scene("ball, even cells", block("even", 8000), press(0.003, 200), finer=tets(100000)),
+        Scene("ball, graded cells", block(), press(0.003, 200), finer=near(0.0007)),
+        Scene("stylus", block(tool=stylus), press(0.0015, 200, 0.001), finer=near(0.00025, 4000)),
+        Scene("punch", block(tool={"kind": "mesh", "file": "punch.obj"}), press(0.001, 200, 0.0), settings=near(0.0015, 4000),
+              finer=near(0.0006)),
+        Scene("slide with friction", block(friction=0.5), slide(0.002, 300), settings=near(0.002, 4000), finer=near(0.0009)),
+        Scene("clay", block(strength=1100), press(0.004, 400), finer=near(0.0009), factor=3.0),
+        Scene("demonstration, dry", "demo_dino_dry.json", settings=dry, finer=tets(40000), factor=3.0),
+        Scene("demonstration, wet", "demo_dino_dry.json", settings=wet, finer=tets(40000), factor=3.0),
+        Scene("ball, ten nodes", block("even", 1000), press(0.003, 200), settings=("/dynamics/element=p2",),
+              finer=("/dynamics/element=p1", "/body/cells/kind=graded", *near(0.0007))),
+    ]
+
+
+def run(argil, folder, scene, settings):
+    """Force, its estimated error, its parts [N] and the number of tets."""
+    if scene.places is None:
+        scenario = ROOT / "scenarios" / scene.scenario
+    else:
+        time = np.arange(len(scene.places)) * 1e-3
+        np.savetxt(folder / "motion.csv", np.c_[time, scene.places], delimiter=",", header="t,x,y,z", comments="", fmt="%.9g")
+        write_punch(folder)
+        scenario = folder / "scene.json"
+        scenario.write_text(json.dumps({**scene.scenario, "trace": {"file": "motion.csv"}}), encoding="ascii")
+    words = [word for setting in ("/haptics/force_error=true", *settings) for word in ("--set", setting)]
+    subprocess.run([argil, "run", scenario, "-q", "-o", folder / "run.h5", *words], check=True)
+    with h5py.File(folder / "run.h5") as file:
+        return (np.linalg.norm(file["haptic/force"][:], axis=1), file["haptic/force_error"][:], file["haptic/force_error_parts"][:],
+                len(file["mesh/tets"]))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
+    parser.add_argument("argil", type=Path)
+    parser.add_argument("-o", "--output", type=Path, default=ROOT / "results/fidelity/error_bar", metavar="STEM")
+    parser.add_argument("--scene", nargs="+", metavar="NAME", help="only these")
+    options = parser.parse_args()
+    rows = []
+    scenes = [scene for scene in list_scenes() if not options.scene or scene.name in options.scene]
+    figure, axes = plt.subplots(3, 3, figsize=(10.5, 8.4), layout="constrained")
+    for scene, axis in zip(scenes, axes.flat):
+        with tempfile.TemporaryDirectory() as name:
+            force, estimate, parts, number = run(options.argil.resolve(), Path(name), scene, scene.settings)
+            finer, of_finer, _, many = run(options.argil.resolve(), Path(name), scene, (*scene.settings, *scene.finer))
+        true = np.abs(force - finer)
+        touches = (force > 0) & (finer > 0) & (true > PEAK_SHARE * force.max())
+        effectivity = estimate / np.maximum(true, 1e-12)
+        is_inside = (effectivity > 1 / scene.factor) & (effectivity < scene.factor)
+        counts, certain = (touches & (true > times * of_finer) for times in (1, REFERENCE_TIMES))
+        middle = f"{np.median(effectivity[counts]):.2f}" if counts.any() else ""
+        inside = [f"{100 * np.mean(is_inside[ticks]):.0f}" if ticks.any() else "" for ticks in (counts, certain)]
+        peak = np.argmax(force)
+        rows.append([scene.name, number, many, f"{force.max():.3f}", f"{100 * true[peak] / force[peak]:.1f}",
+                     f"{100 * estimate[peak] / force[peak]:.1f}", *(f"{100 * part / force[peak]:.2f}" for part in parts[peak]),
+                     f"{100 * of_finer[peak] / force[peak]:.1f}", f"{scene.factor:g}", middle, counts.sum(), inside[0], certain.sum(), inside[1]])
+        print(*rows[-1], sep=", ", flush=True)
+        time = np.arange(1, len(force) + 1)
+        axis.plot(time, true, "k-", linewidth=1.2, label="beside finer cells")
+        axis.plot(time, estimate, color=ap.COLOURS[0], linewidth=1, label="estimate")
+        axis.fill_between(time, estimate / scene.factor, estimate * scene.factor, color=ap.COLOURS[0], alpha=0.15, linewidth=0)
+        axis.plot(time, of_finer, ":", color="grey", linewidth=1, label="estimate of the finer")
+        axis.set(title=f"{scene.name}: {number} and {many} tets", xlabel="time [ms]", ylabel="error of the force [N]", ylim=(0, None))
+        axis.title.set_fontsize(9)
+    axes.flat[0].legend(frameon=False, fontsize=8)
+    write_table(options.output.with_suffix(".csv"), ["scene", "tets", "tets_of_reference", "peak_N", "error_at_peak_percent",
+                "estimate_at_peak_percent", "mesh_percent", "step_percent", "contact_percent", "solver_percent", "left_out_percent",
+                "estimate_of_reference_percent", "factor", "median_effectivity", "ticks", "within_percent", "certain_ticks",
+                "certain_within_percent"], rows)
+    ap.save(figure, options.output)
+
+
+if __name__ == "__main__":
+    main()
