@@ -219,9 +219,9 @@ bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffnes
   if (!activity.are_alone) return !update_active_contacts(contacts, body.trial.x, activity);
   find_trials(contacts, body.trial.x, activity.trial);
   if (activity.num_updates < kRoundsWithoutSearch) {
-    ++activity.num_updates;
     const Misfit misfit = find_misfit(list, activity, true);
     if (misfit.pressing == 0.0 && misfit.friction <= kConeTolerance * misfit.friction_sum) return true;
+    ++activity.num_updates;
     move_limits(list, 1.0, activity);
     if (activity.num_updates == kRoundsWithoutSearch) stand_at_solution(body, activity);
     choose(list, activity.trial, activity);
