@@ -61,8 +61,8 @@ void ForceErrorEstimate::keep_solution(const ContactLoad& load, const NodalForce
   Vec3 force = Vec3::Zero();
   for (const int n : contacts.nodes()) force += contacts.at.col(n);
   const double of_tool = (load.hand.tool.position - m_state.tool).norm() / m_params.rates.step_seconds();
-  const double fastest = std::sqrt(m_region.part().nodes.find_largest(
-      v.cols(), [&](std::ptrdiff_t n) { return v.col(n).squaredNorm(); }));
+  const double fastest = std::sqrt(
+      m_region.part().nodes.find_largest(v.cols(), [&](std::ptrdiff_t n) { return v.col(n).squaredNorm(); }));
   m_state.hand_power = force.norm() * std::max(of_tool, fastest);
   m_state.solved_power = m_region.part().nodes.sum(
       v.cols(), [&](std::ptrdiff_t n) { return v.col(n).dot(m_solid.forces.internal.col(n)); });
@@ -74,12 +74,11 @@ double ForceErrorEstimate::find_stiffness_power(const Points& v) const {
   constexpr double kAtYield = 1.0 - 1e-6;
   const solid::Elements& elements = m_solid.model.elements;
   const solid::ElasticArrays elastic = m_solid.elastic.arrays();
-  const int N = elements.nodes_per_tet;
   const auto of_point = [&](int p) {
     const int tet = elements.tet_of_point(p);
-    Mat3 H = Mat3::Zero();
-    for (int i = 0; i < N; ++i)
-      H.noalias() += v.col(elements.nodes(i, tet)) * m_solid.materials.gradient().col(N * p + i).transpose();
+    const Mat3 H = elements.nodes_per_tet == 4
+                       ? solid::find_gradient<4>(elements, m_solid.materials.gradient(), v, p)
+                       : solid::find_gradient<10>(elements, m_solid.materials.gradient(), v, p);
     const Mat3 turned = m_solid.kinematics.rotation().middleCols<3>(3 * p).transpose() * H;
     const Vec6 rate = to_mandel(0.5 * (turned + turned.transpose()));
     const solid::Elasticity e = m_solid.materials.elasticity(tet);
@@ -96,9 +95,10 @@ double ForceErrorEstimate::find_stiffness_power(const Points& v) const {
     }
     return m_solid.materials.weight()(p) * power;
   };
-  return m_region.part().batches.sum(elements.num_points(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const std::ptrdiff_t Q = elements.points_per_tet;
+  return m_region.part().batches.sum(elements.num_tets(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     double sum = 0.0;
-    for (std::ptrdiff_t p = begin; p < end; ++p) sum += of_point(static_cast<int>(p));
+    for (std::ptrdiff_t p = Q * begin; p < Q * end; ++p) sum += of_point(static_cast<int>(p));
     return sum;
   });
 }

@@ -47,6 +47,20 @@ inline constexpr double kPointNear = 0.13819660112501051518;
 /// ∇N [1/m] of the N nodes of a tet at a point, from `gradient`, ∇λ there.
 template <int N>
 Eigen::Matrix<double, 3, N> find_node_gradients(const Eigen::Matrix3Xd& gradient, Eigen::Index point);
+template <>
+Eigen::Matrix<double, 3, 4> find_node_gradients<4>(const Eigen::Matrix3Xd& gradient, Eigen::Index point);
+template <>
+Eigen::Matrix<double, 3, 10> find_node_gradients<10>(const Eigen::Matrix3Xd& gradient, Eigen::Index point);
+
+/// Σ uᵢ ⊗ ∇Nᵢ at a point, of displacements, places or speeds u (3×n) of the nodes.
+template <int N>
+Mat3 find_gradient(const Elements& elements, const Eigen::Matrix3Xd& gradient, const Points& u, int point) {
+  const Eigen::Matrix<double, 3, N> of_nodes = find_node_gradients<N>(gradient, point);
+  Mat3 H = Mat3::Zero();
+  for (int i = 0; i < N; ++i)
+    H.noalias() += u.col(elements.nodes(i, elements.tet_of_point(point))) * of_nodes.col(i).transpose();
+  return H;
+}
 
 /// body(begin, end) for the points of tets begin … end−1 of a run, kLanes at a time.
 template <class Body>

@@ -31,12 +31,7 @@ class CornerProduct {
 
  private:
   Mat3 displacement_gradient(std::ptrdiff_t p) const {
-    const Elements& elements = m_body.model.elements;
-    const int tet = elements.tet_of_point(static_cast<int>(p));
-    const Eigen::Matrix<double, 3, N> gradient = find_node_gradients<N>(m_body.materials.gradient(), p);
-    Mat3 H = Mat3::Zero();
-    for (int i = 0; i < N; ++i) H.noalias() += m_u.col(elements.nodes(i, tet)) * gradient.col(i).transpose();
-    return H;
+    return find_gradient<N>(m_body.model.elements, m_body.materials.gradient(), m_u, static_cast<int>(p));
   }
   /// p1_nodal: the nodes' mean volume change.
   template <class Gradient>
