@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Is `argil run --accuracy` kept, and what does it cost? The force of scenes that ask for 5 and 2 %, with all passes counted, against that on
-cells that are 1.8 times as small; beside it the scene's own cells, and the fewest of one size that are as exact.
+"""Is `argil run --accuracy` kept, and what does it cost? The force of scenes that ask for 5 and 2 %, with all passes counted, against
+that on cells that are 1.8 times as small; and beside it four-node tets of one size.
 
-Usage: accuracy_table.py ARGIL [-o FILE.csv] [--scenes NAME …]      writes results/fidelity/accuracy.csv
+Usage: accuracy_table.py ARGIL [-o FILE.csv] [--scenes NAME …]      writes results/accuracy/accuracy.csv
 """
 import argparse
 import json
@@ -27,9 +27,11 @@ FIRM = ["/material/plasticity/enabled=false", "/material/clay_kernel/form=off"]
 
 def press(shape, tool, path, **material):
     """A scene of its own: `path` is t, x, y, z [s, m] of the tool."""
-    return {"about": "A press.", "body": {"shape": {"skin_triangles": 0, **shape}, "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 0.002}]},
-            "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3, "plasticity": {"enabled": False}, "clay_kernel": {"form": "off"}, **material},
-            "tool": {"shape": tool}, "contact": {"law": "pressure"}, "dynamics": {"rayleigh_stiffness_s": 0.001}, "trace": {"file": "path.csv"}, "path": path}
+    firm = {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3, "plasticity": {"enabled": False}, "clay_kernel": {"form": "off"}}
+    floor = {"kind": "half_space", "normal": [0, 0, 1], "offset_m": 0.002}
+    return {"about": "A press.", "body": {"shape": {"skin_triangles": 0, **shape}, "fixed": [floor]}, "material": {**firm, **material},
+            "tool": {"shape": tool}, "contact": {"law": "pressure"}, "dynamics": {"rayleigh_stiffness_s": 0.001},
+            "trace": {"file": "path.csv"}, "path": path}
 
 
 def go_down(top, depth, x=0.0012, y=0.0007, seconds=0.15):
@@ -58,7 +60,8 @@ def write_scene(folder, scene):
     scene = dict(scene)
     t, *places = np.array(scene.pop("path")).T
     ticks = np.arange(0, t[-1], 0.001)
-    np.savetxt(folder / "path.csv", np.c_[ticks, np.column_stack([np.interp(ticks, t, p) for p in places])], delimiter=",", header="t,x,y,z", comments="")
+    way = np.column_stack([ticks, *(np.interp(ticks, t, place) for place in places)])
+    np.savetxt(folder / "path.csv", way, delimiter=",", header="t,x,y,z", comments="")
     (folder / "scene.json").write_text(json.dumps(scene), encoding="utf-8")
     return folder / "scene.json", []
 
@@ -91,7 +94,7 @@ def find_error(force, reference):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
     parser.add_argument("argil", type=Path)
-    parser.add_argument("-o", "--output", type=Path, default=ROOT / "results/fidelity/accuracy.csv", metavar="FILE")
+    parser.add_argument("-o", "--output", type=Path, default=ROOT / "results/accuracy/accuracy.csv", metavar="FILE")
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), metavar="NAME")
     options = parser.parse_args()
     rows = []
@@ -100,7 +103,8 @@ def main():
             runner = Runner(options.argil.resolve(), Path(folder), *write_scene(Path(folder), SCENES[name]))
             asked = [(wanted, *runner.run(accuracy=wanted)) for wanted in WANTED]
             body = asked[-1][3]["body"]
-            reference = runner.run("/dynamics/element=p2", "/body/cells/kind=graded", f"/body/cells/near_tool_m={body['cells']['near_tool_m'] / FINER}",
+            reference = runner.run("/dynamics/element=p2", "/body/cells/kind=graded",
+                                   f"/body/cells/near_tool_m={body['cells']['near_tool_m'] / FINER}",
                                    f"/body/shape/target_tets={int(FINER * body['shape']['target_tets'])}")
             for wanted, force, tets, _, seconds, estimate in asked:
                 error, floor = find_error(force, reference[0])

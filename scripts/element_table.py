@@ -54,7 +54,8 @@ def main():
                         rows.append([model, element, TETS[element][size], nodes, threads, *(f"{c:.3f}" for c in cost), f"{sum(cost):.3f}",
                                      f"{ratio:.2f}" if element == "p2" else "1"])
                         print(*rows[-1], flush=True)
-    write_table(options.output, ["model", "element", "tets", "nodes", "threads", *(f"{stage}_ms" for stage in STAGES), "step_ms", "over_p1"], rows)
+    stages = [f"{stage}_ms" for stage in STAGES]
+    write_table(options.output, ["model", "element", "tets", "nodes", "threads", *stages, "step_ms", "over_p1"], rows)
 
 
 if __name__ == "__main__":

@@ -43,14 +43,17 @@ TEST(CompareForces, IsNothingOfRunsThatTouchNothing) {
   EXPECT_EQ(compare_forces(idle, idle, 0.5), 0.0);
 }
 
-/// Errors that fall as the size of cells to the power 3/2: no less than half of the truth is seen, and no
-/// more than twice.
+/// Errors that fall as the size of cells to the power 3/2, to one side or from one side to the other.
 TEST(EstimateError, IsThatOfTheFinerPass) {
   for (const double refinement : {1.6, 2.0}) {
     const double fine = 0.01, coarse = fine * std::pow(refinement, 1.5);
-    const double estimate = estimate_error(make_pass(1.0, coarse), make_pass(refinement, fine), 0.0);
-    EXPECT_GT(estimate, 0.5 * fine) << refinement;
-    EXPECT_LT(estimate, 2.0 * fine) << refinement;
+    const AccuracyPass pass = make_pass(refinement, fine);
+    const double of_one_side = estimate_error(make_pass(1.0, coarse), pass, 0.0);
+    EXPECT_GT(of_one_side, 0.5 * fine) << refinement;
+    EXPECT_LT(of_one_side, fine) << refinement;
+    const double of_both_sides = estimate_error(make_pass(1.0, -coarse), pass, 0.0);
+    EXPECT_GT(of_both_sides, fine) << refinement;
+    EXPECT_LT(of_both_sides, 1.6 * fine) << refinement;
   }
 }
 
