@@ -19,8 +19,6 @@
 namespace argil::run {
 namespace {
 
-constexpr double kOrder = 1.5;         // in the size of cells
-constexpr double kOfOneCell = 0.03;    // error on one cell along the radius of contact, by experience
 constexpr double kRefinement = 1.6;    // from the first pass to the second
 constexpr double kFloor = 0.01;        // [N] of the error that never counts
 constexpr int kMostRuns = 4;           // three passes and the run
@@ -118,7 +116,7 @@ class Planner {
   /// What is far from the tool is made finer with the rest.
   RunOptions with_cells(double near, double cells) const {
     constexpr double kEnough = 1.66;  // cells along the radius of contact, for as few tets as there can be
-    return with_tets(near, std::max(1.0, std::pow(cells / kEnough, kOrder)) * m_fewest);
+    return with_tets(near, std::max(1.0, std::pow(cells / kEnough, scenario::kContactOrder)) * m_fewest);
   }
   RunEnd run_where_nothing_is_touched() {
     RunOptions options = with_cells(0.0, 1.0);
@@ -128,7 +126,7 @@ class Planner {
   void take(const std::string& result, double cells) {
     const output::ResultReader reader(result);
     m_passes.push_back({cells, static_cast<int>(reader.read_cells(0).tets.cols()), reader.read_haptic(),
-                        kOfOneCell * std::pow(cells, -kOrder)});
+                        scenario::find_usual_error(solid::ElementKind::p2, cells)});
     if (m_passes.size() == 1) return say(describe_pass(m_passes.back()) + ": to compare with");
     AccuracyPass& fine = m_passes.back();
     const AccuracyPass& coarse = m_passes[m_passes.size() - 2];
@@ -192,7 +190,8 @@ double compare_forces(const std::vector<sim::HapticRecord>& a, const std::vector
 }
 
 double estimate_error(const AccuracyPass& coarse, const AccuracyPass& fine, double floor) {
-  return compare_forces(coarse.haptic, fine.haptic, floor) / std::pow(fine.cells / coarse.cells, kOrder);
+  return compare_forces(coarse.haptic, fine.haptic, floor) /
+         std::pow(fine.cells / coarse.cells, scenario::kContactOrder);
 }
 
 double choose_cells(const std::vector<AccuracyPass>& passes, double wanted) {
@@ -200,11 +199,13 @@ double choose_cells(const std::vector<AccuracyPass>& passes, double wanted) {
   constexpr double kFewest = 0.75;             // on fewer, the error says nothing of that on more
   constexpr double kLeast = 1.3, kMost = 2.0;  // times those of the pass before
   const double by_experience =
-      std::max(kFewest * kRefinement, std::pow(kOfOneCell / (kMargin * wanted), 1.0 / kOrder));
+      std::max(kFewest * kRefinement,
+               std::pow(scenario::find_usual_error(solid::ElementKind::p2, 1.0) / (kMargin * wanted),
+                        1.0 / scenario::kContactOrder));
   if (passes.empty()) return by_experience / kRefinement;
   if (passes.size() == 1) return by_experience;
   const AccuracyPass& last = passes.back();
-  const double more = std::pow(last.error / (kMargin * wanted), 1.0 / kOrder);
+  const double more = std::pow(last.error / (kMargin * wanted), 1.0 / scenario::kContactOrder);
   return last.cells * std::clamp(more, kLeast, kMost);
 }
 

@@ -68,16 +68,22 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
                                     std::vector<std::string>& notes);
 
+/// The error of an elastic force falls as the size of cells to this power: a pressure has a rim.
+inline constexpr double kContactOrder = 1.5;
+/// By how much of itself an elastic force is usually off on so many cells along the radius of contact: with
+/// linear tets a sphere or cone is felt 18, 6 and 2 % too hard at 2, 4 and 8 (results/contact), with ten-node
+/// tets it is 3 and 1 % off at 1 and 2 (results/accuracy). Below one cell a face of the size h bears as E h,
+/// where Hertz's patch bears as E a.
+double find_usual_error(solid::ElementKind element, double cells);
+
 /// Of the largest patch that the motion presses on the body at rest [m]; 0: none.
 double find_contact_radius(const Scenario& s, const device::Trace& trace,
                            const mesh::TriangleMesh& tool_surface, const sim::Body& body);
 
 /// How many cells lie along the radius of contact, where they are fewest of the places that the motion
 /// presses at least half as wide as at its widest; what error that makes of an elastic force, and what mends
-/// it. With linear tets a sphere or cone is felt 18, 6 and 2 % too hard at 2, 4 and 8 cells, ½ c^(−3/2)
-/// (results/contact). Below one cell a face of the size h bears as E h, where Hertz's patch bears as E a.
-/// Those of cells that were graded are the places that they were graded by. Empty where the motion does not
-/// meet the body at rest.
+/// it. Those of cells that were graded are the places that they were graded by. Empty where the motion does
+/// not meet the body at rest.
 std::string describe_contact_cells(const Scenario& s, const device::Trace& trace,
                                    const mesh::TriangleMesh& tool_surface, const sim::Body& body);
 
