@@ -29,6 +29,13 @@ double find_contact_radius(const scenario::Scenario& s) {
   return scenario::find_contact_radius(s, scene.trace, scene.tool, scene.body);
 }
 
+/// What is round must be so with them: a ball of 300 tets is pressed 5 % more easily than one of 1500.
+int count_fewest(const scenario::BodySpec& body) {
+  constexpr int kRound = 1500;
+  const bool is_flat = body.kind == scenario::BodyKind::shape && body.shape.kind == shapes::ShapeKind::box;
+  return is_flat ? scenario::count_fewest_tets(body) : kRound;
+}
+
 std::string print(double number) {
   std::ostringstream text;
   text.precision(17);
@@ -52,7 +59,7 @@ class Planner {
     m_options.resume = false;
     m_options.output = m_result;
     m_options.settings.insert(m_options.settings.end(), {"/dynamics/element=p2", "/body/cells/kind=graded"});
-    m_fewest = scenario::count_fewest_tets(s.body);
+    m_fewest = count_fewest(s.body);
     m_target = s.body.kind == scenario::BodyKind::shape ? "/body/shape/target_tets="
                : s.body.kind == scenario::BodyKind::surface && s.body.cage_file.empty()
                    ? "/body/surface/target_tets="
