@@ -132,8 +132,7 @@ class Planner {
   }
   void take(const std::string& result, double cells) {
     const output::ResultReader reader(result);
-    m_passes.push_back({cells, static_cast<int>(reader.read_cells(0).tets.cols()), reader.read_haptic(),
-                        scenario::find_usual_error(solid::ElementKind::p2, cells)});
+    m_passes.push_back({cells, static_cast<int>(reader.read_cells(0).tets.cols()), reader.read_haptic()});
     if (m_passes.size() == 1) return say(describe_pass(m_passes.back()) + ": to compare with");
     AccuracyPass& fine = m_passes.back();
     const AccuracyPass& coarse = m_passes[m_passes.size() - 2];

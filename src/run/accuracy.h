@@ -21,7 +21,7 @@ struct AccuracyPass {
   double cells = 0.0;  ///< along the largest radius of contact
   int num_tets = 0;
   std::vector<sim::HapticRecord> haptic;
-  double error = 0.0;  ///< of the force, over the force: before there is another pass, by experience
+  double error = 0.0;  ///< of the force, over the force; not known of the first pass
 };
 
 /// The error of a pass after one on fewer cells.
