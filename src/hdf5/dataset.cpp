@@ -159,7 +159,7 @@ constexpr unsigned kDeflateLevel = 1;
 constexpr std::ptrdiff_t kMaxDepth = 32;
 // One chunk a dataset up to this many bytes; larger arrays are cut along their rows.
 constexpr std::uint64_t kMaxChunkBytes = 1U << 20;
-// Smaller arrays are stored as they are: the index of a compressed one takes 2 kB.
+// Smaller arrays are stored as they are: a compressed one takes an index, a filter's message and more time.
 constexpr std::uint64_t kMinCompressedBytes = 1U << 15;
 
 Handle creation_properties() {
@@ -168,15 +168,24 @@ Handle creation_properties() {
   return properties;
 }
 
-/// Each chunk carries a checksum by which a damaged one does not read. Not in a file that others read while
-/// it is written (File::create_shared alone asks for these formats): they may meet a chunk half written.
-void add_checksum(Id properties, Id place) {
+/// Others may read it while it is written: File::create_shared alone asks for the formats of HDF5 1.10.
+bool is_in_shared_file(Id place) {
   const Handle file(H5Iget_file_id(place), [](Id i) -> int { return H5Fclose(i); });
   const Handle access = property(H5Fget_access_plist(file.id()));
   H5F_libver_t oldest = H5F_LIBVER_EARLIEST;
   H5F_libver_t newest = H5F_LIBVER_EARLIEST;
   H5Pget_libver_bounds(access.id(), &oldest, &newest);
-  if (oldest == H5F_LIBVER_EARLIEST) H5Pset_fletcher32(properties);
+  return oldest != H5F_LIBVER_EARLIEST;
+}
+
+/// Chunks are compressed, and each carries a checksum by which a damaged one does not read. `place`: in the
+/// file. In a shared one a reader may meet a chunk half written: there they have no checksum.
+void add_filters(Id properties, Id place, bool compress) {
+  if (compress && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0) {
+    H5Pset_shuffle(properties);
+    H5Pset_deflate(properties, kDeflateLevel);
+  }
+  if (!is_in_shared_file(place)) H5Pset_fletcher32(properties);
 }
 
 void write_label(Dataset& made, const Label& label) {
@@ -226,13 +235,22 @@ Dataset Group::create_series(const std::string& name, Element element, const Sha
   const Handle space = dataspace(H5Screate_simple(rank, lengths.data(), limits.data()));
   const Handle properties = creation_properties();
   H5Pset_chunk(properties.id(), rank, chunk.data());
-  add_checksum(properties.id(), id());
+  add_filters(properties.id(), id(), !is_in_shared_file(id()));
   Handle made = dataset(H5Dcreate2(id(), name.c_str(), file_type(element), space.id(), H5P_DEFAULT,
                                    properties.id(), H5P_DEFAULT));
   if (made.id() < 0) fail("cannot create", name);
   Dataset series(std::move(made), m_file, join(m_path, name));
   write_label(series, label);
   return series;
+}
+
+void Group::link_dataset(const std::string& name, const std::string& path) const {
+  if (H5Lcreate_hard(id(), path.c_str(), id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT) < 0)
+    fail("cannot link " + path + " to", name);
+}
+
+bool Group::is_large(std::uint64_t bytes) {
+  return bytes >= kMinCompressedBytes;
 }
 
 void Group::write_raw(const std::string& name, const void* data, Element element, const Shape& shape,
@@ -244,13 +262,11 @@ void Group::write_raw(const std::string& name, const void* data, Element element
       dataspace(rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, lengths.data(), nullptr));
   const Handle properties = creation_properties();
   const std::uint64_t bytes = count * H5Tget_size(file_type(element));
-  if (compress && rank > 0 && bytes >= kMinCompressedBytes && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0) {
+  if (compress && rank > 0 && is_large(bytes)) {
     std::vector<hsize_t> chunk = lengths;
     chunk[0] = std::clamp<std::uint64_t>(kMaxChunkBytes / (bytes / lengths[0]), 1, lengths[0]);
     H5Pset_chunk(properties.id(), rank, chunk.data());
-    H5Pset_shuffle(properties.id());
-    H5Pset_deflate(properties.id(), kDeflateLevel);
-    add_checksum(properties.id(), id());
+    add_filters(properties.id(), id(), true);
   }
   Handle made = dataset(H5Dcreate2(id(), name.c_str(), file_type(element), space.id(), H5P_DEFAULT,
                                    properties.id(), H5P_DEFAULT));

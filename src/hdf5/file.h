@@ -162,20 +162,28 @@ class Group : public Object {
   Dataset open_dataset(const std::string& name) const;
   void remove(const std::string& name) const;
   /// Dataset that grows by whole chunks of `chunk_rows` rows; `row` is the shape of one row (empty: a
-  /// number).
+  /// number). Chunks are compressed, but not in a shared file.
   Dataset create_series(const std::string& name, Element element, const Shape& row, std::uint64_t chunk_rows,
                         const Label& label) const;
-  /// Array of fixed shape; `compress` stores it shuffled and deflated.
+  /// Gives the dataset at `path`, from the root, a second name here.
+  void link_dataset(const std::string& name, const std::string& path) const;
+  /// Array of fixed shape; `compress` stores it shuffled and deflated where is_compressed().
   template <class T>
   void write_array(const std::string& name, const T* data, const Shape& shape, bool compress,
                    const Label& label) const {
     write_raw(name, data, element_of<T>(), shape, compress, label);
+  }
+  /// Is an array of this shape large enough to be compressed?
+  template <class T>
+  static bool is_compressed(const Shape& shape) {
+    return is_large(compute_count(shape) * sizeof(T));
   }
   void write_string(const std::string& name, const std::string& text, const Label& label) const;
   /// A text a row, UTF-8 of any length; without a byte of value zero, which ends a text.
   void write_texts(const std::string& name, const std::vector<std::string>& texts, const Label& label) const;
 
  private:
+  static bool is_large(std::uint64_t bytes);
   void write_raw(const std::string& name, const void* data, Element element, const Shape& shape,
                  bool compress, const Label& label) const;
 };

@@ -11,6 +11,7 @@
 #include "device/gate.h"
 #include "device/haptic_device.h"
 #include "mesh/tet_mesh.h"
+#include "output/frame_writer.h"
 #include "sim/record.h"
 #include "sim/state.h"
 
@@ -27,6 +28,7 @@ struct ResultHeader {
   double haptic_period = 0.0;                     ///< [s]
   sim::FidelityMode fidelity = sim::FidelityMode::full;
   bool estimates_error = false;  ///< of the force at the hand
+  FramePrecision frame_precision = FramePrecision::whole;
   std::vector<std::pair<std::string, std::string>>
       provenance;  ///< name → text: resolved scenario, contact's stiffness, hashes, numerics tag
 };
@@ -89,9 +91,9 @@ class ResultFile {
  public:
   ResultFile(const std::string& file, const ResultHeader& header);
   /// Goes on with an unfinished file: keeps what was recorded up to and including `last_tick` and the first
-  /// `num_frames` frames, removes the rest. Throws IoError when FILE is not a result file or lost records up
-  /// to that tick.
-  ResultFile(const std::string& file, Tick last_tick, std::uint64_t num_frames);
+  /// `num_frames` frames, removes the rest; further frames are written to `precision`. Throws IoError when
+  /// FILE is not a result file or lost records up to that tick.
+  ResultFile(const std::string& file, Tick last_tick, std::uint64_t num_frames, FramePrecision precision);
   ~ResultFile();
   ResultFile(const ResultFile&) = delete;
   ResultFile& operator=(const ResultFile&) = delete;

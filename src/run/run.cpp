@@ -204,7 +204,7 @@ RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
   const Tick first = simulation.clock().tick;
   std::optional<output::ResultFile> file;
   if (from.kind == ResumePoint::Kind::checkpoint)
-    file.emplace(result, first, count_frames(s, first));
+    file.emplace(result, first, count_frames(s, first), s.frame_precision);
   else
     file.emplace(result, run.make_header(identity));
   LoopEnd end;

@@ -40,6 +40,9 @@ output::ResultHeader make_header(const scenario::Scenario& s, const sim::Simulat
   header.touched_places = simulation.body().touched_places;
   header.haptic_period = s.params.rates.haptic_period;
   header.estimates_error = s.params.estimates_error;
+  // Statics writes one frame, which other programs compare node by node.
+  header.frame_precision =
+      s.mode == scenario::Mode::dynamic ? s.frame_precision : output::FramePrecision::whole;
   if (s.params.fidelity.mode != sim::FidelityMode::full) header.fidelity = sim::FidelityMode::automatic;
   std::string notes;
   for (const std::string& note : scene.notes) notes += note + "\n";

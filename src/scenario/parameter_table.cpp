@@ -533,6 +533,12 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
   b.integer(
       "/output/checkpoint_period_ticks", s.checkpoint_period_ticks, between(0, 1e9),
       "A checkpoint for --resume at the first physics step after so many ticks; 0: none but at a signal.");
+  b.choice<output::FramePrecision>(
+      "/output/frame_precision", s.frame_precision,
+      {{output::FramePrecision::single, "single"}, {output::FramePrecision::whole, "double"}},
+      "What frames keep of fields and skin; single: of large arrays 24 bits of the largest value; double: "
+      "all. "
+      "Positions of the cage are always whole.");
 }
 
 }  // namespace

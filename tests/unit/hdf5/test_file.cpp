@@ -79,6 +79,37 @@ TEST(Hdf5File, KeepsTheBitsOfEveryKindOfNumberPlainAndCompressed) {
   EXPECT_EQ(file.root().open_dataset("none").shape(), (Shape{0, 3}));
 }
 
+TEST(Hdf5File, ALinkIsASecondNameForOneDataset) {
+  const TempFolder folder;
+  const File file = File::create(folder / "f.h5");
+  const Group root = file.root();
+  const double value = 7.0;
+  root.create_group("a").write_array("x", &value, {1}, false, {"m", "a number"});
+  root.create_group("b").link_dataset("y", "/a/x");
+  EXPECT_EQ(root.open_dataset("b/y").find_identity(), root.open_dataset("a/x").find_identity());
+  root.open_group("a").remove("x");
+  EXPECT_EQ(root.open_dataset("b/y").read<double>(), std::vector<double>{7.0});
+  EXPECT_EQ(root.open_dataset("b/y").read_text("units"), "m");
+  ARGIL_EXPECT_THROW_WITH(root.link_dataset("z", "/a/x"), IoError, "cannot link /a/x to /z");
+}
+
+// A thousand equal numbers take some tens of bytes where they are compressed.
+TEST(Hdf5File, SeriesAreCompressedButNotInASharedFile) {
+  const TempFolder folder;
+  const std::vector<double> values(100000, 0.1);
+  const auto find_size = [&](File file) {
+    file.root()
+        .create_series("s", Element::real64, {}, 1000, {"m", "a series"})
+        .append(values.data(), 100000);
+    EXPECT_EQ(file.root().open_dataset("s").read<double>(), values);
+    const std::string name = file.name();
+    file.close();
+    return std::filesystem::file_size(name);
+  };
+  EXPECT_LT(find_size(File::create(folder / "f.h5")), 100000U);
+  EXPECT_GT(find_size(File::create_shared(folder / "s.h5")), 800000U);
+}
+
 // Thousands of groups are more than the library's cache holds: without care it would write some of them
 // between two flushes, and a kill would leave a file that is neither the old nor the new one.
 TEST(Hdf5File, AKilledWriterLeavesTheFileOfItsLastFlush) {

@@ -192,7 +192,8 @@ TEST(ResultFile, ContinuedFromATickHoldsTheSameAsOneThatNeverStopped) {
     file.finish(Failure{1500, "solid", 0, "x", 0.0, 0.0});
   }
   {
-    ResultFile file(folder / "cut.h5", Tick{1234}, 124);  // frames of ticks 0, 10 … 1230
+    ResultFile file(folder / "cut.h5", Tick{1234}, 124,
+                    FramePrecision::whole);  // frames of ticks 0, 10 … 1230
     test::append_run(file, 1235, 1800);
     file.finish(std::nullopt);
   }
@@ -214,8 +215,10 @@ TEST(ResultFile, ContinuedFromATickHoldsTheSameAsOneThatNeverStopped) {
 TEST(ResultFile, IsNotContinuedPastItsRecords) {
   const TempFolder folder;
   test::write_run(folder / "r.h5", 10);
-  ARGIL_EXPECT_THROW_WITH(ResultFile(folder / "r.h5", Tick{10}, 1), IoError, "no records up to tick 10");
-  ARGIL_EXPECT_THROW_WITH(ResultFile(folder / "r.h5", Tick{9}, 2), IoError, "lost frames up to tick 9");
+  ARGIL_EXPECT_THROW_WITH(ResultFile(folder / "r.h5", Tick{10}, 1, FramePrecision::whole), IoError,
+                          "no records up to tick 10");
+  ARGIL_EXPECT_THROW_WITH(ResultFile(folder / "r.h5", Tick{9}, 2, FramePrecision::whole), IoError,
+                          "lost frames up to tick 9");
   EXPECT_EQ(ResultReader(folder / "r.h5").read_haptic().size(), 10U);
 }
 
