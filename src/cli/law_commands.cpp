@@ -41,7 +41,10 @@ int make_cage_file(const Options& o) {
   run::check_cage_name(surface, output);
   embed::CageOptions options = o.cage;
   options.fit = o.fit == "surface" ? embed::Fit::surface : embed::Fit::enclose;
-  const mesh::TriangleMesh skin = mesh_files::read_triangle_mesh(surface, o.scale);
+  mesh_files::FileVertices vertices;
+  const mesh::TriangleMesh skin = mesh_files::read_triangle_mesh(surface, o.scale, &vertices);
+  if (vertices.num_left_out() > 0)
+    std::fprintf(stderr, "argil: note: %s\n", vertices.describe(surface, "triangle").c_str());
   embed::Cage cage = embed::make_cage(skin, options, surface);
   std::printf("%s: %d vertices, %s\n", output.c_str(), cage.mesh.num_vertices(),
               embed::describe(cage.report).c_str());

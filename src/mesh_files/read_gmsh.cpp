@@ -342,7 +342,7 @@ mesh::TetMesh read_gmsh(const std::string& file, double scale) {
     cursor.expect_word("$End" + section.substr(1));
     cursor.find_line();
   }
-  return make_tet_mesh(out, cursor, scale, UnusedVertices::drop);
+  return make_tet_mesh(out, cursor, scale);
 }
 
 }  // namespace argil::mesh_files

@@ -76,7 +76,7 @@ mesh::TetMesh read_medit(const std::string& file, double scale) {
       skip_section(cursor);
     }
   }
-  return make_tet_mesh(out, cursor, scale, UnusedVertices::refuse);
+  return make_tet_mesh(out, cursor, scale);
 }
 
 }  // namespace argil::mesh_files

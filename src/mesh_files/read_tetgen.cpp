@@ -77,7 +77,7 @@ mesh::TetMesh read_tetgen(const std::string& file, double scale) {
   if (const auto word = elements.find_word())
     elements.fail("\"" + std::string(*word) + "\" after the last tet",
                   "correct the counts in the first line");
-  return make_tet_mesh(out, elements, scale, UnusedVertices::refuse);
+  return make_tet_mesh(out, elements, scale);
 }
 
 mesh::TetMesh read_vega(const std::string& file, double scale) {
@@ -115,7 +115,7 @@ mesh::TetMesh read_vega(const std::string& file, double scale) {
   if (!has_vertices || !has_elements)
     throw InputError(file, "", std::string("has no section ") + (has_vertices ? "*ELEMENTS" : "*VERTICES"),
                      "save it as ASCII Vega .veg");
-  return make_tet_mesh(out, cursor, scale, UnusedVertices::refuse);
+  return make_tet_mesh(out, cursor, scale);
 }
 
 }  // namespace argil::mesh_files

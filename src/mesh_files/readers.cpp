@@ -1,6 +1,8 @@
 #include "mesh_files/readers.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "base/error.h"
 #include "base/lower_case.h"
@@ -10,14 +12,34 @@
 namespace argil::mesh_files {
 namespace {
 
+// `elements`: vertex numbers of tets or triangles.
+template <class Elements>
+void leave_out_unused(Points& vertices, Elements& elements, FileVertices* told) {
+  std::vector<int> number(static_cast<std::size_t>(vertices.cols()), -1);
+  for (const int v : elements.reshaped()) number[static_cast<std::size_t>(v)] = 0;
+  FileVertices made{static_cast<int>(vertices.cols()), {}};
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] < 0) continue;
+    number[v] = static_cast<int>(made.kept.size());
+    made.kept.push_back(static_cast<int>(v));
+  }
+  if (made.num_left_out() == 0) {
+    made.kept.clear();
+  } else {
+    for (std::size_t i = 0; i < made.kept.size(); ++i)  // forwards: none is overwritten before it moved
+      vertices.col(static_cast<Eigen::Index>(i)) = vertices.col(made.kept[i]).eval();
+    vertices.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(made.kept.size()));
+    for (int& v : elements.reshaped()) v = number[static_cast<std::size_t>(v)];
+  }
+  if (told != nullptr) *told = std::move(made);
+}
+
 // Ending of the name in small letters, with its dot.
 std::string find_ending(const std::string& file) {
   return to_lower_case(std::filesystem::path(file).extension().string());
 }
 
-}  // namespace
-
-mesh::TetMesh read_tet_mesh(const std::string& file, double scale) {
+mesh::TetMesh read_all_tets(const std::string& file, double scale) {
   const std::string ending = find_ending(file);
   if (ending == ".msh") return read_gmsh(file, scale);
   if (ending == ".mesh") return read_medit(file, scale);
@@ -29,13 +51,42 @@ mesh::TetMesh read_tet_mesh(const std::string& file, double scale) {
                    "use .msh, .mesh, .node/.ele, .vtk, .vtu or .veg");
 }
 
-mesh::TriangleMesh read_triangle_mesh(const std::string& file, double scale) {
+mesh::TriangleMesh read_all_triangles(const std::string& file, double scale) {
   const std::string ending = find_ending(file);
   if (ending == ".obj") return read_obj(file, scale);
   if (ending == ".stl") return read_stl(file, scale);
   if (ending == ".ply") return read_ply(file, scale);
   throw InputError(file, "", "ending \"" + ending + "\" is no known surface format",
                    "use .obj, .stl or .ply");
+}
+
+}  // namespace
+
+int FileVertices::find(int place) const {
+  if (kept.empty()) return place;
+  const auto at = std::lower_bound(kept.begin(), kept.end(), place);
+  return at != kept.end() && *at == place ? static_cast<int>(at - kept.begin()) : -1;
+}
+
+std::string FileVertices::describe(const std::string& file, const std::string& element) const {
+  if (num_left_out() == 0) return "";
+  int first = 0;
+  while (find(first) >= 0) ++first;
+  return file + ": " + std::to_string(num_left_out()) + " of " + std::to_string(num_in_file) +
+         " vertices belong to no " + element + " and are left out, number " + std::to_string(first) +
+         " (from 0) the first; lists of vertices go on counting them";
+}
+
+mesh::TetMesh read_tet_mesh(const std::string& file, double scale, FileVertices* vertices) {
+  mesh::TetMesh mesh = read_all_tets(file, scale);
+  leave_out_unused(mesh.vertices, mesh.tets, vertices);
+  return mesh;
+}
+
+mesh::TriangleMesh read_triangle_mesh(const std::string& file, double scale, FileVertices* vertices) {
+  mesh::TriangleMesh mesh = read_all_triangles(file, scale);
+  leave_out_unused(mesh.vertices, mesh.triangles, vertices);
+  return mesh;
 }
 
 }  // namespace argil::mesh_files

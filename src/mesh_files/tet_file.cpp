@@ -10,29 +10,6 @@
 namespace argil::mesh_files {
 namespace {
 
-constexpr int kListed = 10;  // how many numbers a message lists
-
-std::vector<bool> find_used(const mesh::TetMesh& mesh) {
-  std::vector<bool> is_used(static_cast<std::size_t>(mesh.num_vertices()), false);
-  for (Eigen::Index i = 0; i < mesh.tets.size(); ++i)
-    is_used[static_cast<std::size_t>(mesh.tets.data()[i])] = true;
-  return is_used;
-}
-
-void refuse_unused(const std::vector<bool>& is_used, const TetFile& file, const FileCursor& cursor) {
-  std::string list;
-  int found = 0;
-  for (std::size_t v = 0; v < is_used.size(); ++v) {
-    if (is_used[v]) continue;
-    if (found++ < kListed) list += (list.empty() ? "" : ", ") + std::to_string(file.vertex_labels[v]);
-  }
-  if (found == 0) return;
-  throw InputError(cursor.file(), "vertices",
-                   std::to_string(found) + " of " + std::to_string(is_used.size()) +
-                       " belong to no tetrahedron: " + list + (found > kListed ? ", …" : ""),
-                   "remove them from the file");
-}
-
 [[noreturn]] void fail_at_tet(const TetFile& file, const FileCursor& cursor, std::size_t tet,
                               std::int64_t vertex, const std::string& range) {
   const std::string problem = "tet " + std::to_string(file.tet_labels[tet]) + " names vertex " +
@@ -40,19 +17,6 @@ void refuse_unused(const std::vector<bool>& is_used, const TetFile& file, const 
   constexpr const char* kRemedy = "correct the number or add the vertex";
   if (file.tet_offsets.empty()) throw InputError(cursor.file(), "", problem, kRemedy);
   cursor.fail_at(file.tet_offsets[tet], problem, kRemedy);
-}
-
-void drop_unused(const std::vector<bool>& is_used, mesh::TetMesh& mesh) {
-  std::vector<int> number(is_used.size(), -1);
-  int kept = 0;
-  for (std::size_t v = 0; v < is_used.size(); ++v) {
-    if (!is_used[v]) continue;
-    number[v] = kept;
-    mesh.vertices.col(kept++) = mesh.vertices.col(static_cast<Eigen::Index>(v)).eval();
-  }
-  mesh.vertices.conservativeResize(Eigen::NoChange, kept);
-  for (Eigen::Index i = 0; i < mesh.tets.size(); ++i)
-    mesh.tets.data()[i] = number[static_cast<std::size_t>(mesh.tets.data()[i])];
 }
 
 }  // namespace
@@ -90,8 +54,7 @@ std::string LabelIndex::range() const {
   return std::to_string(m_lowest) + " to " + std::to_string(m_highest) + (m_is_gapless ? "" : " with gaps");
 }
 
-mesh::TetMesh make_tet_mesh(const TetFile& file, const FileCursor& cursor, double scale,
-                            UnusedVertices unused) {
+mesh::TetMesh make_tet_mesh(const TetFile& file, const FileCursor& cursor, double scale) {
   ARGIL_ASSERT(scale > 0.0 && std::isfinite(scale), scale);
   const std::size_t num_vertices = file.vertex_labels.size();
   const std::size_t num_tets = file.corners.size() / 4;
@@ -122,12 +85,6 @@ mesh::TetMesh make_tet_mesh(const TetFile& file, const FileCursor& cursor, doubl
     const int vertex = index.find(file.corners[i]);
     if (vertex < 0) fail_at_tet(file, cursor, i / 4, file.corners[i], index.range());
     mesh.tets.data()[i] = vertex;
-  }
-  const std::vector<bool> is_used = find_used(mesh);
-  if (unused == UnusedVertices::drop) {
-    drop_unused(is_used, mesh);
-  } else {
-    refuse_unused(is_used, file, cursor);
   }
   mesh.cell_fields = file.cell_fields;
   return mesh;

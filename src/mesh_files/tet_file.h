@@ -20,14 +20,10 @@ struct TetFile {
   std::map<std::string, Field> cell_fields;  ///< in the order of the tets
 };
 
-/// What a format says of vertices that no tet uses.
-enum class UnusedVertices { drop, refuse };
-
 /// Numbers vertices from 0 in the file's order, multiplies coordinates by `scale` and checks what every
-/// format has in common: at least one tet, distinct labels, vertex labels in range, finite coordinates,
-/// unused vertices. `cursor` is the file that holds the tets. Throws InputError.
-mesh::TetMesh make_tet_mesh(const TetFile& file, const FileCursor& cursor, double scale,
-                            UnusedVertices unused);
+/// format has in common: at least one tet, distinct labels, vertex labels in range, finite coordinates.
+/// Vertices that no tet uses stay. `cursor` is the file that holds the tets. Throws InputError.
+mesh::TetMesh make_tet_mesh(const TetFile& file, const FileCursor& cursor, double scale);
 
 /// Finds where a label stands in a list: label − first when they run without gaps, a binary search otherwise.
 class LabelIndex {

@@ -107,7 +107,7 @@ mesh::TetMesh make_tet_mesh(const VtkGrid& grid, const FileCursor& cursor, doubl
     }
     add_cell_field(out.cell_fields, array.name, std::move(values), cursor);
   }
-  return make_tet_mesh(out, cursor, scale, UnusedVertices::refuse);
+  return make_tet_mesh(out, cursor, scale);
 }
 
 }  // namespace argil::mesh_files

@@ -61,6 +61,22 @@ TEST(ReadSurfaces, PolygonsAreFannedAroundTheirFirstCorner) {
   EXPECT_TRUE(ply.triangles == (Triangles(3, 2) << 3, 3, 2, 1, 1, 0).finished()) << ply.triangles;
 }
 
+TEST(ReadSurfaces, VerticesOfNoTriangleAreLeftOutAndTold) {
+  const test::TempFolder folder;
+  FileVertices vertices;
+  const std::string obj = folder.write(
+      "p.obj",
+      "v 9 9 9\nv 0 0 0\nv 8 8 8\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 7 7 7\nf 2 5 4\nf 2 4 6\nf 2 6 5\nf 4 5 6\n");
+  const mesh::TriangleMesh mesh = read_triangle_mesh(obj, 1.0, &vertices);
+  ASSERT_EQ(mesh.num_vertices(), 4);
+  EXPECT_TRUE(mesh.vertices == (Points(3, 4) << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1).finished());
+  EXPECT_TRUE(mesh.triangles == (Triangles(3, 4) << 0, 0, 0, 1, 2, 1, 3, 2, 1, 3, 2, 3).finished());
+  EXPECT_EQ(vertices.num_left_out(), 3);
+  EXPECT_EQ(vertices.kept, (std::vector<int>{1, 3, 4, 5}));
+  EXPECT_EQ(vertices.describe("p", "triangle").substr(0, 45),
+            "p: 3 of 7 vertices belong to no triangle and ");
+}
+
 TEST(ReadSurfaces, AnObjFaceMayStandBeforeItsVertices) {
   const test::TempFolder folder;
   EXPECT_EQ(read_text(folder, "p.obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").num_triangles(), 1);

@@ -105,6 +105,71 @@ TEST(ReadTets, ANumberKeepsItsBits) {
   EXPECT_EQ(mesh.vertices(2, 4), 12345678901234567.0);
 }
 
+// A vertex that no tet uses, in the middle of each format's list: the rest keeps order and bits.
+TEST(ReadTets, VerticesOfNoTetAreLeftOutAndTold) {
+  const test::TempFolder folder;
+  struct Change {
+    const char* from;
+    const char* to;
+  };
+  const auto read = [&](const std::string& name, const std::vector<Change>& changes, FileVertices& vertices) {
+    SampleFile sample = find_sample(name);
+    for (const Change& change : changes) {
+      std::string& text =
+          sample.content.find(change.from) == std::string::npos ? sample.beside_content : sample.content;
+      const std::size_t at = text.find(change.from);
+      if (at == std::string::npos) throw std::logic_error(std::string("no ") + change.from + " in " + name);
+      text.replace(at, std::string(change.from).size(), change.to);
+    }
+    if (!sample.beside.empty()) folder.write(sample.beside, sample.beside_content);
+    return read_tet_mesh(folder.write(sample.name, sample.content), 1.0, &vertices);
+  };
+  // Place 2 of the file is new; corners behind it move up by one.
+  const std::vector<std::pair<std::string, std::vector<Change>>> files = {
+      {"version_4.vtk",
+       {{"POINTS 5 double\n0 0 0 1 0 0 ", "POINTS 6 double\n0 0 0 1 0 0 7 7 7 "},
+        {"4 0 1 2 3", "4 0 1 3 4"},
+        {"4 1 2 3 4", "4 1 3 4 5"}}},
+      {"medit.mesh",
+       {{"Vertices\n5\n0 0 0 1\n1 0 0 1\n", "Vertices\n6\n0 0 0 1\n1 0 0 1\n7 7 7 1\n"},
+        {"\n1 2 3 4 1\n2 3 4 5 1", "\n1 2 4 5 1\n2 4 5 6 1"}}},
+      {"from_0.ele",
+       {{"5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1",
+         "6 3 0 0\n0 0 0 0\n1 1 0 0\n2 7 7 7\n3 0 1 0\n4 0 0 1\n5 1 1 1"},
+        {"0 0 1 2 3\n1 1 2 3 4", "0 0 1 3 4\n1 1 3 4 5"}}},
+      {"vega.VEG",
+       {{"5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1",
+         "6 3 0 0\n1 0 0 0\n2 1 0 0\n3 7 7 7\n4 0 1 0\n5 0 0 1\n6 1 1 1"},
+        {"1 1 2 3 4\n2 2 3 4 5", "1 1 2 4 5\n2 2 4 5 6"}}},
+      {"ascii.vtu",
+       {{"NumberOfPoints=\"5\"", "NumberOfPoints=\"6\""},
+        {"0 0 0 1 0 0\n0 1 0", "0 0 0 1 0 0 7 7 7\n0 1 0"},
+        {"0 1 2 3 1 2 3 4 0 2 1", "0 1 3 4 1 3 4 5 0 2 1"}}},
+  };
+  for (const auto& [name, changes] : files) {
+    FileVertices vertices;
+    expect_two_tets(read(name, changes, vertices), name);
+    EXPECT_EQ(vertices.num_in_file, 6) << name;
+    EXPECT_EQ(vertices.kept, (std::vector<int>{0, 1, 3, 4, 5})) << name;
+    EXPECT_EQ(vertices.find(1), 1);
+    EXPECT_EQ(vertices.find(2), -1);
+    EXPECT_EQ(vertices.find(5), 4);
+    EXPECT_EQ(vertices.describe("f", "tet"),
+              "f: 1 of 6 vertices belong to no tet and are left out, number 2 (from 0) the first; lists of "
+              "vertices go on counting them");
+  }
+  for (const char* name : {"22_ascii.msh", "41_ascii.msh"}) {  // the sample's node 7, before the last one
+    FileVertices vertices;
+    expect_two_tets(read(name, {}, vertices), name);
+    EXPECT_EQ(vertices.kept, (std::vector<int>{0, 1, 2, 3, 5})) << name;
+  }
+  FileVertices all;
+  expect_two_tets(read("medit.mesh", {}, all), "medit.mesh");
+  EXPECT_TRUE(all.kept.empty());
+  EXPECT_EQ(all.find(3), 3);
+  EXPECT_EQ(all.describe("f", "tet"), "");
+}
+
 // One sample with one thing wrong, and what the message must say. `from` is replaced at its first appearance.
 struct Refusal {
   const char* sample;
@@ -174,7 +239,6 @@ TEST(RefuseTets, MeditTetGenAndVegaSayWhere) {
       {"medit.mesh", "Vertices\n5", "Vertices\n4", "line 11: \"1\" where a keyword was expected"},
       {"medit.mesh", "Vertices\n5", "Vertices\n5000", "line 6: the number of vertices is 5000, more than"},
       {"medit.mesh", "2 3 4 5 1", "2 3 4 6 1", "line 21: tet 2 names vertex 6; vertices run from 1 to 5"},
-      {"medit.mesh", "2 3 4 5 1", "2 3 4 4 1", "1 of 5 belong to no tetrahedron: 5; remove them"},
       {"medit.mesh", "Corners", "Hexahedra",
        "section Hexahedra holds elements that are not 4-node tetrahedra"},
       {"medit.mesh", "Tetrahedra", "Edges", "holds no tetrahedra"},
