@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/print.h"
 #include "contact/tool_shape.h"
 #include "embed/cage.h"
 #include "mesh/order.h"
@@ -17,8 +16,8 @@
 #include "scenario/cell_sizes.h"
 #include "scenario/faults.h"
 #include "scenario/file_faults.h"
+#include "scenario/fix_and_load.h"
 #include "scenario/medium_check.h"
-#include "solid/rigid_motion.h"
 
 namespace argil::scenario {
 namespace {
@@ -61,14 +60,18 @@ Points take_axes(const Scenario& s, const mesh::TetMesh& mesh) {
 
 /// Fields of the mesh file.
 void take_fields(const Scenario& s, sim::Body& body) {
-  body.initial_saturation =
-      s.body.saturation_field.empty()
-          ? Field(Field::Constant(body.mesh.num_tets(), s.params.water.initial_saturation))
-          : take_field(s, body.mesh, s.body.saturation_field, "/body/mesh/saturation_field", 0.0, 1.0);
-  if (!s.body.modulus_field.empty())
-    body.youngs_modulus =
-        take_field(s, body.mesh, s.body.modulus_field, "/body/mesh/youngs_modulus_field", 1e-6, 1e15);
-  if (!s.body.pore_axis_field.empty()) body.pore_axis = take_axes(s, body.mesh);
+  Faults faults(s.file);
+  body.initial_saturation = Field::Constant(body.mesh.num_tets(), s.params.water.initial_saturation);
+  if (const std::string& name = s.body.saturation_field; !name.empty())
+    faults.check([&] {
+      body.initial_saturation = take_field(s, body.mesh, name, "/body/mesh/saturation_field", 0.0, 1.0);
+    });
+  if (const std::string& name = s.body.modulus_field; !name.empty())
+    faults.check([&] {
+      body.youngs_modulus = take_field(s, body.mesh, name, "/body/mesh/youngs_modulus_field", 1e-6, 1e15);
+    });
+  if (!s.body.pore_axis_field.empty()) faults.check([&] { body.pore_axis = take_axes(s, body.mesh); });
+  faults.throw_all();
 }
 
 /// What `make` refuses came from the scenario's `pointer`: say so.
@@ -87,12 +90,24 @@ const std::string& name_origin(const Scenario& s) {
   return s.body.cage_file.empty() ? s.file : s.body.cage_file;
 }
 
+void add_note(std::string note, Scene& scene) {
+  if (!note.empty()) scene.notes.push_back(std::move(note));
+}
+
+mesh::TriangleMesh read_surface(const std::string& file, double scale, Scene& scene) {
+  mesh_files::FileVertices vertices;
+  mesh::TriangleMesh surface = mesh_files::read_triangle_mesh(file, scale, &vertices);
+  add_note(vertices.describe(file, "triangle"), scene);
+  return surface;
+}
+
 /// Before its cells are graded: messages name the tets of the file.
 void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
   sim::Body& body = scene.body;
   switch (s.body.kind) {
     case BodyKind::mesh:
-      body.mesh = mesh_files::read_tet_mesh(s.body.file, s.body.scale);
+      body.mesh = mesh_files::read_tet_mesh(s.body.file, s.body.scale, &scene.file_vertices);
+      add_note(scene.file_vertices.describe(s.body.file, "tet"), scene);
       break;
     case BodyKind::shape:
       if (s.body.skin_triangles > 0) body.skin = shapes::make_shape_skin(s.body.shape, s.body.skin_triangles);
@@ -108,21 +123,25 @@ void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
         from_scenario(s, "/body/shape/sliver", [&] { mesh::flatten_tet(body.mesh, s.body.sliver); });
       break;
     case BodyKind::surface:
-      body.skin = mesh_files::read_triangle_mesh(s.body.file, s.body.scale);
+      body.skin = read_surface(s.body.file, s.body.scale, scene);
       if (s.body.cage_file.empty()) {
         embed::Cage cage = embed::make_cage(body.skin, {num_tets, s.body.fit}, s.body.file);
         scene.notes.push_back("cage: " + embed::describe(cage.report));
         body.mesh = std::move(cage.mesh);
       } else {
-        body.mesh = mesh_files::read_tet_mesh(s.body.cage_file);
+        body.mesh = mesh_files::read_tet_mesh(s.body.cage_file, 1.0, &scene.file_vertices);
+        add_note(scene.file_vertices.describe(s.body.cage_file, "tet"), scene);
       }
       break;
   }
   const std::string& origin = name_origin(s);
-  mesh::require_size(body.mesh.vertices, origin);
-  const std::string warning = mesh::require_usable(mesh::compute_quality(body.mesh), origin);
-  if (!warning.empty()) scene.notes.push_back(warning);
-  take_fields(s, body);
+  Faults faults(s.file);
+  faults.check([&] {
+    mesh::require_size(body.mesh.vertices, origin);
+    add_note(mesh::require_usable(mesh::compute_quality(body.mesh), origin), scene);
+  });
+  faults.check([&] { take_fields(s, body); });
+  faults.throw_all();
 }
 
 double most_beyond(const Scenario& s) {
@@ -158,14 +177,6 @@ Halvings make_cells(const Scenario& s, const std::vector<sim::TouchedPlace>* pla
   return {};
 }
 
-void require_vertices(const Scenario& s, const std::string& pointer, const std::vector<int>& nodes,
-                      int num_vertices) {
-  for (const int v : nodes)
-    if (v >= num_vertices)
-      throw InputError(s.file, pointer, std::to_string(v) + " is no vertex of the mesh",
-                       "give numbers from 0 to " + std::to_string(num_vertices - 1));
-}
-
 /// What of the skin is outside a fitted body is carried by the tets below it.
 void embed_skin(const Scenario& s, Scene& scene) {
   sim::Body& body = scene.body;
@@ -175,52 +186,6 @@ void embed_skin(const Scenario& s, Scene& scene) {
   text << "skin: carried with weights " << body.skin_embedding.weights.minCoeff() << " to "
        << body.skin_embedding.weights.maxCoeff() << " of the cells' vertices";
   scene.notes.push_back(text.str());
-}
-
-void check_support(const Scenario& s, std::size_t i, int num_given, const mesh::TetMesh& mesh) {
-  const solid::Region& region = s.body.fixed[i].region;
-  const std::string pointer = "/body/fixed/" + std::to_string(i);
-  require_vertices(s, pointer + "/nodes", region.nodes, num_given);
-  if (!solid::find_nodes(mesh.vertices, std::span(&region, 1)).empty()) return;
-  const Vec3 low = mesh.vertices.rowwise().minCoeff();
-  const Vec3 high = mesh.vertices.rowwise().maxCoeff();
-  throw InputError(s.file, pointer, "holds no vertex of the body",
-                   "move it into the body's box, " + print_place(low) + " to " + print_place(high) + " m");
-}
-
-void fix_and_load(const Scenario& s, const Halvings& halvings, sim::Body& body) {
-  const int num_given = body.mesh.num_vertices() - static_cast<int>(halvings.ends.size());
-  Faults faults(s.file);
-  for (std::size_t i = 0; i < s.body.fixed.size(); ++i)
-    faults.check([&] { check_support(s, i, num_given, body.mesh); });
-  faults.throw_all();
-  body.supports = s.body.fixed;
-  for (solid::Support& support : body.supports) halvings.renumber_with_middles(support.region.nodes);
-  body.loads = s.body.loads;
-  for (std::size_t i = 0; i < s.body.loads.nodal.size(); ++i) {
-    require_vertices(s, "/body/loads/nodal/" + std::to_string(i) + "/nodes", s.body.loads.nodal[i].nodes,
-                     num_given);
-    halvings.renumber(body.loads.nodal[i].nodes);
-  }
-  for (std::size_t i = 0; i < s.body.loads.pressure.size(); ++i) {
-    const solid::Region& region = s.body.loads.pressure[i].region;
-    const std::string pointer = "/body/loads/pressure/" + std::to_string(i);
-    require_vertices(s, pointer + "/nodes", region.nodes, num_given);
-    halvings.renumber_with_middles(body.loads.pressure[i].region.nodes);
-    if (solid::find_faces(body.mesh.vertices, body.topology.boundary, body.loads.pressure[i].region).empty())
-      throw InputError(s.file, pointer, "holds no boundary face of the body",
-                       "widen it so that all three corners of a face lie in it");
-  }
-}
-
-/// An equilibrium has no mass to lean on: the supports alone must hold every part of the body.
-void check_supports(const Scenario& s, const sim::Body& body) {
-  const solid::Elements elements = solid::make_elements(body.mesh, body.topology, s.params.solid.element);
-  const std::string motion =
-      solid::find_rigid_motion(elements, body.topology, solid::find_constraints(elements, body.supports));
-  if (!motion.empty())
-    throw InputError(s.file, "/body/fixed", "does not hold the body: " + motion,
-                     "hold at least three vertices of it that are not on a line");
 }
 
 /// The effective medium over the mesh's own fields.
@@ -253,7 +218,7 @@ void check_diffusion(const Scenario& s, const sim::Body& body) {
                    "set /water/diffusion to implicit, or give a smaller diffusivity or a coarser mesh");
 }
 
-mesh::TriangleMesh make_tool(const Scenario& s) {
+mesh::TriangleMesh make_tool(const Scenario& s, Scene& scene) {
   switch (s.tool.kind) {
     case ToolKind::sphere:
       return contact::make_sphere_tool(s.tool.radius, s.tool.subdivisions);
@@ -264,7 +229,7 @@ mesh::TriangleMesh make_tool(const Scenario& s) {
     case ToolKind::mesh:
       break;
   }
-  mesh::TriangleMesh tool = mesh_files::read_triangle_mesh(s.tool.file, s.tool.scale);
+  mesh::TriangleMesh tool = read_surface(s.tool.file, s.tool.scale, scene);
   mesh::require_size(tool.vertices, s.tool.file);
   contact::require_closed_surface(tool, s.tool.file);
   return tool;
@@ -295,8 +260,7 @@ void check_grip(const Scenario& s, const device::Trace& trace) {
                      "give the mean traction at which the tool lets go");
 }
 
-void check_trace(const Scenario& s, const device::Trace& trace) {
-  check_grip(s, trace);
+void check_reach(const Scenario& s, const device::Trace& trace) {
   for (const device::DeviceSample& sample : trace.samples)
     if (!device::is_within_reach(sample.position)) {
       std::ostringstream problem;
@@ -304,6 +268,9 @@ void check_trace(const Scenario& s, const device::Trace& trace) {
               << device::kFarthestPlace << " m";
       throw InputError(s.file, "/trace/device_to_world", problem.str(), "correct scale and translation_m");
     }
+}
+
+void check_stretch(const Scenario& s, const device::Trace& trace) {
   if (!(s.trace.start < trace.duration()))
     throw InputError(s.file, "/trace/start_s",
                      "lies past the trace's end, " + std::to_string(trace.duration()) + " s",
@@ -315,35 +282,51 @@ void check_trace(const Scenario& s, const device::Trace& trace) {
                      "give less, or 0 for all of it");
 }
 
+void read_motion(const Scenario& s, Scene& scene, Faults& faults) {
+  const bool is_read = faults.check([&] { scene.trace = device::read_trace(s.trace.file, s.trace.options); });
+  if (!is_read) return;
+  faults.check([&] { check_grip(s, scene.trace); });
+  faults.check([&] { check_reach(s, scene.trace); });
+  faults.check([&] { check_stretch(s, scene.trace); });
+  for (const std::string& note : scene.trace.notes) scene.notes.push_back("trace: " + note);
+}
+
+/// What a whole mesh is given beside its cells, each checked by itself.
+void complete_body(const Scenario& s, const Halvings& halvings, Scene& scene, Faults& faults) {
+  sim::Body& body = scene.body;
+  mesh::sort_tets(body.mesh);
+  take_fields(s, body);
+  body.topology = mesh::make_topology(body.mesh);
+  const bool has_motion = faults.empty();
+  if (body.skin.num_triangles() > 0) faults.check([&] { embed_skin(s, scene); });
+  if (has_motion) scene.contact_cells = describe_contact_cells(s, scene.trace, scene.tool, body);
+  faults.check([&] { check_medium(s, scene); });
+  faults.check([&] { check_diffusion(s, body); });
+  const bool is_held = faults.check([&] { fix_and_load(s, halvings, scene); });
+  if (s.mode == Mode::dynamic)
+    faults.check([&] { check_skin(s, body.skin); });
+  else if (is_held)
+    faults.check([&] { check_equilibrium_supports(s, body); });
+}
+
 }  // namespace
 
 Scene build_scene(const Scenario& s, const std::vector<sim::TouchedPlace>* places) {
   Scene scene;
   scene.notes = s.warnings;
   Faults faults(s.file);
-  faults.check([&] { scene.tool = make_tool(s); });
-  if (s.mode == Mode::dynamic && !s.trace.file.empty())
-    faults.check([&] {
-      scene.trace = device::read_trace(s.trace.file, s.trace.options);
-      check_trace(s, scene.trace);
-      for (const std::string& note : scene.trace.notes) scene.notes.push_back("trace: " + note);
-    });
-  if (!faults.empty()) find_file_faults(s, faults);
+  faults.check([&] { scene.tool = make_tool(s, scene); });
+  if (s.mode == Mode::dynamic && !s.trace.file.empty()) read_motion(s, scene, faults);
+  if (!faults.empty() && s.body.cells.kind != CellKind::even) {  // cells are graded by tool and motion
+    find_file_faults(s, faults);
+    faults.throw_all();
+  }
+  Halvings halvings;
+  if (faults.check([&] { halvings = make_cells(s, places, scene); }))
+    complete_body(s, halvings, scene, faults);
+  else if (scene.body.mesh.num_vertices() > 0)
+    faults.check([&] { check_supports_of_vertices(s, scene); });
   faults.throw_all();
-  const Halvings halvings = make_cells(s, places, scene);
-  sim::Body& body = scene.body;
-  mesh::sort_tets(body.mesh);
-  take_fields(s, body);
-  body.topology = mesh::make_topology(body.mesh);
-  if (body.skin.num_triangles() > 0) embed_skin(s, scene);
-  scene.contact_cells = describe_contact_cells(s, scene.trace, scene.tool, body);
-  check_medium(s, scene);
-  check_diffusion(s, body);
-  fix_and_load(s, halvings, body);
-  if (s.mode == Mode::equilibrium)
-    check_supports(s, body);
-  else
-    check_skin(s, body.skin);
   return scene;
 }
 

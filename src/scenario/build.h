@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "device/trace.h"
+#include "mesh_files/readers.h"
 #include "scenario/scenario.h"
 #include "sim/state.h"
 
@@ -16,7 +17,8 @@ struct Scene {
   device::Trace trace;             ///< empty where the scenario has none: a live session's replay
   std::string medium_status;       ///< where eq. 6 stands at every φ and dry modulus that the run can reach
   std::vector<std::string> notes;  ///< for the user: mesh quality, cage report, warnings
-  std::string contact_cells;       ///< for the user, of the motion: describe_contact_cells
+  mesh_files::FileVertices file_vertices;  ///< of the body's mesh file
+  std::string contact_cells;               ///< for the user, of the motion: describe_contact_cells
 };
 
 /// Reads or generates the body, its cage and skin, the tool and the trace. Throws InputError for what cannot

@@ -60,8 +60,9 @@ void Faults::add(const std::string& message) {
     const std::size_t first = begin.size() - 1;
     pointer = message.substr(first, message.find(": ", first) - first);
   }
-  const bool is_known = !pointer.empty() && std::any_of(m_list.begin(), m_list.end(),
-                                                        [&](const Fault& f) { return f.pointer == pointer; });
+  const bool is_known = std::any_of(m_list.begin(), m_list.end(), [&](const Fault& f) {
+    return pointer.empty() ? f.message == message : f.pointer == pointer;
+  });
   if (!is_known) m_list.push_back({pointer, message});
 }
 

@@ -25,7 +25,8 @@ class Faults {
       return false;
     }
   }
-  /// "FILE: POINTER: …" as an InputError has it; a second fault of one pointer is left out.
+  /// "FILE: POINTER: …" as an InputError has it; a second fault of one pointer, and what was said before,
+  /// is left out.
   void add(const std::string& message);
   /// The key is there under another name, which was refused: it is not missed, too.
   void add_misspelt(const std::string& pointer) { m_misspelt.push_back(pointer); }

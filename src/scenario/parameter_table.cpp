@@ -49,7 +49,8 @@ void describe_region(Binder& b, solid::Region& r) {
       has_normal;
   b.number("/thickness_m", r.thickness, not_negative(), "m", "plane: how far off a vertex may lie.").applies =
       only(Kind::plane);
-  b.integers("/nodes", r.nodes, not_negative(), "nodes: vertex numbers from 0.").applies = only(Kind::nodes);
+  b.integers("/nodes", r.nodes, not_negative(), "nodes: vertex numbers of the mesh file from 0.").applies =
+      only(Kind::nodes);
 }
 
 void describe_support(Binder& b, solid::Support& support) {
@@ -79,7 +80,7 @@ void describe_pressure(Binder& b, solid::PressureLoad& load) {
 }
 
 void describe_load(Binder& b, solid::NodalLoad& load) {
-  b.integers("/nodes", load.nodes, not_negative(), "Vertex numbers from 0.").required = true;
+  b.integers("/nodes", load.nodes, not_negative(), "Vertex numbers of the mesh file from 0.").required = true;
   b.vector("/force_N", load.force, "N", "Force on each of them.").required = true;
 }
 

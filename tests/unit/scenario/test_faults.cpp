@@ -93,6 +93,71 @@ TEST_F(Faulty, SupportsThatHoldNothingAllOfThem) {
                 {"/body/fixed/0: holds no vertex", "/body/fixed/2: holds no vertex"});
 }
 
+/// A body of two tets whose file has a vertex that no tet uses as number 2, with cell data.
+constexpr const char* kTwoTets = R"(# vtk DataFile Version 3.0
+x
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 6 double
+0 0 0 0.02 0 0 9 9 9 0 0.02 0 0 0 0.02 0.02 0.02 0.02
+CELLS 2 10
+4 0 1 3 4
+4 1 3 4 5
+CELL_TYPES 2
+10
+10
+CELL_DATA 2
+SCALARS S double
+LOOKUP_TABLE default
+0.5 1.5
+)";
+
+TEST_F(Faulty, FieldsSupportsAndLoadsOfABodyAllAtOnce) {
+  folder.write("two.vtk", kTwoTets);
+  const std::string text = R"({"about": "x", "dynamics": {"mode": "static"},
+    "body": {"mesh": {"file": "two.vtk", "saturation_field": "S", "youngs_modulus_field": "E"},
+             "fixed": [{"kind": "nodes", "nodes": [0, 1, 2]}, {"kind": "nodes", "nodes": [6]}]},
+    "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3}})";
+  expect_faults(text, {"/body/fixed/0/nodes: 2 is a vertex that no tet of the mesh uses",
+                       "/body/fixed/1/nodes: 6 is no vertex", "cell data \"S\" is 1.5",
+                       "has no cell data named \"E\""});
+}
+
+TEST_F(Faulty, EachLoadIsCheckedAndListsCountTheFilesVertices) {
+  folder.write("two.vtk", kTwoTets);
+  const std::string held = R"("fixed": [{"kind": "nodes", "nodes": [0, 1, 3]}], )";
+  const auto scene = [&](const std::string& loads) {
+    return R"({"about": "x", "dynamics": {"mode": "static"}, "body": {"mesh": {"file": "two.vtk"}, )" + held +
+           R"("loads": )" + loads + R"(}, "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3}})";
+  };
+  expect_faults(
+      scene(R"({"nodal": [{"nodes": [2], "force_N": [0, 0, 1]}, {"nodes": [9], "force_N": [0, 0, 1]}],
+      "pressure": [{"kind": "sphere", "centre_m": [9, 9, 9], "radius_m": 0.1, "pressure_Pa": 1}]})"),
+      {"/body/loads/nodal/0/nodes: 2 is a vertex that no tet",
+       "/body/loads/nodal/1/nodes: 9 is no vertex of the mesh; give numbers from 0 to 5",
+       "/body/loads/pressure/0: holds no boundary face"});
+  const std::string file =
+      folder.write("good.json", scene(R"({"nodal": [{"nodes": [5], "force_N": [0, 0, 1]}]})"));
+  const Scene made = build_scene(load_scenario(file, {}));
+  EXPECT_EQ(made.body.mesh.num_vertices(), 5);
+  EXPECT_EQ(made.body.supports.at(0).region.nodes, (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(made.body.loads.nodal.at(0).nodes, std::vector<int>{4});
+  EXPECT_NE(made.notes.at(0).find("1 of 6 vertices belong to no tet"), std::string::npos) << made.notes.at(0);
+}
+
+TEST_F(Faulty, ToolMotionAndBodyAtOnce) {
+  test::write_press_trace(folder / "press.csv", 0.048, 0.0435, 0.1, "push");
+  folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string beyond = R"({"kind": "sphere", "centre_m": [9, 9, 9], "radius_m": 0.1})";
+  expect_faults(
+      R"({"about": "x", "body": {"shape": {"kind": "box", "size_m": 0.04, "target_tets": 300}, "fixed": [)" +
+          beyond + R"(], "cells": {"kind": "even"}},
+    "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3},
+    "tool": {"shape": {"kind": "mesh", "file": "open.obj"}, "mode": "push"},
+    "trace": {"file": "press.csv", "start_s": 99}})",
+      {"/trace/start_s: lies past", "/body/fixed/0: holds no vertex", "open.obj: "});
+}
+
 TEST_F(Faulty, OneBodyAndOneTool) {
   const std::string material = R"("material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3})";
   for (const char* key : {"tool", "tools"})
