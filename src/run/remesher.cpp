@@ -10,8 +10,13 @@
 namespace argil::run {
 namespace {
 
-constexpr Tick kStepsBetweenLooks = 8;
-constexpr double kShortestEpoch = 0.05;  // [s]
+/// When cells are renewed. Ten-node tets are larger and bend: they are spoilt in fewer steps.
+struct Wear {
+  Tick steps_between_looks;
+  double shortest_epoch;  // [s]
+};
+constexpr Wear kFourNodes = {8, 0.05};
+constexpr Wear kTenNodes = {2, 0.02};
 // Of the worst tet, mesh::compute_shape: below which cells are renewed while nothing touches the body,
 // and while something does.
 constexpr double kWorn = 0.12;
@@ -27,10 +32,11 @@ Remesher::Remesher(const scenario::Scenario& s, output::ResultFile* file, bool i
 
 bool Remesher::is_due(const sim::Simulation& simulation) const {
   const sim::RateParams& rates = m_scenario.params.rates;
+  const Wear& wear = m_scenario.params.solid.element == solid::ElementKind::p2 ? kTenNodes : kFourNodes;
   const Tick tick = simulation.clock().tick;
-  if (tick % (kStepsBetweenLooks * rates.physics_period_ticks) != 0) return false;
+  if (tick % (wear.steps_between_looks * rates.physics_period_ticks) != 0) return false;
   const sim::Body& body = simulation.body();
-  if (static_cast<double>(tick - body.epoch_tick) * rates.haptic_period < kShortestEpoch) return false;
+  if (static_cast<double>(tick - body.epoch_tick) * rates.haptic_period < wear.shortest_epoch) return false;
   if (simulation.body_state().is_at_rest && simulation.body_state().plastic_dissipation == 0.0) return false;
   return simulation.body_side().find_worst_shape() <
          (simulation.hand_state().num_contacts == 0 ? kWorn : kSpoilt);
@@ -48,6 +54,7 @@ bool Remesher::renew_if_spoilt(sim::Simulation& simulation) {
     sim::Body body = scenario::make_new_cells(
         m_scenario, {before,
                      x,
+                     simulation.solid().model.elements.nodes,
                      {simulation.surface_now(), simulation.body_side().surface().triangles()},
                      simulation.tool(),
                      hand.num_contacts > 0 ? std::optional(hand.contact_tool) : std::nullopt});

@@ -100,7 +100,6 @@ std::string find_remesh_obstacle(const Scenario& s) {
   if (p.solid.model != solid::StrainModel::hencky || !p.plasticity.enabled)
     return "only hencky clay that flows is";
   if (p.plasticity.form != material::FlowForm::j2) return "only von Mises's flow has a strength";
-  if (p.solid.element == solid::ElementKind::p2) return "ten-node tets are not";
   if (p.solid.integrator != solid::Integrator::backward_euler)
     return "only backward_euler begins from one state";
   if (p.contact.law != contact::ContactLaw::pressure) return "pairs belong to their triangles";
@@ -152,7 +151,7 @@ sim::Body make_new_cells(const Scenario& s, const PresentShape& now) {
   body.first_tets = now.body.first_tets > 0 ? now.body.first_tets : now.body.mesh.num_tets();
   Points skin;
   if (now.body.skin.num_triangles() > 0)
-    embed::interpolate_positions(now.body.skin_embedding, now.body.mesh.tets, now.x, skin);
+    embed::interpolate_positions(now.body.skin_embedding, now.nodes, now.x, skin);
   const std::vector<sim::TouchedPlace> places = move_places(now, skin);
   const bool is_graded = !places.empty() || !s.body.cells.regions.empty();
   const int num_tets = is_graded ? count_first_tets(of_surface.body) : of_surface.body.target_tets;

@@ -12,8 +12,9 @@ namespace argil::scenario {
 /// A body as it is between two steps.
 struct PresentShape {
   const sim::Body& body;
-  const Points& x;             ///< its nodes (3×n) [m]
-  mesh::TriangleMesh touched;  ///< what the tool meets, where it is now
+  const Points& x;               ///< its nodes (3×n) [m]
+  const Eigen::MatrixXi& nodes;  ///< of its tets: 4×m or 10×m
+  mesh::TriangleMesh touched;    ///< what the tool meets, where it is now
   const mesh::TriangleMesh& tool;
   std::optional<contact::Pose> touching;  ///< the tool is there and presses
 };

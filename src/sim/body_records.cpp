@@ -38,14 +38,19 @@ PhysicsRecord BodySide::make_record() {
 }
 
 double BodySide::find_worst_shape() const {
+  const Points& x = m_state.solid.x;
+  const auto find_shape = [&x](int a, int b, int c, int d) {
+    return mesh::compute_shape({x.col(a), x.col(b), x.col(c), x.col(d)});
+  };
   double worst = 1.0;
   m_region.part().batches.each_in_order(
       m_solid.model.elements.num_tets(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
         for (std::ptrdiff_t tet = begin; tet < end; ++tet) {
-          const auto corner = m_body.mesh.tets.col(tet);
-          const Points& x = m_state.solid.x;
-          worst = std::min(worst, mesh::compute_shape({x.col(corner(0)), x.col(corner(1)), x.col(corner(2)),
-                                                       x.col(corner(3))}));
+          const auto n = m_solid.model.elements.nodes.col(tet);
+          worst = std::min(worst, find_shape(n(0), n(1), n(2), n(3)));
+          if (n.size() == 4) continue;
+          worst = std::min({worst, find_shape(n(0), n(4), n(6), n(7)), find_shape(n(4), n(1), n(5), n(8)),
+                            find_shape(n(6), n(5), n(2), n(9)), find_shape(n(7), n(8), n(9), n(3))});
         }
       });
   return worst;

@@ -83,7 +83,7 @@ void BodySide::begin_strained(const TensorField& elastic) {
   const int points_per_tet = m_solid.model.elements.points_per_tet;
   for (int point = 0; point < m_solid.model.elements.num_points(); ++point) {
     const int tet = point / points_per_tet;
-    m_state.solid.plastic_strain.col(point) = -elastic.col(tet);
+    m_state.solid.plastic_strain.col(point) = -elastic.col(point);
     m_state.solid.plastic_strain.col(point).head<3>().array() -=
         std::log(m_body.rest_volume_ratio(tet)) / 3.0;
   }
@@ -105,7 +105,8 @@ void BodySide::balance(const Points& contact_force) {
   const Points force = m_force.loads() + contact_force;
   TensorField balanced = find_elastic_strain(m_solid);  // of the last turn that came to an end
   for (int turn = 0; turn < kTurns; ++turn) {
-    const StepStatus status = solid::find_equilibrium(m_solid, m_region.whole(), {force}, m_state.solid);
+    const StepStatus status = solid::find_equilibrium(m_solid, m_region.whole(), {force}, m_state.solid,
+                                                      solid::EquilibriumAccuracy::rough);
     if (status.is_ok()) balanced = find_elastic_strain(m_solid);
     TensorField elastic = balanced;
     const double beyond = status.is_ok() && turn + 1 < kTurns ? limit_to_strength(elastic) : 0.0;
@@ -118,14 +119,14 @@ void BodySide::balance(const Points& contact_force) {
 /// Returns by what share the farthest was beyond.
 double BodySide::limit_to_strength(TensorField& elastic) const {
   double farthest = 0.0;
-  for (Eigen::Index t = 0; t < elastic.cols(); ++t) {
-    Vec6 deviator = elastic.col(t);
-    deviator.head<3>().array() -= elastic.col(t).head<3>().mean();
-    const double yield = m_solid.materials.yield()(t * m_solid.model.elements.points_per_tet);
+  for (Eigen::Index point = 0; point < elastic.cols(); ++point) {
+    Vec6 deviator = elastic.col(point);
+    deviator.head<3>().array() -= elastic.col(point).head<3>().mean();
+    const double yield = m_solid.materials.yield()(point);
     const double norm = deviator.norm();
     if (!(norm > yield)) continue;
     farthest = std::max(farthest, norm / yield - 1.0);
-    elastic.col(t) -= (1.0 - yield / norm) * deviator;
+    elastic.col(point) -= (1.0 - yield / norm) * deviator;
   }
   return farthest;
 }

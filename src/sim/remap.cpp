@@ -10,6 +10,7 @@
 
 #include "base/mandel.h"
 #include "embed/tet_locator.h"
+#include "mesh/quadratic.h"
 #include "mesh/topology.h"
 
 namespace argil::sim {
@@ -159,16 +160,65 @@ void keep_water(const Field& volume, double wanted, Field& saturation) {
 
 TensorField find_elastic_strain(const solid::Body& solid) {
   const solid::Elements& elements = solid.model.elements;
-  TensorField elastic = TensorField::Zero(6, elements.num_tets());
+  TensorField elastic(6, elements.num_points());
   for (int point = 0; point < elements.num_points(); ++point) {
     const Mat3 F = solid.kinematics.at(point).F;
     const Mat3 metric = apply_to_modes(from_mandel(solid.plastic_strain->col(point)), exp_of_minus_double);
     const Mat3 b = F * metric * F.transpose();
-    elastic.col(elements.tet_of_point(point)) +=
-        to_mandel(apply_to_modes(0.5 * (b + b.transpose()), half_logarithm)) / elements.points_per_tet;
+    elastic.col(point) = to_mandel(apply_to_modes(0.5 * (b + b.transpose()), half_logarithm));
   }
   return elastic;
 }
+
+namespace {
+
+/// At a place of a ten-node tet with these values at its four points: linear between them, and beyond them
+/// not past the most and the least of them.
+Vec6 interpolate(const TensorField& elastic, const embed::TetLocator::Place& place) {
+  Vec4 share = (place.weights.array() - solid::kPointNear) / (solid::kPointFar - solid::kPointNear);
+  share = share.cwiseMax(0.0);
+  return elastic.middleCols<4>(4 * place.tet) * (share / share.sum());
+}
+
+TensorField take_strain(const Places& places, const Origins& origins, const TensorField& from,
+                        const mesh::TetMesh& to, bool is_quadratic) {
+  if (!is_quadratic) return take_means(origins, from);
+  TensorField elastic(6, 4 * to.num_tets());
+  for (int t = 0; t < to.num_tets(); ++t)
+    for (int k = 0; k < 4; ++k) {
+      Vec3 x = Vec3::Zero();
+      for (int i = 0; i < 4; ++i)
+        x += (i == k ? solid::kPointFar : solid::kPointNear) * to.vertices.col(to.tets(i, t));
+      elastic.col(4 * t + k) = interpolate(from, places.find(x));
+    }
+  return elastic;
+}
+
+/// Of each tet, det F_e to the minus one: the mean of its points' logarithms.
+Field find_rest_volume_ratio(const TensorField& elastic, Eigen::Index num_tets) {
+  const Eigen::Index points = elastic.cols() / num_tets;
+  Field ratio(num_tets);
+  for (Eigen::Index t = 0; t < num_tets; ++t)
+    ratio(t) =
+        std::exp(-elastic.middleCols(points * t, points).topRows<3>().sum() / static_cast<double>(points));
+  return ratio;
+}
+
+Points take_speed(const Places& places, const solid::Elements& elements, const Points& v,
+                  const Points& nodes) {
+  Points speed(3, nodes.cols());
+  for (Eigen::Index n = 0; n < nodes.cols(); ++n) {
+    const embed::TetLocator::Place place = places.find(nodes.col(n));
+    Eigen::VectorXd weights = place.weights;
+    if (elements.nodes_per_tet == 10) weights = mesh::compute_quadratic_shape(place.weights);
+    speed.col(n).setZero();
+    for (Eigen::Index k = 0; k < weights.size(); ++k)
+      speed.col(n) += weights(k) * v.col(elements.nodes(k, place.tet));
+  }
+  return speed;
+}
+
+}  // namespace
 
 RemappedState remap(const Body& from, const solid::Body& solid, const Points& x, const Field& saturation,
                     Body& to) {
@@ -184,16 +234,13 @@ RemappedState remap(const Body& from, const solid::Body& solid, const Points& x,
              to.initial_saturation);
   if (from.youngs_modulus.size() > 0) to.youngs_modulus = take_means(origins, from.youngs_modulus);
   take_supports(from, solid, x, of_node, to);
+  const bool is_quadratic = solid.model.elements.nodes_per_tet == 10;
   RemappedState state;
-  state.elastic = take_means(origins, find_elastic_strain(solid));
-  to.rest_volume_ratio = (-state.elastic.topRows<3>().colwise().sum()).array().exp().transpose();
-  state.v.resize(3, to.mesh.num_vertices());
-  for (int n = 0; n < to.mesh.num_vertices(); ++n) {
-    const embed::TetLocator::Place& place = of_node[static_cast<std::size_t>(n)];
-    state.v.col(n).setZero();
-    for (Eigen::Index k = 0; k < 4; ++k)
-      state.v.col(n) += place.weights(k) * solid.committed.v.col(from.mesh.tets(k, place.tet));
-  }
+  state.elastic = take_strain(places, origins, find_elastic_strain(solid), to.mesh, is_quadratic);
+  to.rest_volume_ratio = find_rest_volume_ratio(state.elastic, to.mesh.num_tets());
+  const Points nodes =
+      is_quadratic ? mesh::make_quadratic_mesh(to.mesh, to.topology).nodes : to.mesh.vertices;
+  state.v = take_speed(places, solid.model.elements, solid.committed.v, nodes);
   return state;
 }
 

@@ -8,15 +8,15 @@ namespace argil::sim {
 /// What a body of new cells takes over from one of the same shape, besides what its Body says.
 struct RemappedState {
   Points v;             ///< 3×nodes [m/s]
-  TensorField elastic;  ///< 6×tets: logarithmic elastic strain ½ ln FₑFₑᵀ in space, Mandel
+  TensorField elastic;  ///< 6×points: logarithmic elastic strain ½ ln FₑFₑᵀ in space, Mandel
 };
 
-/// ½ ln FₑFₑᵀ of each tet in space, Mandel: the mean of its points. Of Hencky's law.
+/// ½ ln FₑFₑᵀ at each point in space, Mandel. Of Hencky's law.
 TensorField find_elastic_strain(const solid::Body& solid);
 
 /// Takes what the clay of `solid` is like now to the cells of `to`, which lie where its own lie at x: water,
-/// moduli, pores' axes and supports go into `to`, the rest is returned. A tet gets the mean over its places;
-/// a node the speed of its place. A tet is at rest
+/// moduli, pores' axes and supports go into `to`, the rest is returned. A four-node tet gets the mean over
+/// its places, a point of a ten-node tet and a node what is there. A tet is at rest
 /// where its volume is without pressure. A node is held where nodes that are held carry its place by kHeld
 /// and more. Water keeps its mass to rounding: so does the saturation, but for what the sizes of both bodies
 /// differ by.

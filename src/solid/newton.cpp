@@ -31,7 +31,7 @@ bool assemble_newton(Body& body, const Part& part, const StepLoads& loads) {
   assemble_residual(body, part, loads);
   // At least one solve where something acts: what it does may be small beside the rounding of stiffer parts.
   const bool may_end = newton.iterations > 0 || !newton.is_driven;
-  if (may_end && compute_excess(body) <= body.model.params.newton_tolerance * newton.residual_scale) {
+  if (may_end && compute_excess(body) <= newton.tolerance * newton.residual_scale) {
     const StepContacts contacts = body.step_contacts(loads.contacts);
     const auto update = body.contacts.are_alone ? update_friction : update_active_contacts;
     if (!body.has_implicit_contact() || !update(contacts, body.trial.x, body.contacts)) return true;
@@ -64,7 +64,7 @@ StepStatus solve_newton(Body& body, const Part& part, const StepLoads& loads, li
   if (!report.converged) return describe_failure(report, make_exact(params.solver).tolerance, tick);
   if (newton.iterations > params.newton_max_iterations)
     return StepStatus::failed({tick, "solid", -1, "Newton's relative residual",
-                               compute_excess(body) / newton.residual_scale, params.newton_tolerance});
+                               compute_excess(body) / newton.residual_scale, newton.tolerance});
   return search_line(body, part, loads, tick);
 }
 

@@ -101,6 +101,7 @@ bool predict(Body& body, const Part& part, const StepLoads& loads, double step_s
   step.load_share = 1.0;
   body.history.counters = {};
   body.newton.iterations = 0;
+  body.newton.tolerance = body.model.params.newton_tolerance;
   body.contacts.start(loads.contacts);
   keep_damping_frame(body);
   step.tau = find_tau(body.model, start, step_s);

@@ -10,6 +10,7 @@ struct Body;
 /// What Newton's method measures its residual and potential by.
 struct NewtonMeasures {
   int iterations = 0;               ///< of the present step or share of the load
+  double tolerance = 0.0;           ///< of the residual over residual_scale
   double first_residual = 0.0;      ///< of the first guess of the step's first solve
   double residual_scale = 0.0;      ///< loads, momenta and reactions, which the residual is small against
   double corner_scale = 0.0;        ///< Σ‖corner force‖²

@@ -18,6 +18,14 @@ namespace {
 
 constexpr double kEnd = std::numeric_limits<double>::infinity();  // of time: supports at their full way
 
+constexpr double kRoughTolerance = 1e-4;  // of the residual over loads and reactions
+
+linear::SolverParams make_rough(linear::SolverParams solver) {
+  solver.kind = linear::SolverKind::pcg_jacobi;
+  solver.tolerance = 1e-2;  // of one of Newton's steps, of which some follow
+  return solver;
+}
+
 /// Under the present share of the load, from state.x on.
 StepStatus iterate(Body& body, const Part& whole, const StepLoads& loads, const SolidState& state) {
   body.trial.x = state.x;
@@ -31,14 +39,16 @@ StepStatus iterate(Body& body, const Part& whole, const StepLoads& loads, const 
   return StepStatus::ok();
 }
 
-void begin(Body& body, const StepLoads& loads, const SolidState& state) {
+void begin(Body& body, const StepLoads& loads, const SolidState& state, EquilibriumAccuracy accuracy) {
+  const bool is_exact = accuracy == EquilibriumAccuracy::exact;
   body.plastic_strain = &state.plastic_strain;
   body.elastic.forget_all();
   body.is_state_changed = true;
   store_nodal_stiffness(body.model, body.materials, body.system);
-  if (!body.history.static_solver)
-    body.history.static_solver =
-        linear::make_solver(make_exact(body.model.params.solver), body.model.threads);
+  body.history.static_solver = linear::make_solver(
+      is_exact ? make_exact(body.model.params.solver) : make_rough(body.model.params.solver),
+      body.model.threads);
+  body.newton.tolerance = is_exact ? body.model.params.newton_tolerance : kRoughTolerance;
   body.prediction.is_static = true;
   body.prediction.tau = 1.0;
   body.prediction.v_hat.setZero();
@@ -65,9 +75,10 @@ StepStatus check_resolution(const Body& body, const SolidState& state) {
 
 }  // namespace
 
-StepStatus find_equilibrium(Body& body, const Part& whole, const StepLoads& loads, SolidState& state) {
+StepStatus find_equilibrium(Body& body, const Part& whole, const StepLoads& loads, SolidState& state,
+                            EquilibriumAccuracy accuracy) {
   constexpr double kSmallestShare = 1.0 / 1024.0;
-  begin(body, loads, state);
+  begin(body, loads, state, accuracy);
   double done = 0.0;
   for (double step = 1.0; done < 1.0;) {
     body.prediction.load_share = std::min(1.0, done + step);

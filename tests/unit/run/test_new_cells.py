@@ -25,7 +25,7 @@ ARGIL = None
 EDGE, RADIUS, DEEPEST = 0.02, 0.003, 0.007  # [m] of the block, the ball and the press: a third of its height
 
 
-def write_scene(folder, skin_triangles):
+def write_scene(folder, skin_triangles, element="p1", near=0.0012):
     t = np.arange(0, 0.25, 0.001)
     height = EDGE + RADIUS - np.interp(t, [0, 0.15, 0.2, 0.25], [-0.0005, DEEPEST, DEEPEST, -0.001])
     np.savetxt(folder / "press.csv", np.c_[t, np.full_like(t, 2e-4), np.full_like(t, 1e-4), height], delimiter=",",
@@ -33,10 +33,10 @@ def write_scene(folder, skin_triangles):
     (folder / "press.json").write_text(json.dumps({
         "about": "a ball pressed into clay by a third of its height",
         "body": {"shape": {"kind": "box", "size_m": EDGE, "target_tets": 2000, "skin_triangles": skin_triangles},
-                 "cells": {"near_tool_m": 0.0012}, "initial_saturation": 0.3,
+                 "cells": {"near_tool_m": near}, "initial_saturation": 0.3,
                  "fixed": [{"kind": "plane", "normal": [0, 0, 1], "offset_m": 0}]},
         "material": {"youngs_modulus_Pa": 1e6, "poissons_ratio": 0.3, "plasticity": {"strength_Pa": 15e3}},
-        "tool": {"shape": {"kind": "sphere", "radius_m": RADIUS}},
+        "tool": {"shape": {"kind": "sphere", "radius_m": RADIUS}}, "dynamics": {"element": element},
         "haptics": {"frame_period_ticks": 20, "physics_period_ticks": 2}, "trace": {"file": "press.csv"}}))
     return folder / "press.json"
 
@@ -57,6 +57,7 @@ def cells_of(result, frame):
 
 class NewCells(unittest.TestCase):
     SKIN = 0
+    ELEMENT, NEAR = "p1", 0.0012
     VOLUME = 5e-3  # of the first, by which it may differ
 
     @classmethod
@@ -64,7 +65,7 @@ class NewCells(unittest.TestCase):
         cls.temp = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.temp.cleanup)
         cls.folder = Path(cls.temp.name)
-        cls.scene = write_scene(cls.folder, cls.SKIN)
+        cls.scene = write_scene(cls.folder, cls.SKIN, cls.ELEMENT, cls.NEAR)
         cls.result = cls.folder / "press.h5"
         cls.notes = run(cls.scene, cls.result)
 
@@ -146,6 +147,10 @@ class NewCellsUnderASkin(NewCells):
             for frame in result["frames"].values():
                 a, b, c = (frame["skin_position"][:][triangles[:, k]] for k in range(3))
                 self.assertAlmostEqual(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 / EDGE**3, 1, delta=1e-2)
+
+
+class NewCellsOfTenNodes(NewCells):
+    ELEMENT, NEAR = "p2", 0.0024
 
 
 if __name__ == "__main__":

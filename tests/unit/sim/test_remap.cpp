@@ -9,6 +9,7 @@
 
 #include "base/mandel.h"
 #include "base/rng.h"
+#include "mesh/quadratic.h"
 #include "support/solid_scene.h"
 
 namespace argil::sim {
@@ -17,16 +18,17 @@ namespace {
 constexpr double kRounding = 1e-11;
 const Vec3 kSize(0.04, 0.03, 0.02);
 
-solid::SolidParams make_hencky() {
+solid::SolidParams make_hencky(solid::ElementKind element) {
   solid::SolidParams params;
   params.model = solid::StrainModel::hencky;
+  params.element = element;
   return params;
 }
 
-struct Change : ::testing::Test {
+struct Change : ::testing::TestWithParam<solid::ElementKind> {
   test::Scene scene{test::make_irregular_block(4, 3, 2, kSize),
                     {test::hold_nodes(find_bottom(test::make_irregular_block(4, 3, 2, kSize)))},
-                    make_hencky(),
+                    make_hencky(GetParam()),
                     1e5,
                     0.3};
   Body from, to;
@@ -53,35 +55,64 @@ struct Change : ::testing::Test {
   RemappedState remap(const Field& saturation) {
     return sim::remap(from, scene.solid, scene.state.x, saturation, to);
   }
+  Points new_nodes() const {
+    return GetParam() == solid::ElementKind::p2 ? mesh::make_quadratic_mesh(to.mesh, to.topology).nodes
+                                                : to.mesh.vertices;
+  }
   Field dry() const { return Field::Zero(from.mesh.num_tets()); }
 };
 
-TEST_F(Change, OfCellsKeepsAUniformStrain) {
+TEST_P(Change, OfCellsKeepsAUniformStrain) {
   deform((Mat3() << 1.2, 0.3, 0, -0.1, 0.9, 0.2, 0.05, 0, 1.1).finished());
   const Eigen::SelfAdjointEigenSolver<Mat3> modes(A * A.transpose());
   const Mat3 strain = modes.eigenvectors() * Vec3(0.5 * modes.eigenvalues().array().log()).asDiagonal() *
                       modes.eigenvectors().transpose();
   const RemappedState state = remap(dry());
-  ASSERT_EQ(state.elastic.cols(), to.mesh.num_tets());
+  ASSERT_EQ(state.elastic.cols(), scene.solid.model.elements.points_per_tet * to.mesh.num_tets());
   EXPECT_LT((state.elastic.colwise() - to_mandel(strain)).cwiseAbs().maxCoeff(), kRounding);
 }
 
-TEST_F(Change, OfCellsKnowsFlowFromStrain) {
+TEST_P(Change, OfCellsKnowsFlowFromStrain) {
   const Vec3 stretch(0.5, -0.2, -0.3);  // without change of volume
   scene.state.plastic_strain.colwise() = to_mandel(Mat3(stretch.asDiagonal()));
   deform(Vec3(stretch.array().exp()).asDiagonal());
   EXPECT_LT(remap(dry()).elastic.cwiseAbs().maxCoeff(), kRounding);
 }
 
-TEST_F(Change, OfCellsKeepsALinearSpeed) {
+TEST_P(Change, OfCellsKeepsALinearSpeed) {
   deform(Mat3::Identity());
   const Mat3 rate = (Mat3() << 1, 2, 0, -1, 0.5, 3, 0, 1, -2).finished();
   scene.solid.committed.v = rate * scene.state.x;
   const RemappedState state = remap(dry());
-  EXPECT_LT((state.v - rate * to.mesh.vertices).cwiseAbs().maxCoeff(), kRounding);
+  EXPECT_LT((state.v - rate * new_nodes()).cwiseAbs().maxCoeff(), kRounding);
 }
 
-TEST_F(Change, OfCellsKeepsTheWater) {
+TEST_P(Change, OfCellsForThemselvesKeepsEachPoint) {
+  Rng rng(7);
+  Field size(scene.state.plastic_strain.cols());
+  for (double& e : size) e = rng.uniform(-0.1, 0.1);
+  const Vec6 shape = to_mandel(Mat3(Vec3(1.0, -0.4, -0.6).asDiagonal()));
+  scene.state.plastic_strain = -shape * size.transpose();
+  deform(Mat3::Identity());
+  to.mesh = from.mesh;
+  to.topology = mesh::make_topology(to.mesh);
+  EXPECT_LT((remap(dry()).elastic + scene.state.plastic_strain).cwiseAbs().maxCoeff(), kRounding);
+}
+
+TEST_P(Change, OfTenNodeCellsKeepsAQuadraticSpeed) {
+  if (GetParam() != solid::ElementKind::p2) GTEST_SKIP() << "four nodes carry a linear speed";
+  deform(Mat3::Identity());
+  const auto find_speed = [](const Points& x) -> Points {
+    Points v(3, x.cols());
+    for (Eigen::Index n = 0; n < x.cols(); ++n)
+      v.col(n) = Vec3(x(0, n) * x(1, n), x(2, n) * x(2, n) - x(0, n), x(1, n) * (1.0 + x(2, n)));
+    return v;
+  };
+  scene.solid.committed.v = find_speed(scene.state.x);
+  EXPECT_LT((remap(dry()).v - find_speed(new_nodes())).cwiseAbs().maxCoeff(), kRounding);
+}
+
+TEST_P(Change, OfCellsKeepsTheWater) {
   deform(Vec3(1.1, 0.9, 1.0).asDiagonal());
   Rng rng(3);
   Field saturation(from.mesh.num_tets());
@@ -94,7 +125,7 @@ TEST_F(Change, OfCellsKeepsTheWater) {
   EXPECT_LE(to.initial_saturation.maxCoeff(), 1.0);
 }
 
-TEST_F(Change, OfCellsKeepsTheWaterOfTetsThatAreNearlyFull) {
+TEST_P(Change, OfCellsKeepsTheWaterOfTetsThatAreNearlyFull) {
   deform(Vec3(0.99, 0.99, 1.0).asDiagonal());  // less room than before
   Field saturation = Field::Constant(from.mesh.num_tets(), 1.0);
   saturation.head(10).setConstant(0.2);
@@ -105,21 +136,26 @@ TEST_F(Change, OfCellsKeepsTheWaterOfTetsThatAreNearlyFull) {
   EXPECT_LE(to.initial_saturation.maxCoeff(), 1.0);
 }
 
-TEST_F(Change, OfCellsHoldsSomethingWhereOneVertexIsHeld) {
+TEST_P(Change, OfCellsHoldsSomethingWhereOneVertexIsHeld) {
   deform(Mat3::Identity());
-  test::Scene held(test::make_irregular_block(4, 3, 2, kSize), {0}, make_hencky(), 1e5, 0.3);
+  test::Scene held(test::make_irregular_block(4, 3, 2, kSize), {0}, make_hencky(GetParam()), 1e5, 0.3);
   held.solid.plastic_strain = &held.state.plastic_strain;
   from.supports = {test::hold_nodes({0})};
   sim::remap(from, held.solid, held.state.x, dry(), to);
   EXPECT_EQ(to.supports[0].region.nodes.size(), 1U);
 }
 
-TEST_F(Change, OfCellsHoldsTheSameFace) {
+TEST_P(Change, OfCellsHoldsTheSameFace) {
   deform(Mat3::Identity());
   remap(dry());
   ASSERT_EQ(to.supports.size(), 1U);
   EXPECT_EQ(to.supports[0].region.nodes, find_bottom(to.mesh));
 }
+
+INSTANTIATE_TEST_SUITE_P(Elements, Change, ::testing::Values(solid::ElementKind::p1, solid::ElementKind::p2),
+                         [](const auto& element) {
+                           return element.param == solid::ElementKind::p1 ? "FourNodes" : "TenNodes";
+                         });
 
 }  // namespace
 }  // namespace argil::sim

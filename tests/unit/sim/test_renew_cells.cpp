@@ -38,11 +38,13 @@ device::DeviceSample place(double depth, device::ToolMode mode = device::ToolMod
 }
 
 struct Pressed {
-  explicit Pressed(const Params& p = make_clay()) : params(p) {}
+  explicit Pressed(const Params& p = make_clay(), int cells = 10) : params(p), num_cells(cells) {}
 
   const Params params;
-  Simulation simulation{test::make_block_body(10, 10, 5, Vec3(0.04, 0.04, kTop), 0.3),
-                        contact::make_sphere_tool(kRadius, 2), params, place(-1e-3)};
+  const int num_cells;  // along each long edge
+  Simulation simulation{
+      test::make_block_body(num_cells, num_cells, num_cells / 2, Vec3(0.04, 0.04, kTop), 0.3),
+      contact::make_sphere_tool(kRadius, 2), params, place(-1e-3)};
 
   void go(double from, double to, int ticks, device::ToolMode mode = device::ToolMode::push) {
     for (int k = 1; k <= ticks; ++k)
@@ -52,7 +54,7 @@ struct Pressed {
   void renew() {
     Body body;
     body.mesh = simulation.body().mesh;
-    body.mesh.vertices = simulation.body_state().solid.x;
+    body.mesh.vertices = simulation.body_state().solid.x.leftCols(body.mesh.num_vertices());
     body.topology = mesh::make_topology(body.mesh);
     body.epoch = simulation.body().epoch + 1;
     simulation.renew_cells(std::move(body));
@@ -76,6 +78,20 @@ TEST(NewCells, AreFeltAsTheOldOnesWhereTheyAreThose) {
                 .norm()
                 .maxCoeff(),
             2e-5);
+}
+
+TEST(NewCells, OfTenNodesAreFeltAsTheOldOnesBeforeTheirEdgesBend) {
+  Params params = make_clay();
+  params.solid.element = solid::ElementKind::p2;
+  Pressed alone(params, 6), renewed(params, 6);
+  for (Pressed* p : {&alone, &renewed}) p->go(-1e-3, 3e-4, 20);
+  ASSERT_GT(alone.force().z(), 0.3);
+  renewed.renew();
+  EXPECT_EQ(renewed.force(), alone.force());
+  for (int i = 0; i < 3; ++i) {
+    for (Pressed* p : {&alone, &renewed}) p->go(3e-4 + 2e-5 * i, 3e-4 + 2e-5 * (i + 1), 5);
+    EXPECT_NEAR(renewed.force().z(), alone.force().z(), 0.02 * alone.force().z()) << i;
+  }
 }
 
 TEST(NewCells, KeepWhatIsBooked) {
