@@ -2,7 +2,7 @@
 """What new cells do to a force: a ball is pressed into a block of clay by a quarter of its height, and another one is led in
 a circle through it, with the cells that the body began with and with cells that are made anew where flow has spoilt them.
 
-Usage: new_cells_table.py ARGIL [-o TABLE.csv] [--tets N ...]     default 8000 30000
+Usage: new_cells_table.py ARGIL [-o TABLE.csv] [--tets N ...] [--ten-node-tets N ...]
 Columns: force at the deepest [N] of the press; mean force [N] of the second quarter turn to the end of the first turn; how often cells
 were made anew; the force's change [%] over the two steps after the first time under the tool; farthest volume of the body from the
 first [%]; seconds of the processor.
@@ -18,7 +18,7 @@ import numpy as np
 from table_file import write_table
 
 EDGE, RADIUS = 0.03, 0.006  # [m]
-COLUMNS = ("motion", "tets", "cells", "force_N", "times", "change_percent", "volume_percent", "cpu_s")
+COLUMNS = ("motion", "element", "tets", "cells", "force_N", "times", "change_percent", "volume_percent", "cpu_s")
 
 
 def lead(motion, t):
@@ -49,9 +49,9 @@ def compute_volume(result, frame):
     return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a).sum() / 6
 
 
-def measure(argil, folder, motion, tets, cells):
+def measure(argil, folder, motion, element, tets, cells):
     result = folder / "result.h5"
-    settings = (f"/body/shape/target_tets={tets}", f'/body/cells/remesh="{cells}"')
+    settings = (f"/dynamics/element={element}", f"/body/shape/target_tets={tets}", f'/body/cells/remesh="{cells}"')
     words = [word for setting in settings for word in ("--set", setting)]
     subprocess.run([argil, "run", write_scene(folder, motion), "-o", result, "--quiet", *words], check=True)
     with h5py.File(result) as run:
@@ -61,7 +61,7 @@ def measure(argil, folder, motion, tets, cells):
         change = 100 * (force[touched[0] + 4] / force[touched[0] - 1] - 1) if touched else float("nan")
         volumes = np.array([compute_volume(run, frame) for frame in run["frames"].values()])
         found = force[-1] if motion == "press" else force[500:].mean()
-        return (motion, len(run["mesh/tets"]), cells, f"{found:.4g}", len(epochs), f"{change:.2g}",
+        return (motion, element, len(run["mesh/tets"]), cells, f"{found:.4g}", len(epochs), f"{change:.2g}",
                 f"{100 * np.abs(volumes / volumes[0] - 1).max():.2g}", f"{run['timing/cpu'][-1]:.3g}")
 
 
@@ -70,13 +70,15 @@ def main():
     parser.add_argument("argil", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=Path("results/clay/new_cells.csv"))
     parser.add_argument("--tets", type=int, nargs="+", default=[8000, 30000])
+    parser.add_argument("--ten-node-tets", type=int, nargs="+", default=[2000, 6000])
     arguments = parser.parse_args()
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for motion in ("press", "circle"):
-            for tets in arguments.tets:
+            bodies = [("p1", tets) for tets in arguments.tets] + [("p2", tets) for tets in arguments.ten_node_tets]
+            for element, tets in bodies:
                 for cells in ("never", "when_spoilt"):
-                    rows.append(measure(arguments.argil.resolve(), Path(folder), motion, tets, cells))
+                    rows.append(measure(arguments.argil.resolve(), Path(folder), motion, element, tets, cells))
                     print(*rows[-1], sep="  ", flush=True)
     write_table(arguments.output, COLUMNS, rows)
 

@@ -161,7 +161,7 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
       "/body/cells/remesh", body.cells.remesh,
       {{RemeshWhen::never, "never"}, {RemeshWhen::when_spoilt, "when_spoilt"}},
       "New cells between two steps where flow has spoilt those there are: of hencky clay with a strength, by "
-      "the pressure law, in four-node tets and backward_euler's steps; not live.");
+      "the pressure law, in backward_euler's steps; not live.");
   b.number("/body/initial_saturation", p.water.initial_saturation, between(0, 1), "",
            "Saturation of every tet at the start.");
   b.objects("/body/fixed", body.fixed, describe_support,
@@ -537,9 +537,8 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
   b.choice<output::FramePrecision>(
       "/output/frame_precision", s.frame_precision,
       {{output::FramePrecision::single, "single"}, {output::FramePrecision::whole, "double"}},
-      "What frames keep of fields and skin; single: of large arrays 24 bits of the largest value; double: "
-      "all. "
-      "Positions of the cage are always whole.");
+      "What frames keep of fields and skin; single: of large arrays 24 bits of the largest value, in half of "
+      "the room; double: all. Positions of the cage are always whole.");
 }
 
 }  // namespace

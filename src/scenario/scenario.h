@@ -120,7 +120,7 @@ struct Scenario {
   HandSpec hand;
   sim::Params params;
   int checkpoint_period_ticks = 1000;  ///< of runs with a trace; 0: none but where a signal ends it
-  output::FramePrecision frame_precision = output::FramePrecision::single;
+  output::FramePrecision frame_precision = output::FramePrecision::whole;
   double accuracy = 0.0;       ///< wanted of the force at the hand [–]: cells are chosen; 0: as given
   bool allow_locking = false;  ///< run nearly incompressible tets although they lock
   std::string medium_status;   ///< where eq. 6 stands at all that the run can reach; empty when it
