@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "output/schema.h"
 #include "output/text.h"
 
 namespace argil::output {
@@ -175,6 +176,7 @@ void describe_timing(std::ostream& out, std::vector<std::pair<std::string, doubl
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string stages;
   std::string processors;
+  std::string of_passes;
   for (const auto& [name, value] : timing) {
     if (name == "total") {
       out << label("timing") << with_prefix(value, "s") << " of wall clock";
@@ -183,13 +185,15 @@ void describe_timing(std::ostream& out, std::vector<std::pair<std::string, doubl
     } else if (name == "tick_rate_Hz") {
       out << label("rate") << rounded(value) << " ticks in a second of wall clock\n";
     } else if (name == "cpu") {
-      processors = label("cpu") + with_prefix(value, "s") + " of all processors together\n";
+      processors = label("cpu") + with_prefix(value, "s") + " of all processors together";
+    } else if (name == schema::kCpuOfPasses) {
+      of_passes = ", " + with_prefix(value, "s") + " in the passes before";
     } else if (name != "instructions" && !name.starts_with("num_")) {
       stages += (stages.empty() ? "" : ", ") + name + ' ' + with_prefix(value, "s");
     }
   }
   if (!stages.empty()) out << label("of it") << stages << '\n';
-  out << processors;
+  if (!processors.empty()) out << processors << of_passes << '\n';
 }
 
 /// What the run was made from: notes of its start, build, hashes, a line each. The scenario has a page of its

@@ -105,6 +105,10 @@ const char* unit_of_timing(const std::string& name) {
   return name == "instructions" || name.starts_with("num_") ? "1" : "s";
 }
 
+hdf5::Label label_timing(const char* unit) {
+  return {unit, "measured while the program ran; differs from run to run"};
+}
+
 }  // namespace
 
 struct ResultFile::Impl {
@@ -410,11 +414,8 @@ void ResultFile::append_timing(const std::vector<std::pair<std::string, double>>
     const Group& timing = m_impl->timing;
     for (const auto& [name, value] : stages) {
       constexpr std::uint64_t kChunk = 16;
-      if (!timing.has(name)) {
-        const hdf5::Label label{unit_of_timing(name),
-                                "measured while the program ran; differs from run to run"};
-        timing.create_series(name, hdf5::Element::real64, {}, kChunk, label);
-      }
+      if (!timing.has(name))
+        timing.create_series(name, hdf5::Element::real64, {}, kChunk, label_timing(unit_of_timing(name)));
       timing.open_dataset(name).append(&value, 1);
     }
   });
@@ -450,9 +451,13 @@ void ResultFile::finish(const std::optional<Failure>& failure, bool interrupted)
   file.close();
 }
 
-void write_accuracy(const std::string& result_file, double wanted, double estimated) {
+void write_accuracy(const std::string& result_file, double wanted, double estimated, double cpu_of_passes) {
   File file = File::open_for_writing(result_file);
   {
+    Group timing = file.root().open_group("timing");
+    if (!timing.has(schema::kCpuOfPasses))
+      timing.create_series(schema::kCpuOfPasses, hdf5::Element::real64, {}, 1, label_timing("s"));
+    timing.open_dataset(schema::kCpuOfPasses).append(&cpu_of_passes, 1);
     Group group = file.root().create_group(schema::kAccuracy);
     group.write_attribute("wanted", wanted);
     group.write_attribute("estimated", estimated);

@@ -130,8 +130,9 @@ class ResultFile {
   std::unique_ptr<Impl> m_impl;
 };
 
-/// Adds to a complete result what error of the force at the hand was wanted and is estimated [of the force].
-void write_accuracy(const std::string& result_file, double wanted, double estimated);
+/// Adds to a complete result what error of the force at the hand was wanted and is estimated [of the force],
+/// and to its /timing what the ticks of the passes before it took of all processors [s].
+void write_accuracy(const std::string& result_file, double wanted, double estimated, double cpu_of_passes);
 
 /// Writes the XDMF beside a result file so that ParaView opens it: cage with saturation and plastic strain,
 /// skin with saturation and region of influence, one time step a frame. It names the result file relative to

@@ -161,6 +161,8 @@ inline hdf5::Group open_mesh(const hdf5::Group& root, int epoch) {
       .open_group(name_number(static_cast<std::uint64_t>(epoch)))
       .open_group("mesh");
 }
+/// In /timing: what the ticks of passes before the result's own took of all processors [s].
+inline constexpr const char* kCpuOfPasses = "cpu_of_passes";
 inline constexpr const char* kAccuracy = "accuracy";  ///< group: attributes of a run to /fidelity/accuracy
 inline constexpr const char* kEpochsEnd =
     "last_cells_tick";                          ///< root: after it cells were not made anew any more

@@ -50,6 +50,13 @@ std::string print_short(double number) {
   return text.str();
 }
 
+/// What the ticks of a result took of all processors [s].
+double find_cpu(const output::ResultReader& reader) {
+  for (const auto& [name, seconds] : reader.read_timing())
+    if (name == "cpu") return seconds;
+  return 0.0;
+}
+
 /// The run of a plan: settings over those that were given.
 class Planner {
  public:
@@ -133,6 +140,7 @@ class Planner {
   void take(const std::string& result, double cells) {
     const output::ResultReader reader(result);
     m_passes.push_back({cells, static_cast<int>(reader.read_cells(0).tets.cols()), reader.read_haptic()});
+    m_cpu_before += std::exchange(m_cpu_of_last, find_cpu(reader));
     if (m_passes.size() == 1) return say(describe_pass(m_passes.back()) + ": to compare with");
     AccuracyPass& fine = m_passes.back();
     const AccuracyPass& coarse = m_passes[m_passes.size() - 2];
@@ -153,7 +161,7 @@ class Planner {
       say("accuracy: " + print_short(100.0 * m_wanted) +
           " % were asked: give /body/cells/near_tool_m and "
           "/dynamics/element by hand, or ask for less");
-    if (is_exact || is_end) output::write_accuracy(m_result, m_wanted, last.error);
+    if (is_exact || is_end) output::write_accuracy(m_result, m_wanted, last.error, m_cpu_before);
     return is_exact || is_end;
   }
   std::string describe_pass(const AccuracyPass& pass) const {
@@ -178,6 +186,8 @@ class Planner {
   int m_fewest = 0;
   std::optional<double> m_near_of_result;  // size of its cells [m], until the pass that made it comes
   std::vector<AccuracyPass> m_passes;
+  double m_cpu_before = 0.0;   // of the passes before the last, in their ticks, of all processors [s]
+  double m_cpu_of_last = 0.0;  // of the last
 };
 
 }  // namespace

@@ -21,6 +21,7 @@
 
 #include "base/error.h"
 #include "output/result_reader.h"
+#include "output/schema.h"
 #include "run/files.h"
 #include "run/identity.h"
 #include "run/interrupt.h"
@@ -279,10 +280,12 @@ class Runner {
     }
     try {
       const output::ResultReader reader(file);
+      result.cpu_seconds.push_back(0.0);
       for (const auto& [name, value] : reader.read_timing()) {
-        if (name == "cpu") result.cpu_seconds.push_back(value);
+        if (name == "cpu" || name == output::schema::kCpuOfPasses) result.cpu_seconds.back() += value;
         if (name == "instructions") result.instructions = value;
       }
+      if (reader.find_accuracy()) result.instructions = 0.0;  // those of the last pass alone were counted
       if (const auto failure = reader.read_failure()) result.reason = to_string(*failure);
     } catch (const std::runtime_error& broken) {  // a killed run's file
       result.reason = broken.what();
@@ -324,7 +327,7 @@ run::RunOptions make_run_options(const std::string& scenario,
                                  const std::vector<scenario::Setting>& settings) {
   run::RunOptions options;
   options.scenario = scenario;
-  options.settings.emplace_back("/dynamics/strict=true");  // a study asks where methods fail
+  options.settings.emplace_back("/dynamics/strict=true");         // a study asks where methods fail
   options.settings.emplace_back("/body/cells/remesh=\"never\"");  // and compares places by their cells
   for (const scenario::Setting& setting : settings)
     options.settings.push_back(setting.pointer + "=" + setting.value);

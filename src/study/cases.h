@@ -22,9 +22,10 @@ struct CaseResult {
   int exit_code = 0;   ///< of `argil run`; above 128: killed by that signal less 128
   std::string reason;  ///< why it was refused or failed; empty when done
   std::string file;    ///< its result; empty when refused
-  std::vector<double> cpu_seconds;  ///< of the ticks alone, one a repeat
-  double peak_memory_MiB = 0.0;     ///< of the process
-  double instructions = 0.0;        ///< in user mode, of the ticks; 0: the machine does not count them
+  std::vector<double>
+      cpu_seconds;               ///< of the ticks alone, of all passes of a run to an accuracy; one a repeat
+  double peak_memory_MiB = 0.0;  ///< of the process
+  double instructions = 0.0;     ///< in user mode, of the ticks; 0: the machine does not count them
 };
 
 struct CaseOptions {

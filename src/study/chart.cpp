@@ -9,6 +9,7 @@
 #include "output/study_table.h"
 #include "run/run.h"
 #include "scenario/patch.h"
+#include "scenario/scenario_text.h"
 #include "scenario/study_file.h"
 #include "study/measure.h"
 #include "study/outcome.h"
@@ -54,6 +55,13 @@ void compare(Row& row, const output::ResultReader& run, const output::ResultRead
   }
 }
 
+/// What a result was made of: a run to an accuracy has another element and other cells than were asked for.
+scenario::Scenario load_scene_of(const output::ResultReader& reader, const std::string& scenario,
+                                 const Settings& settings) {
+  if (!reader.find_accuracy()) return run::load(make_run_options(scenario, settings));
+  return scenario::load_text(reader.find_provenance("scenario").value(), scenario, {});
+}
+
 std::vector<Row> run_rows(const scenario::ChartStudy& study, const CaseOptions& options) {
   std::vector<Row> rows = list_rows(study);
   std::vector<Case> cases;
@@ -72,7 +80,8 @@ std::vector<Row> run_rows(const scenario::ChartStudy& study, const CaseOptions& 
   if (results[kRefined].exit_code == run::kDone) refined.emplace(results[kRefined].file);
   std::vector<scenario::Scenario> scenes(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
-    if (!results[i].file.empty()) scenes[i] = run::load(make_run_options(study.scenario, cases[i].settings));
+    if (!results[i].file.empty() && results[i].exit_code <= 128)
+      scenes[i] = load_scene_of(output::ResultReader(results[i].file), study.scenario, cases[i].settings);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     check_interrupt(options);
     Row& row = rows[i];
@@ -109,7 +118,8 @@ output::StudyTable make_table(const scenario::ChartStudy& study, const std::vect
       {"skin_error", "1", "relative L2 over the skin's vertices and all frames"},
       {"saturation_error", "1", "relative L2 over the body and all frames"},
       {"dissipation_error", "1", "of the plastic dissipation"},
-      {"cpu_s_per_s", "1", "CPU seconds a simulated second, one thread, median of the repeats"},
+      {"cpu_s_per_s", "1",
+       "CPU seconds a simulated second, one thread, of all passes, median of the repeats"},
       {"simulated_s", "s", "simulated time"},
       {"steps", "1", "physics steps"},
       {"linearisations", "1", "systems of equations solved"},

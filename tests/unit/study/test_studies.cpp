@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <sstream>
 
+#include "output/result_reader.h"
 #include "run/run.h"
 #include "scenario/build.h"
+#include "scenario/scenario_text.h"
 #include "solid/body.h"
 #include "solid/element.h"
 #include "study/chart.h"
@@ -190,6 +192,39 @@ TEST_F(Study, BudgetPrintsThePatchOfTheMostAccurateRunThatFits) {
   EXPECT_NE(patch.find(R"("period_s": 0.001)"), std::string::npos) << patch;
   EXPECT_NE(patch.find(R"("iteration": "newton")"), std::string::npos) << patch;
   EXPECT_EQ(chart_budget(options(kChart), 1e-9), run::kRunFailed);
+}
+
+// A run to an accuracy is made in passes, on cells and elements of its own. What it costs is all of them; how
+// far off it is, is what the same cells given by hand are off.
+TEST_F(Study, ChartCountsAllPassesOfARunToAnAccuracyAndComparesWhatItMade) {
+  const auto make = [&](const std::string& curve) {
+    return options(R"({"about": "asked", "scenario": "scene.json",
+      "settings": {"/contact/law": "pressure", "/haptics/frame_period_ticks": 40},
+      "reference": {"/dynamics/element": "p2", "/body/shape/target_tets": 600},
+      "refined": {"/body/shape/target_tets": 900}, "repeats": 1, "curves": [)" +
+                   curve + "]}");
+  };
+  ASSERT_EQ(chart(make(R"({"name": "asked", "settings": {"/fidelity/accuracy": 0.2}})")), run::kDone);
+  const Row asked = table().at(2);
+  ASSERT_EQ(asked.at("reason"), "");
+  const output::ResultReader reader(folder / ("table.runs/" + asked.at("run") + ".h5"));
+  std::map<std::string, double> timing;
+  for (const auto& [name, seconds] : reader.read_timing()) timing[name] = seconds;
+  EXPECT_GT(timing.at("cpu_of_passes"), 0.1 * timing.at("cpu"));
+  EXPECT_LT(timing.at("cpu_of_passes"), 10.0 * timing.at("cpu"));
+  EXPECT_NEAR(std::stod(asked.at("cpu_s_per_s")) * std::stod(asked.at("simulated_s")),
+              timing.at("cpu") + timing.at("cpu_of_passes"), 1e-6);
+  const scenario::Scenario made =
+      scenario::load_text(reader.find_provenance("scenario").value(), folder / "scene.json", {});
+  std::ostringstream by_hand;
+  by_hand.precision(17);
+  by_hand << R"({"name": "by hand", "settings": {"/dynamics/element": "p2", "/body/cells/kind": "graded",)"
+          << R"("/body/cells/near_tool_m": )" << made.body.cells.near_tool
+          << R"(, "/body/shape/target_tets": )" << made.body.target_tets << "}}";
+  ASSERT_EQ(chart(make(by_hand.str())), run::kDone);
+  for (const char* column : {"force_error", "displacement_error", "steps"})
+    EXPECT_EQ(table().at(2).at(column), asked.at(column)) << column;
+  EXPECT_GT(std::stod(asked.at("displacement_error")), 0.0);
 }
 
 TEST_F(Study, MapNamesEachWayToEnd) {
