@@ -12,7 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 TITLES = {
     "chart_light_press": "A light press", "chart_deep_bend": "A deep push that bends a post",
-    "chart_wet_undrained": "Wet clay whose water cannot leave", "chart_slide": "A slide with friction, on one mesh",
+    "chart_wet_undrained": "Wet clay whose water cannot leave", "chart_slide": "A slide with friction",
     "chart_wet_press": "A wet sphere that presses, felt on the skin",
     "map_explicit_step": "Explicit steps", "map_implicit_step": "Long implicit steps",
     "map_contact_stiffness": "Contact force held over the step (the paper)",

@@ -93,8 +93,8 @@ def draw(rows, error, title):
         axes.annotate("the reference's own error", (axes.get_xlim()[1], own), color=GREY, fontsize=7, ha="right",
                       va="bottom", xytext=(-3, 1), textcoords="offset points")
     axes.axvline(1.0, color=GREY, linewidth=0.8)
-    axes.annotate("real time", (1.0, axes.get_ylim()[0]), color=GREY, fontsize=7, rotation=90, va="bottom", ha="right",
-                  xytext=(-2, 3), textcoords="offset points")
+    axes.annotate("real time", (1.0, axes.get_ylim()[1]), color=GREY, fontsize=7, rotation=90, va="top", ha="right",
+                  xytext=(-2, -3), textcoords="offset points")
     kinds = {kind for _, kind, _, _ in placed}
     for kind, marker, words in (("shaky", "o", "hollow: chatters or gains energy"), ("ended", "x", "ended early; at the left: refused"),
                                 ("alone", "1", "has nothing to be compared with")):
