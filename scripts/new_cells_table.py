@@ -70,7 +70,7 @@ def main():
     parser.add_argument("argil", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=Path("results/clay/new_cells.csv"))
     parser.add_argument("--tets", type=int, nargs="+", default=[8000, 30000])
-    parser.add_argument("--ten-node-tets", type=int, nargs="+", default=[2000, 6000])
+    parser.add_argument("--ten-node-tets", type=int, nargs="+", default=[2000])
     arguments = parser.parse_args()
     rows = []
     with tempfile.TemporaryDirectory() as folder:
