@@ -74,8 +74,9 @@ class StandIns(Folder):
         printf '%s\\n' "$(basename "$0") $*${DISPLAY:+ on a display}" >>scripts.log
         [[ -z ${FAILS:-} || $* != *"$FAILS"* ]]"""
     DEMONSTRATION = """#!/usr/bin/env bash
-        echo run >>scripts.log; mkdir -p results/demo
-        for name in dry wet wet_elasticity_only wet_yield_only; do echo done >results/demo/$name.h5; done"""
+        [[ "$*" == "-o results/demo" ]] || exit 1
+        echo run >>scripts.log; mkdir -p "$2"
+        for name in dry wet wet_elasticity_only wet_yield_only; do echo done >"$2/$name.h5"; done"""
 
     def setUp(self):
         super().setUp()
