@@ -207,7 +207,7 @@ class ExitCodes(unittest.TestCase):
 
     def test_4_a_full_disk_leaves_a_readable_file_to_resume(self):
         def limit():  # a limit on the file's size stands for the full disk
-            resource.setrlimit(resource.RLIMIT_FSIZE, (1100000, 1100000))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (700000, 700000))
 
         often = ["--set", "/haptics/frame_period_ticks=1", "--set", "/output/checkpoint_period_ticks=10"]
         done = subprocess.run([ARGIL, "run", "scene.json", "-o", "out.h5", *often], cwd=self.folder, capture_output=True,

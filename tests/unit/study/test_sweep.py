@@ -385,7 +385,7 @@ class Sweep(unittest.TestCase):
 
     def test_where_there_is_no_room_the_advice_is_that_of_a_sweep(self):
         self.expand(list=[{}])
-        limit = 150_000  # bytes of a file, as where a disk is full: after the beginning of a result of 360 kB
+        limit = 70_000  # bytes of a file, as where a disk is full: after the beginning of a result
         done = subprocess.run([ARGIL, "sweep", "run", self.points, "--index", "0"], cwd=self.folder, capture_output=True, text=True, timeout=300,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
         self.assertEqual(done.returncode, 4, done.stderr)
