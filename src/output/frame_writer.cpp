@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "output/array_shape.h"
 #include "output/schema.h"
 
 namespace argil::output {
@@ -18,16 +19,6 @@ bool has_equal_bits(const std::vector<double>& a, const std::vector<double>& b) 
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
     return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
   });
-}
-
-Shape field_shape(const Field& field) {
-  return {static_cast<std::uint64_t>(field.size())};
-}
-
-// Arrays hold one entity a column, column after column; the same bytes are one entity a row on disk.
-template <class Array>
-Shape entity_shape(const Array& array) {
-  return {static_cast<std::uint64_t>(array.cols()), static_cast<std::uint64_t>(array.rows())};
 }
 
 }  // namespace

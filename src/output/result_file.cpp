@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "output/array_shape.h"
 #include "output/frame_writer.h"
 #include "output/table.h"
 
@@ -16,17 +17,13 @@ using hdf5::Shape;
 
 namespace {
 
-// Arrays hold one entity a column, column after column; the same bytes are one entity a row on disk.
 template <class Array>
-void write_entities(const Group& group, const char* name, const Array& array, const hdf5::Label& label,
-                    bool compress = false) {
-  const auto entities = static_cast<std::uint64_t>(array.cols());
-  group.write_array(name, array.data(), Shape{entities, static_cast<std::uint64_t>(array.rows())}, compress,
-                    label);
+void write_entities(const Group& group, const char* name, const Array& array, const hdf5::Label& label) {
+  group.write_array(name, array.data(), entity_shape(array), false, label);
 }
 
 void write_field(const Group& group, const char* name, const Field& field, const hdf5::Label& label) {
-  group.write_array(name, field.data(), Shape{static_cast<std::uint64_t>(field.size())}, true, label);
+  group.write_array(name, field.data(), field_shape(field), true, label);
 }
 
 // Rows of a series whose tick is at most `last`; ticks increase.
