@@ -204,11 +204,11 @@ Field find_rest_volume_ratio(const TensorField& elastic, Eigen::Index num_tets) 
   return ratio;
 }
 
-Points take_speed(const Places& places, const solid::Elements& elements, const Points& v,
-                  const Points& nodes) {
-  Points speed(3, nodes.cols());
-  for (Eigen::Index n = 0; n < nodes.cols(); ++n) {
-    const embed::TetLocator::Place place = places.find(nodes.col(n));
+Points take_speed(const std::vector<embed::TetLocator::Place>& of_node, const solid::Elements& elements,
+                  const Points& v) {
+  Points speed(3, static_cast<Eigen::Index>(of_node.size()));
+  for (Eigen::Index n = 0; n < speed.cols(); ++n) {
+    const embed::TetLocator::Place& place = of_node[static_cast<std::size_t>(n)];
     Eigen::VectorXd weights = place.weights;
     if (elements.nodes_per_tet == 10) weights = mesh::compute_quadratic_shape(place.weights);
     speed.col(n).setZero();
@@ -225,8 +225,11 @@ RemappedState remap(const Body& from, const solid::Body& solid, const Points& x,
   mesh::TetMesh now = from.mesh;
   now.vertices = x.leftCols(from.mesh.num_vertices());
   const Places places(now);
+  const bool is_quadratic = solid.model.elements.nodes_per_tet == 10;
+  const Points nodes =
+      is_quadratic ? mesh::make_quadratic_mesh(to.mesh, to.topology).nodes : to.mesh.vertices;
   std::vector<embed::TetLocator::Place> of_node;
-  for (const Vec3 node : to.mesh.vertices.colwise()) of_node.push_back(places.find(node));
+  for (const Vec3 node : nodes.colwise()) of_node.push_back(places.find(node));
   const Origins origins = find_origins(places, to.mesh);
   to.initial_saturation = take_means(origins, saturation);
   keep_water(mesh::compute_volumes(to.mesh.vertices, to.mesh.tets),
@@ -234,13 +237,10 @@ RemappedState remap(const Body& from, const solid::Body& solid, const Points& x,
              to.initial_saturation);
   if (from.youngs_modulus.size() > 0) to.youngs_modulus = take_means(origins, from.youngs_modulus);
   take_supports(from, solid, x, of_node, to);
-  const bool is_quadratic = solid.model.elements.nodes_per_tet == 10;
   RemappedState state;
   state.elastic = take_strain(places, origins, find_elastic_strain(solid), to.mesh, is_quadratic);
   to.rest_volume_ratio = find_rest_volume_ratio(state.elastic, to.mesh.num_tets());
-  const Points nodes =
-      is_quadratic ? mesh::make_quadratic_mesh(to.mesh, to.topology).nodes : to.mesh.vertices;
-  state.v = take_speed(places, solid.model.elements, solid.committed.v, nodes);
+  state.v = take_speed(of_node, solid.model.elements, solid.committed.v);
   return state;
 }
 
