@@ -27,8 +27,7 @@ struct FrameLag {
 /// What solves take from earlier ones. Each solver keeps a factor of its own.
 struct SolverHistory {
   std::unique_ptr<linear::Solver> solver;
-  std::unique_ptr<linear::Solver> static_solver;  ///< made at first use, as is the next
-  std::unique_ptr<linear::Solver> response_solver;
+  std::unique_ptr<linear::Solver> response_solver;  ///< made at first use
   FrameLag frame_lag;
   StepCounters counters;
 

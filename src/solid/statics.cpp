@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -27,28 +28,23 @@ linear::SolverParams make_rough(linear::SolverParams solver) {
 }
 
 /// Under the present share of the load, from state.x on.
-StepStatus iterate(Body& body, const Part& whole, const StepLoads& loads, const SolidState& state) {
+StepStatus iterate(Body& body, const Part& whole, const StepLoads& loads, const SolidState& state,
+                   linear::Solver& solver) {
   body.trial.x = state.x;
   body.prediction.x_hat = body.trial.x;
   body.trial.v.setZero();
   body.newton.iterations = 0;
   place_supports(body, kEnd, body.prediction.load_share);
   ARGIL_TRY(update_kinematics(body, whole, body.trial.x, {}, 0));
-  while (!assemble_newton(body, whole, loads))
-    ARGIL_TRY(solve_newton(body, whole, loads, *body.history.static_solver, 0));
+  while (!assemble_newton(body, whole, loads)) ARGIL_TRY(solve_newton(body, whole, loads, solver, 0));
   return StepStatus::ok();
 }
 
-void begin(Body& body, const StepLoads& loads, const SolidState& state, EquilibriumAccuracy accuracy) {
-  const bool is_exact = accuracy == EquilibriumAccuracy::exact;
+void begin(Body& body, const StepLoads& loads, const SolidState& state) {
   body.plastic_strain = &state.plastic_strain;
   body.elastic.forget_all();
   body.is_state_changed = true;
   store_nodal_stiffness(body.model, body.materials, body.system);
-  body.history.static_solver = linear::make_solver(
-      is_exact ? make_exact(body.model.params.solver) : make_rough(body.model.params.solver),
-      body.model.threads);
-  body.newton.tolerance = is_exact ? body.model.params.newton_tolerance : kRoughTolerance;
   body.prediction.is_static = true;
   body.prediction.tau = 1.0;
   body.prediction.v_hat.setZero();
@@ -78,11 +74,16 @@ StepStatus check_resolution(const Body& body, const SolidState& state) {
 StepStatus find_equilibrium(Body& body, const Part& whole, const StepLoads& loads, SolidState& state,
                             EquilibriumAccuracy accuracy) {
   constexpr double kSmallestShare = 1.0 / 1024.0;
-  begin(body, loads, state, accuracy);
+  const SolidParams& params = body.model.params;
+  const bool is_exact = accuracy == EquilibriumAccuracy::exact;
+  const std::unique_ptr<linear::Solver> solver = linear::make_solver(
+      is_exact ? make_exact(params.solver) : make_rough(params.solver), body.model.threads);
+  body.newton.tolerance = is_exact ? params.newton_tolerance : kRoughTolerance;
+  begin(body, loads, state);
   double done = 0.0;
   for (double step = 1.0; done < 1.0;) {
     body.prediction.load_share = std::min(1.0, done + step);
-    const StepStatus status = iterate(body, whole, loads, state);
+    const StepStatus status = iterate(body, whole, loads, state, *solver);
     if (status.is_ok()) {
       done = body.prediction.load_share;
       state.x = body.trial.x;
