@@ -28,16 +28,21 @@ double find_limit(std::span<const PointStiffness> list, std::size_t i, const std
   return list[i].friction * std::max(0.0, list[i].normal.dot(trial[partner]));
 }
 
-/// As it acts from where it would carry `trial`.
-Friction make_friction(const PointStiffness& contact, double limit, const Vec3& trial) {
+/// As it acts from where it would carry `trial`; where it slides, as `slip` says.
+Friction make_friction(const PointStiffness& contact, double limit, const Vec3& trial, Slip slip) {
   Friction friction;
   friction.limit = limit;
   const double length = trial.norm();
-  friction.is_sliding = length > limit || limit == 0.0;
-  if (!friction.is_sliding || length == 0.0) return friction;
+  if (length <= limit && limit > 0.0) return friction;
+  friction.slip = slip;
+  if (length == 0.0) return friction;
   const Vec3 along = trial / length;
   friction.across = contact.normal.cross(along);
   friction.stiffness = limit / length * contact.stiffness;
+  if (slip == Slip::secant) {
+    friction.force = limit / length * contact.force;
+    return friction;
+  }
   const double way = friction.across.dot(contact.force - trial) / contact.stiffness;
   friction.force = limit * along + friction.stiffness * way * friction.across;
   return friction;
@@ -49,7 +54,8 @@ Vec3 find_solved_force(const PointStiffness& contact, const ContactActivity& act
                        const Vec3& trial) {
   if (!(contact.friction > 0.0)) return activity.acts[i] != 0 ? trial : Vec3::Zero();
   const Friction& friction = activity.friction[i];
-  if (!friction.is_sliding) return trial;
+  if (friction.slip == Slip::none) return trial;
+  if (friction.slip == Slip::secant) return friction.stiffness / contact.stiffness * trial;
   const double way = friction.across.dot(contact.force - trial) / contact.stiffness;
   return friction.force - friction.stiffness * way * friction.across;
 }
@@ -58,12 +64,23 @@ double limit_of(const ContactActivity& activity, std::size_t i) {
   return activity.friction.empty() ? 0.0 : activity.friction[i].limit;
 }
 
-void choose(std::span<const PointStiffness> list, const std::vector<Vec3>& trial, ContactActivity& activity) {
+/// Would a point that slid in the last solve slide back?
+bool has_turned(const PointStiffness& contact, const Friction& friction, const Vec3& trial) {
+  return friction.slip == Slip::tangent && friction.across.cross(contact.normal).dot(trial) < 0.0;
+}
+
+/// `of_turned`: how one slides that would slide back. Its force was as large however little it moved, so that
+/// tangents would go to and fro.
+void choose(std::span<const PointStiffness> list, const std::vector<Vec3>& trial, Slip of_turned,
+            ContactActivity& activity) {
   for (std::size_t i = 0; i < list.size(); ++i)
-    if (list[i].friction > 0.0)
-      activity.friction[i] = make_friction(list[i], activity.friction[i].limit, trial[i]);
-    else if (list[i].is_alone)
+    if (list[i].friction > 0.0) {
+      Friction& friction = activity.friction[i];
+      const Slip slip = has_turned(list[i], friction, trial[i]) ? of_turned : Slip::tangent;
+      friction = make_friction(list[i], friction.limit, trial[i], slip);
+    } else if (list[i].is_alone) {
       activity.acts[i] = list[i].normal.dot(trial[i]) > 0.0 ? 1 : 0;
+    }
 }
 
 void find_trials(const StepContacts& contacts, const Points& x, std::vector<Vec3>& trial) {
@@ -171,7 +188,8 @@ bool let_go(std::span<const PointStiffness> list, ContactActivity& activity) {
 
 }  // namespace
 
-void start_alone(std::span<const PointStiffness> contacts, ContactActivity& activity) {
+void start_alone(std::span<const PointStiffness> contacts, const Points& v, double step_s,
+                 ContactActivity& activity) {
   std::vector<Vec3>& trial = activity.trial;
   trial.resize(contacts.size());
   bool has_friction = false;
@@ -181,15 +199,21 @@ void start_alone(std::span<const PointStiffness> contacts, ContactActivity& acti
     if (contacts[i].is_near) activity.acts[i] = 0;
   }
   if (!has_friction) return;
+  const auto find_way = [&](const PointStiffness& contact) {
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t k = 0; k < contact.count(); ++k) mean += contact.weight[k] * v.col(contact.vertex[k]);
+    return Vec3(step_s * mean);
+  };
   activity.friction.resize(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i)
     if (contacts[i].friction > 0.0)
-      activity.friction[i] = make_friction(contacts[i], find_limit(contacts, i, trial), trial[i]);
+      activity.friction[i] = make_friction(contacts[i], find_limit(contacts, i, trial),
+                                           compute_trial(contacts[i], find_way(contacts[i])), Slip::secant);
 }
 
 void choose_alone(const StepContacts& contacts, const Points& x, ContactActivity& activity) {
   find_trials(contacts, x, activity.trial);
-  choose(contacts.list, activity.trial, activity);
+  choose(contacts.list, activity.trial, Slip::tangent, activity);
 }
 
 bool update_friction(const StepContacts& contacts, const Points& x, ContactActivity& activity) {
@@ -199,7 +223,7 @@ bool update_friction(const StepContacts& contacts, const Points& x, ContactActiv
   const Misfit misfit = find_misfit(contacts.list, activity, true);
   if (misfit.friction <= kConeTolerance * misfit.friction_sum) return false;
   move_limits(contacts.list, 1.0, activity);
-  choose(contacts.list, activity.trial, activity);
+  choose(contacts.list, activity.trial, Slip::tangent, activity);
   return true;
 }
 
@@ -224,7 +248,7 @@ bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffnes
     ++activity.num_updates;
     move_limits(list, 1.0, activity);
     if (activity.num_updates == kRoundsWithoutSearch) stand_at_solution(body, activity);
-    choose(list, activity.trial, activity);
+    choose(list, activity.trial, Slip::secant, activity);
     return false;
   }
   if (activity.search.num_rounds++ == kMostRounds) {
@@ -245,7 +269,7 @@ bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffnes
   } else {
     go_to_least(body, part, list);
   }
-  choose(list, activity.search.trial, activity);
+  choose(list, activity.search.trial, Slip::tangent, activity);
   return false;
 }
 

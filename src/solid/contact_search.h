@@ -11,9 +11,11 @@ struct Body;
 struct ContactActivity;
 struct StepContacts;
 
-/// Of a step whose contacts are alone: those that press act, with friction within the limit of what they
-/// press with at the start.
-void start_alone(std::span<const PointStiffness> contacts, ContactActivity& activity);
+/// Of a step of this length [s] whose contacts are alone, of a body that goes at v (3×n) [m/s]: those that
+/// press act, with friction within the limit of what they press with at the start. Which of them slide, and
+/// where to, is taken from where they would be if the body went on.
+void start_alone(std::span<const PointStiffness> contacts, const Points& v, double step_s,
+                 ContactActivity& activity);
 
 /// Contacts that are alone act as they would at x, with friction within the limits that it has.
 void choose_alone(const StepContacts& contacts, const Points& x, ContactActivity& activity);

@@ -10,14 +10,20 @@
 
 namespace argil::solid {
 
-void ContactActivity::start(std::span<const PointStiffness> contacts) {
+void ContactActivity::start(std::span<const PointStiffness> contacts, const Points& v, double step_s) {
   acts.assign(contacts.size(), 1);
   num_updates = 0;
   search.num_rounds = 0;
   are_alone = std::all_of(contacts.begin(), contacts.end(),
                           [](const PointStiffness& c) { return c.group < 0 || c.is_alone; });
   friction.clear();
-  if (are_alone) start_alone(contacts, *this);
+  if (are_alone) start_alone(contacts, v, step_s, *this);
+}
+
+Vec3 compute_trial(const PointStiffness& contact, const Vec3& u) {
+  const Vec3 trial = contact.force - contact.stiffness * u;
+  const Vec3 pressing = contact.normal.dot(trial) * contact.normal;
+  return contact.friction > 0.0 ? Vec3(trial - pressing) : pressing;
 }
 
 Vec3 StepContacts::displacement(std::size_t i, const Points& x) const {
@@ -29,10 +35,7 @@ Vec3 StepContacts::displacement(std::size_t i, const Points& x) const {
 }
 
 Vec3 StepContacts::compute_trial(std::size_t i, const Points& x) const {
-  const PointStiffness& c = list[i];
-  const Vec3 u = displacement(i, x);
-  if (c.friction > 0.0) return c.force - c.stiffness * (u - c.normal.dot(u) * c.normal);
-  return c.normal.dot(c.force - c.stiffness * u) * c.normal;
+  return solid::compute_trial(list[i], displacement(i, x));
 }
 
 bool update_active_contacts(const StepContacts& contacts, const Points& x, ContactActivity& activity) {
@@ -60,8 +63,10 @@ Mat3 StepContacts::stiffness(std::size_t i, const ContactActivity& activity) con
   const PointStiffness& c = list[i];
   if (!(c.friction > 0.0)) return c.stiffness * c.normal * c.normal.transpose();
   const Friction& friction = activity.friction[i];
-  if (friction.is_sliding) return friction.stiffness * friction.across * friction.across.transpose();
-  return c.stiffness * (Mat3::Identity() - c.normal * c.normal.transpose());
+  if (friction.slip == Slip::tangent)
+    return friction.stiffness * friction.across * friction.across.transpose();
+  const double stiffness = friction.slip == Slip::secant ? friction.stiffness : c.stiffness;
+  return stiffness * (Mat3::Identity() - c.normal * c.normal.transpose());
 }
 
 Vec3 StepContacts::compute_fall(std::size_t i, const Points& x, const ContactActivity& activity) const {
@@ -71,7 +76,7 @@ Vec3 StepContacts::compute_fall(std::size_t i, const Points& x, const ContactAct
   if (c.friction > 0.0) {
     const Vec3 fall = stiffness(i, activity) * displacement(i, x);
     const Friction& friction = activity.friction[i];
-    return (friction.is_sliding ? Vec3(c.force - friction.force + fall) : fall) - not_given;
+    return (friction.slip == Slip::none ? fall : Vec3(c.force - friction.force + fall)) - not_given;
   }
   return c.stiffness * c.normal.dot(displacement(i, x)) * c.normal - not_given;
 }

@@ -9,12 +9,18 @@ namespace argil::solid {
 
 struct Body;
 
-/// Friction at a point: a spring that carries no more than `limit`. Where it slides, its force is `force` −
-/// c e e·(x − x₀), where e lies across its way: it turns with the motion, so that it is softer across the way
-/// the faster it slides.
+/// What a step takes friction at a point for.
+enum class Slip {
+  none,     ///< a spring
+  tangent,  ///< `force` − c e e·(x − x₀) with e across its way: it turns with the motion
+  secant,  ///< `force` − c (x − x₀) in all directions: less the less far it goes, and never against its way
+};
+
+/// Friction at a point: a spring that carries no more than `limit`. Where it slides, c is the spring's
+/// stiffness in the ratio of the limit to what the spring alone would carry: the farther, the softer.
 struct Friction {
   double limit = 0.0;  ///< [N]
-  bool is_sliding = false;
+  Slip slip = Slip::none;
   Vec3 force = Vec3::Zero();   ///< [N]
   Vec3 across = Vec3::Zero();  ///< e, unit
   double stiffness = 0.0;      ///< c [N/m]
@@ -37,10 +43,15 @@ struct ContactActivity {
   bool are_alone = false;          ///< all groups are of one entry
   ContactSearch search;            ///< then, after some updates
 
-  /// Of a step with these contacts. All act but those that are near.
-  void start(std::span<const PointStiffness> contacts);
+  /// Of a step of this length [s] with these contacts, of a body that goes at v (3×n) [m/s]. All act but
+  /// those that are near.
+  void start(std::span<const PointStiffness> contacts, const Points& v, double step_s);
   bool is_acting(int group) const { return group < 0 || acts[static_cast<std::size_t>(group)] != 0; }
 };
+
+/// What a contact would exert once its point has moved by u [m], if it could draw, and its friction had no
+/// limit [N].
+Vec3 compute_trial(const PointStiffness& contact, const Vec3& u);
 
 /// Contacts of a step that began at x_start (3×n) [m].
 struct StepContacts {

@@ -102,7 +102,7 @@ bool predict(Body& body, const Part& part, const StepLoads& loads, double step_s
   body.history.counters = {};
   body.newton.iterations = 0;
   body.newton.tolerance = body.model.params.newton_tolerance;
-  body.contacts.start(loads.contacts);
+  body.contacts.start(loads.contacts, start.v, step_s);
   keep_damping_frame(body);
   step.tau = find_tau(body.model, start, step_s);
   set_prediction(body, part, loads);

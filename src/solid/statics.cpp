@@ -52,7 +52,7 @@ void begin(Body& body, const StepLoads& loads, const SolidState& state) {
   body.committed.x = state.x;
   body.history.counters = {};
   body.newton.is_moved_by_load = false;
-  body.contacts.start(loads.contacts);
+  body.contacts.start(loads.contacts, body.committed.v, 0.0);
 }
 
 /// Positions are rounded to ε |x|: far from the origin, or under a small load, no digit of a displacement is

@@ -91,9 +91,10 @@ struct RubbedBlock {
   std::vector<PointStiffness> contacts;
   Vec3 drag;
 
-  RubbedBlock(double stiffness, const Vec3& trial, bool is_held)
+  RubbedBlock(double stiffness, const Vec3& trial, bool is_held,
+              linear::SolverKind solver = linear::SolverKind::cholesky)
       : scene(test::make_irregular_block(4, 4, 2, Vec3(0.04, 0.04, 0.02)),
-              is_held ? std::vector{hold_bottom()} : std::vector<Support>{}, make_params(), 3e4, 0.3),
+              is_held ? std::vector{hold_bottom()} : std::vector<Support>{}, make_params(solver), 3e4, 0.3),
         drag(trial) {
     for (int v = 0; v < scene.num_nodes(); ++v)
       if (scene.rest()(2, v) > 0.02 - 1e-9)
@@ -101,9 +102,10 @@ struct RubbedBlock {
                           drag);
     for (const PointStiffness& c : contacts) spread(c, c.force, scene.load);
   }
-  static SolidParams make_params() {
+  static SolidParams make_params(linear::SolverKind solver) {
     SolidParams params;
-    params.solver.kind = linear::SolverKind::cholesky;
+    params.solver.kind = solver;
+    params.solver.tolerance = 1e-8;
     return params;
   }
   static Support hold_bottom() {
@@ -150,6 +152,24 @@ TEST(ContactFriction, OnABlockSticksWithinTheConeAndSlidesOnIt) {
       }
   EXPECT_GT(num_stuck, 100);
   EXPECT_GT(num_slid, 100);
+}
+
+/// Rough solves find which points slide. What is left in the end is as little as the tolerance allows, and
+/// the solves of a direct solver, which are never rough, are few.
+TEST(ContactFriction, IsFoundByFewSolvesAndTheLastIsExact) {
+  constexpr int kFewSolves = 10;
+  for (const double k : kSpringStiffnesses)
+    for (const double drag : {0.5, 3.0}) {
+      const Vec3 trial = drag * RubbedBlock::kFriction * RubbedBlock::kPressing * Vec3(0.8, -0.6, 0.0);
+      RubbedBlock direct(k, trial, true);
+      RubbedBlock iterative(k, trial, true, linear::SolverKind::pcg);
+      ASSERT_TRUE(direct.scene.solve(kStep, direct.contacts).is_ok());
+      ASSERT_TRUE(iterative.scene.solve(kStep, iterative.contacts).is_ok());
+      const Points expected = direct.scene.solid.trial.x - direct.scene.rest();
+      const Points error = iterative.scene.solid.trial.x - direct.scene.solid.trial.x;
+      EXPECT_LT(error.norm(), 5e-3 * expected.norm()) << k << " " << drag;
+      EXPECT_LE(direct.scene.solid.history.counters.newton_iterations, kFewSolves) << k << " " << drag;
+    }
 }
 
 /// What the contacts say that they carried is what a free block's momentum has become.
