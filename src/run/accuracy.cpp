@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -67,6 +68,7 @@ class Planner {
     m_options.output = m_result;
     m_options.settings.insert(m_options.settings.end(), {"/dynamics/element=p2", "/body/cells/kind=graded"});
     m_fewest = count_fewest(s.body);
+    m_step_lengths = find_step_lengths(s);
     m_target = s.body.kind == scenario::BodyKind::shape ? "/body/shape/target_tets="
                : s.body.kind == scenario::BodyKind::surface && s.body.cage_file.empty()
                    ? "/body/surface/target_tets="
@@ -76,23 +78,24 @@ class Planner {
   RunEnd run() {
     const double radius = find_contact_radius(load(with_cells(0.0, 1.0)));
     if (!(radius > 0.0)) return run_where_nothing_is_touched();
+    if (m_step_lengths.size() > 1 && !m_options.dry_run) {
+      const RunEnd end = try_steps(radius);
+      if (end.code != kDone) return end;
+    }
     for (;;) {
-      const double cells = choose_cells(m_passes, m_wanted);
+      const double cells = choose_cells(m_passes, find_share_of_cells());
       const double near = radius / cells;
       const bool goes_on = m_near_of_result == near;
       const bool is_probe = !m_options.dry_run && (m_passes.empty() || (m_near_of_result && !goes_on));
       RunOptions options = with_cells(near, cells);
       options.resume = goes_on;
-      if (is_probe) {
-        options.output = m_result + ".pass.h5";
-        options.writes_xdmf = false;
-        options.quiet = true;
-      } else {
+      if (is_probe)
+        make_probe(options);
+      else
         options.notes.push_back(describe_plan(cells));
-      }
       const RunEnd end = run_loaded(load(options), options);
       if (goes_on) m_near_of_result.reset();
-      if (end.code == kDone && !options.dry_run) take(options.output, cells);
+      if (end.code == kDone && !options.dry_run) add_pass(read_pass(options.output, cells));
       if (is_probe) std::filesystem::remove(options.output);
       if (end.code != kDone || options.dry_run || is_enough()) return end;
     }
@@ -111,6 +114,7 @@ class Planner {
     const scenario::Scenario of_result = scenario::load_text(*text, m_options.scenario, {});
     const double near = of_result.body.cells.near_tool;
     if (is_complete) {
+      m_step_ticks = of_result.params.rates.physics_period_ticks;
       RunOptions options = with_tets(near, of_result.body.target_tets);
       options.resume = true;
       return run_loaded(load(options), options);
@@ -123,6 +127,8 @@ class Planner {
   RunOptions with_tets(double near, double tets) const {
     RunOptions options = m_options;
     if (near > 0.0) options.settings.push_back("/body/cells/near_tool_m=" + print(near));
+    if (m_step_ticks > 0)
+      options.settings.push_back("/haptics/physics_period_ticks=" + std::to_string(m_step_ticks));
     if (!m_target.empty())
       options.settings.push_back(m_target + std::to_string(static_cast<int>(std::min(tets, kMostTets))));
     return options;
@@ -137,15 +143,58 @@ class Planner {
     options.notes.emplace_back("accuracy: the tool touches nothing at rest, so no cells follow from it");
     return run_loaded(load(options), options);
   }
-  void take(const std::string& result, double cells) {
+  void make_probe(RunOptions& options) const {
+    options.output = m_result + ".pass.h5";
+    options.writes_xdmf = false;
+    options.quiet = true;
+  }
+  /// The first pass with steps of two lengths.
+  RunEnd try_steps(double radius) {
+    const double cells = choose_cells({}, m_wanted);
+    StepPasses passes;
+    passes.short_ticks = m_step_lengths[m_step_lengths.size() > 2 ? 1 : 0];
+    passes.long_ticks = *std::find_if(m_step_lengths.begin(), m_step_lengths.end() - 1,
+                                      [&](int ticks) { return ticks >= 2 * passes.short_ticks; });
+    for (auto [ticks, pass] : {std::pair{passes.short_ticks, &passes.with_short},
+                               std::pair{passes.long_ticks, &passes.with_long}}) {
+      m_step_ticks = ticks;
+      RunOptions options = with_cells(radius / cells, cells);
+      make_probe(options);
+      const RunEnd end = run_loaded(load(options), options);
+      if (end.code == kDone) *pass = read_pass(options.output, cells);
+      std::filesystem::remove(options.output);
+      if (end.code != kDone) return end;
+    }
+    const double error = passes.find_error_of_a_tick(kFloor / m_wanted);
+    m_step_ticks = choose_step(m_step_lengths, passes.long_ticks, error, m_wanted);
+    m_step_error = error * m_step_ticks;
+    say(describe_step() + ": the force is about " + print_short(100.0 * m_step_error) + " % off for it");
+    add_pass(passes.at(m_step_ticks));
+    return {};
+  }
+  std::string describe_step() const {
+    return "accuracy: steps of " + std::to_string(m_step_ticks) + (m_step_ticks == 1 ? " tick" : " ticks");
+  }
+  AccuracyPass read_pass(const std::string& result, double cells) {
     const output::ResultReader reader(result);
-    m_passes.push_back({cells, static_cast<int>(reader.read_cells(0).tets.cols()), reader.read_haptic()});
     m_cpu_before += std::exchange(m_cpu_of_last, find_cpu(reader));
+    return {cells, static_cast<int>(reader.read_cells(0).tets.cols()), reader.read_haptic()};
+  }
+  void add_pass(AccuracyPass pass) {
+    m_passes.push_back(std::move(pass));
     if (m_passes.size() == 1) return say(describe_pass(m_passes.back()) + ": to compare with");
     AccuracyPass& fine = m_passes.back();
     const AccuracyPass& coarse = m_passes[m_passes.size() - 2];
     fine.error = estimate_error(coarse, fine, kFloor / m_wanted);
-    say(describe_pass(fine) + ": the force is about " + print_short(100.0 * fine.error) + " % off");
+    say(describe_pass(fine) + ": the force is about " + print_short(100.0 * find_error(fine)) + " % off");
+  }
+  /// A step's error goes with how fast the force changes, that of cells with the force: over a press and its
+  /// release their product has no mean.
+  double find_error(const AccuracyPass& pass) const { return std::hypot(pass.error, m_step_error); }
+  double find_share_of_cells() const {
+    constexpr double kLeast = 0.5;  // where steps alone are off by more than was asked
+    const double left = 1.0 - std::pow(m_step_error / m_wanted, 2);
+    return m_wanted * std::sqrt(std::max(left, kLeast * kLeast));
   }
   bool is_enough() {
     if (m_passes.size() < 2) return false;
@@ -155,13 +204,13 @@ class Planner {
       throw InputError(m_result, "/provenance/scenario", of_others, "leave --resume out to begin anew");
     if (m_near_of_result) return false;
     const AccuracyPass& last = m_passes.back();
-    const bool is_exact = last.error <= m_wanted;
+    const bool is_exact = find_error(last) <= m_wanted;
     const bool is_end = static_cast<int>(m_passes.size()) == kMostRuns || last.num_tets > kMostTets / 3.0;
     if (!is_exact && is_end)
       say("accuracy: " + print_short(100.0 * m_wanted) +
           " % were asked: give /body/cells/near_tool_m and "
           "/dynamics/element by hand, or ask for less");
-    if (is_exact || is_end) output::write_accuracy(m_result, m_wanted, last.error, m_cpu_before);
+    if (is_exact || is_end) output::write_accuracy(m_result, m_wanted, find_error(last), m_cpu_before);
     return is_exact || is_end;
   }
   std::string describe_pass(const AccuracyPass& pass) const {
@@ -170,7 +219,8 @@ class Planner {
   }
   /// Of the run that comes.
   std::string describe_plan(double cells) const {
-    std::string text = "accuracy: " + print_short(cells) + " cells along the radius of contact";
+    std::string text = m_step_ticks > 0 ? describe_step() + ", " : "accuracy: ";
+    text += print_short(cells) + " cells along the radius of contact";
     for (const AccuracyPass& pass : m_passes)
       text += "; a pass had " + print_short(pass.cells) + " and " + std::to_string(pass.num_tets) + " tets";
     return text;
@@ -184,6 +234,9 @@ class Planner {
   std::string m_result;
   std::string m_target;  // key of the number of tets, and "="
   int m_fewest = 0;
+  std::vector<int> m_step_lengths;  // in ticks, that may be tried
+  int m_step_ticks = 0;             // 0: as given
+  double m_step_error = 0.0;
   std::optional<double> m_near_of_result;  // size of its cells [m], until the pass that made it comes
   std::vector<AccuracyPass> m_passes;
   double m_cpu_before = 0.0;   // of the passes before the last, in their ticks, of all processors [s]
@@ -211,18 +264,48 @@ double estimate_error(const AccuracyPass& coarse, const AccuracyPass& fine, doub
 }
 
 double choose_cells(const std::vector<AccuracyPass>& passes, double wanted) {
-  constexpr double kMargin = 0.7;
+  constexpr double kMargin = 0.9;
   constexpr double kFewest = 0.75;             // on fewer, the error says nothing of that on more
   constexpr double kLeast = 1.3, kMost = 2.0;  // times those of the pass before
-  const double by_experience =
-      std::max(kFewest * kRefinement,
-               std::pow(scenario::find_usual_error(solid::ElementKind::p2, 1.0) / (kMargin * wanted),
-                        1.0 / scenario::kContactOrder));
+  const double by_experience = std::max(
+      kFewest * kRefinement, std::pow(scenario::find_usual_error(solid::ElementKind::p2, 1.0) / wanted,
+                                      1.0 / scenario::kContactOrder));
   if (passes.empty()) return by_experience / kRefinement;
   if (passes.size() == 1) return by_experience;
   const AccuracyPass& last = passes.back();
   const double more = std::pow(last.error / (kMargin * wanted), 1.0 / scenario::kContactOrder);
   return last.cells * std::clamp(more, kLeast, kMost);
+}
+
+std::vector<int> find_step_lengths(const scenario::Scenario& s) {
+  constexpr int kLongest = 10;
+  if (s.params.solid.integrator == solid::Integrator::symplectic_euler) return {};
+  const sim::RateParams& rates = s.params.rates;
+  const int of_all = std::gcd(rates.water_period_ticks, rates.frame_period_ticks);
+  std::vector<int> lengths;
+  for (int ticks = 1; ticks <= kLongest; ++ticks)
+    if (of_all % ticks == 0) lengths.push_back(ticks);
+  return lengths;
+}
+
+double StepPasses::find_error_of_a_tick(double floor) const {
+  return compare_forces(with_long.haptic, with_short.haptic, floor) / (long_ticks - short_ticks);
+}
+
+AccuracyPass StepPasses::at(int ticks) const {
+  AccuracyPass pass = with_short;
+  const double share = static_cast<double>(ticks - short_ticks) / (long_ticks - short_ticks);
+  for (std::size_t i = 0; i < std::min(pass.haptic.size(), with_long.haptic.size()); ++i)
+    pass.haptic[i].force += share * (with_long.haptic[i].force - with_short.haptic[i].force);
+  return pass;
+}
+
+int choose_step(const std::vector<int>& lengths, int longest, double error_of_a_tick, double wanted) {
+  constexpr double kShare = 0.65;  // of the wanted error, at which cells and steps cost the least
+  int chosen = lengths.front();
+  for (const int ticks : lengths)
+    if (ticks <= longest && error_of_a_tick * ticks <= kShare * wanted) chosen = ticks;
+  return chosen;
 }
 
 RunEnd run_to_accuracy(const scenario::Scenario& s, const RunOptions& options) {

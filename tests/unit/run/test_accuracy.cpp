@@ -75,5 +75,34 @@ TEST(ChooseCells, ComesBelowTheWantedErrorFromOneThatIsKnown) {
   EXPECT_GT(choose_cells(passes, 0.031), 2.0);
 }
 
+/// A force that is off by 1 % for each tick of the step.
+TEST(StepPasses, KnowWhatStepsOfAnyLengthDo) {
+  const StepPasses passes{2, 5, make_pass(1.0, 0.02), make_pass(1.0, 0.05)};
+  EXPECT_NEAR(passes.find_error_of_a_tick(0.0), 0.01, 2e-4);  // over a force that is 2 % too large
+  for (const int ticks : {1, 2, 4, 5}) {
+    const double error = 0.01 * ticks;
+    EXPECT_LT(compare_forces(passes.at(ticks).haptic, make_press(error), 0.0), 1e-12) << ticks;
+  }
+}
+
+TEST(ChooseStep, TakesTheLongestWhoseErrorLeavesRoomForThatOfCells) {
+  const std::vector<int> lengths = {1, 2, 5, 10};
+  EXPECT_EQ(choose_step(lengths, 5, 0.005, 0.05), 5);
+  EXPECT_EQ(choose_step(lengths, 5, 0.01, 0.05), 2);  // 5 would be all of it
+  EXPECT_EQ(choose_step(lengths, 5, 0.0, 0.05), 5);   // and none that was not tried
+  EXPECT_EQ(choose_step(lengths, 5, 0.03, 0.02), 1);
+}
+
+TEST(FindStepLengths, AreDivisorsOfThePeriodsThatGoWithTheStep) {
+  scenario::Scenario s;
+  s.params.rates.water_period_ticks = 30;
+  s.params.rates.frame_period_ticks = 100;
+  EXPECT_EQ(find_step_lengths(s), (std::vector<int>{1, 2, 5, 10}));
+  s.params.rates.water_period_ticks = 7;
+  EXPECT_EQ(find_step_lengths(s), std::vector<int>{1});
+  s.params.solid.integrator = solid::Integrator::symplectic_euler;
+  EXPECT_TRUE(find_step_lengths(s).empty());
+}
+
 }  // namespace
 }  // namespace argil::run
