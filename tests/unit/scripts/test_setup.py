@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
-PACKAGES = "# words\n[program]\ncmake\n\n# words\nlibone-dev\nfound bash\n[rest]\nlibtest-dev\n"
+PACKAGES = "# words\n[program]\ncmake\n\n# words\nlibone-dev\nfound bash\n[rest]\nlibtest-dev\n[peers]\nlibother-dev\n"
 STAND_INS = {
     "apt-get": 'echo "apt-get $*" >>calls.log',
     "sudo": '"$@"',
@@ -53,6 +53,7 @@ class Scripts(unittest.TestCase):
         self.assertEqual(self.installed_by("scripts/setup", "program"), ["cmake libone-dev"])
         self.assertEqual(self.installed_by("scripts/setup"), ["cmake libone-dev libtest-dev"])
         self.assertEqual(self.installed_by("scripts/setup", "program", installed="cmake libone-dev"), [])
+        self.assertEqual(self.installed_by("scripts/setup", "peers"), ["libother-dev"])
         self.assertEqual(self.installed_by("scripts/setup", installed="cmake libone-dev"), ["libtest-dev"])
 
     def test_another_group_is_refused(self):
@@ -72,11 +73,13 @@ class Scripts(unittest.TestCase):
 
     def test_the_projects_list_has_each_package_once_and_what_the_tests_alone_need_apart(self):
         text = (ROOT / "scripts/packages.txt").read_text()
-        program, rest = text.partition("[program]")[2].split("[rest]")
-        names = [[line.split()[0] for line in part.splitlines() if line and line[0] != "#"] for part in (program, rest)]
+        program, others = text.partition("[program]")[2].split("[rest]")
+        parts = program, *others.split("[peers]")
+        names = [[line.split()[0] for line in part.splitlines() if line and line[0] != "#"] for part in parts]
         self.assertEqual(len(set(sum(names, []))), len(sum(names, [])))
         self.assertTrue({"cmake", "libsuitesparse-dev", "python3-vtk9"} <= set(names[0]))
         self.assertTrue({"libgtest-dev", "pybind11-dev", "chromium", "slurm-wlm"} <= set(names[1]))
+        self.assertIn("libbullet-dev", names[2])
 
 
 if __name__ == "__main__":
