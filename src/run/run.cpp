@@ -189,7 +189,8 @@ RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
   run.scene.notes.insert(run.scene.notes.end(), options.notes.begin(), options.notes.end());
   print_notes(run.scene, options);
   if (options.dry_run) return print_ready(s, simulation, count_ticks(s, run.scene.trace));
-  const Identity identity = find_identity(s);
+  Identity identity = find_identity(s);
+  identity.asked_id = options.asked_run_id;
   ResumePoint from;
   if (options.resume) from = find_resume_point(result, identity);
   if (from.kind == ResumePoint::Kind::done) return end_done_before(result, options);
