@@ -117,9 +117,10 @@ TEST(Infiltration, IsTheSameWhateverCellsAndSteps) {
     const std::vector<double> exact = compute_fine_bar(flux);
     for (const double cell : {0.25e-3, 0.5e-3, 1e-3, 2e-3, 4e-3}) {
       const bool is_shaken = cell > 0.6e-3;
-      const Clay clay(cell, is_shaken ? 3 : 1, is_shaken);
+      const Clay clay(cell, is_shaken ? 2 : 1, is_shaken);
       std::vector<std::vector<double>> uptakes;
       for (const double step : {0.001, 0.01, 0.02}) {
+        if (cell < 0.4e-3 && step < 0.01) continue;  // takes long
         uptakes.push_back(compute_uptake(clay, make_params(DiffusionScheme::explicit_euler, flux), step));
         for (std::size_t k = 0; k < kTimes.size(); ++k)
           EXPECT_NEAR(uptakes.back()[k], exact[k], std::max(0.03 * exact[k], 0.04 * cell))
@@ -127,8 +128,9 @@ TEST(Infiltration, IsTheSameWhateverCellsAndSteps) {
       }
       std::printf(
           "flux %5.2f m/s, cells of %.2f mm: I off by %5.1f %5.1f %5.1f %5.1f %% after 20, 60, 100, 260 ms\n",
-          flux, 1e3 * cell, 1e2 * (uptakes[1][0] / exact[0] - 1.0), 1e2 * (uptakes[1][1] / exact[1] - 1.0),
-          1e2 * (uptakes[1][2] / exact[2] - 1.0), 1e2 * (uptakes[1][3] / exact[3] - 1.0));
+          flux, 1e3 * cell, 1e2 * (uptakes.back()[0] / exact[0] - 1.0),
+          1e2 * (uptakes.back()[1] / exact[1] - 1.0), 1e2 * (uptakes.back()[2] / exact[2] - 1.0),
+          1e2 * (uptakes.back()[3] / exact[3] - 1.0));
     }
   }
 }
@@ -152,8 +154,8 @@ TEST(Infiltration, ByImplicitStepsIsTheSameToFirstOrder) {
   // That is lost once, and as much of a cell that is deeper than the water.
   for (const double flux : {0.01, 0.3, 30.0}) {
     const std::vector<double> exact = compute_fine_bar(flux);
-    for (const double cell : {0.5e-3, 1e-3, 4e-3}) {
-      const Clay clay(cell, 3, true);
+    for (const double cell : {1e-3, 4e-3}) {
+      const Clay clay(cell, 2, true);
       for (const double step : {0.001, 0.01}) {
         const double lost = 0.13 * std::sqrt(kD * step) + 0.16 * std::min(cell, std::sqrt(kD * step));
         const std::vector<double> uptake =
