@@ -157,7 +157,7 @@ TEST(Infiltration, ByImplicitStepsIsTheSameToFirstOrder) {
     for (const double cell : {1e-3, 4e-3}) {
       const Clay clay(cell, 2, true);
       for (const double step : {0.001, 0.01}) {
-        const double lost = 0.13 * std::sqrt(kD * step) + 0.16 * std::min(cell, std::sqrt(kD * step));
+        const double lost = 0.13 * std::sqrt(kD * step) + 0.2 * std::min(cell, std::sqrt(kD * step));
         const std::vector<double> uptake =
             compute_uptake(clay, make_params(DiffusionScheme::implicit_euler, flux), step);
         for (std::size_t k = 0; k < kTimes.size(); ++k)
@@ -189,7 +189,9 @@ TEST(Infiltration, ThroughHalfOfEveryTriangleIsAsFastWhereTheToolsFluxLimitsIt) 
     for (double& area : half.area) area *= 0.5;
     const std::vector<double> part = compute_uptake(half, params, 0.01);
     for (std::size_t k = 0; k < kTimes.size(); ++k) {
-      if (flux < 0.1) EXPECT_NEAR(part[k], 0.5 * whole[k], 1e-12);
+      if (flux < 0.1) {
+        EXPECT_NEAR(part[k], 0.5 * whole[k], 1e-12);
+      }
       EXPECT_GE(part[k], 0.499 * whole[k]);
       EXPECT_LE(part[k], 0.95 * whole[k]);
     }
