@@ -101,10 +101,26 @@ double PoreWater::compute_wall_conductance(const WallTet& wall, double step_s) c
   const double D = m_params.diffusivity * compute_wall_diffusivity(wall.tet);
   const double to_wall = m_stencil.wall_distance(wall.tet);
   const double free = std::abs(m_wall_saturation - m_state.saturation(wall.tet));
-  const double layer = compute_layer(1.0 - free, m_stencil.volume(wall.tet) / wall.area, to_wall);
+  if (!(free > 0.0)) return wall.area * D / to_wall;
+  const double before = find_free_before(wall.tet);
+  const double layer = compute_layer(1.0 - free / before, m_stencil.volume(wall.tet) / wall.area, to_wall);
   const double growth = std::numbers::pi * D * step_s;
-  const double flux = 2.0 * D / (std::sqrt(layer * layer + growth) + layer);
-  return wall.area * std::max(D / to_wall, free > 0.0 ? flux / free : 0.0);
+  const double flux = 2.0 * D * before / (std::sqrt(layer * layer + growth) + layer);
+  return wall.area * std::max(D / to_wall, flux / free);
+}
+
+/// How far S was from the wall's before the wall came to the tet: as far as it is in what is least like the
+/// wall of its neighbours and theirs.
+double PoreWater::find_free_before(int tet) const {
+  const auto free = [this](int t) { return std::abs(m_wall_saturation - m_state.saturation(t)); };
+  double most = free(tet);
+  for (const int next : m_stencil.neighbours.col(tet)) {
+    if (next < 0) continue;
+    most = std::max(most, free(next));
+    for (const int after : m_stencil.neighbours.col(next))
+      if (after >= 0) most = std::max(most, free(after));
+  }
+  return most;
 }
 
 /// Of an explicit substep, from the water at its start: what the tool offers and the tet conducts, and no

@@ -116,6 +116,7 @@ class PoreWater {
   void open_wall(const Touch& touch);
   double compute_wall_diffusivity(int tet) const;
   double compute_wall_conductance(const WallTet& wall, double step_s) const;
+  double find_free_before(int tet) const;
   void find_uptake(double step_s);
   void book_uptake(double step_s);
 

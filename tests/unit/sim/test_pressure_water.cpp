@@ -49,7 +49,7 @@ TEST_P(SoakedClay, IsFeltSofterUnderAToolThatWets) {
 TEST_P(SoakedClay, HasThePenaltyOfItsPresentModulus) {
   Params params = make_softening_params(GetParam());
   params.solid.min_volume_ratio = 0.6;
-  params.water.diffusivity = 1e-7;
+  params.water.diffusivity = 1e-4;
   Simulation simulation = make_pressed_block(params, ToolMode::wet);
   const Eigen::MatrixXd dry = stiffness_of(simulation.take_snapshot());
   lead(simulation, press_block(1e-3, 0.0, ToolMode::wet), 20 * GetParam());
