@@ -82,10 +82,16 @@ def copy_small(source, target, machine):
         for key in item.attrs:
             if key not in made.attrs:
                 made.attrs.create(key, item.attrs[key])
+        if isinstance(item, h5py.Group):
+            copy_below(item, name + "/")
+
+    def copy_below(group, prefix):  # visititems would leave out the second name of an array that frames share
+        for name, item in group.items():
+            copy(prefix + name, item)
 
     for key, value in source.attrs.items():
         target.attrs.create(key, value)
-    source.visititems(copy)
+    copy_below(source, "")
     target.require_group("timing")
     target["provenance/machine"] = machine
 

@@ -74,7 +74,7 @@ std::string FileVertices::describe(const std::string& file, const std::string& e
   while (find(first) >= 0) ++first;
   return file + ": " + std::to_string(num_left_out()) + " of " + std::to_string(num_in_file) +
          " vertices belong to no " + element + " and are left out, number " + std::to_string(first) +
-         " (from 0) the first; lists of vertices go on counting them";
+         " (from 0) the first";
 }
 
 mesh::TetMesh read_tet_mesh(const std::string& file, double scale, FileVertices* vertices) {

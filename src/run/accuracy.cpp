@@ -13,6 +13,7 @@
 #include "output/result_file.h"
 #include "output/result_reader.h"
 #include "run/files.h"
+#include "run/identity.h"
 #include "scenario/build.h"
 #include "scenario/cell_sizes.h"
 #include "scenario/scenario_text.h"
@@ -64,6 +65,7 @@ class Planner {
   Planner(const scenario::Scenario& s, const RunOptions& options)
       : m_options(options), m_wanted(s.accuracy), m_result(name_result(s, options)) {
     m_options.is_planned = true;
+    m_options.asked_run_id = find_identity(s).id();
     m_options.resume = false;
     m_options.output = m_result;
     m_options.settings.insert(m_options.settings.end(), {"/dynamics/element=p2", "/body/cells/kind=graded"});

@@ -12,7 +12,10 @@ std::string Identity::id() const {
 }
 
 std::vector<std::pair<std::string, std::string>> Identity::provenance() const {
-  return {{"run_id", id()}, {"scenario_sha256", scenario}, {"inputs_sha256", inputs}, {"build", build}};
+  std::vector<std::pair<std::string, std::string>> texts = {
+      {"run_id", id()}, {"scenario_sha256", scenario}, {"inputs_sha256", inputs}, {"build", build}};
+  if (!asked_id.empty()) texts.emplace_back("asked_run_id", asked_id);
+  return texts;
 }
 
 Identity find_identity(const scenario::Scenario& s) {

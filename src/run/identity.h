@@ -13,7 +13,8 @@ struct Identity {
   std::string scenario;  ///< SHA-256 of the resolved scenario, files relative to its folder
   std::string inputs;    ///< a line "POINTER SHA-256" for each file that it reads
   std::string build;     ///< describe_build()
-  /// SHA-256 of all three.
+  std::string asked_id;  ///< id() of the run that was asked for, where cells were chosen for it; else empty
+  /// SHA-256 of the first three.
   std::string id() const;
   /// As a result file keeps it: name → text.
   std::vector<std::pair<std::string, std::string>> provenance() const;

@@ -22,6 +22,7 @@
 #include "scenario/patch.h"
 #include "scenario/renew_cells.h"
 #include "scenario/scenario_text.h"
+#include "scenario/scene_faults.h"
 #include "sim/simulation.h"
 
 namespace argil::run {
@@ -154,8 +155,10 @@ scenario::Scenario load(const RunOptions& options) {
   if (!is_text) require_input_file(options.scenario);
   if (!options.trace.empty()) require_input_file(options.trace);
   const auto motion = options.is_live ? scenario::MotionSource::device : scenario::MotionSource::trace;
-  scenario::Scenario s = is_text ? scenario::load_text(options.text, options.scenario, settings, motion)
-                                 : scenario::load_scenario(options.scenario, settings, motion);
+  scenario::Scenario s =
+      is_text
+          ? scenario::load_text(options.text, options.scenario, settings, motion, scenario::find_scene_faults)
+          : scenario::load_scenario(options.scenario, settings, motion, scenario::find_scene_faults);
   s.params.threads = options.threads;
   for (const scenario::InputFile& input : scenario::list_input_files(s))
     if (!is_text || !input.pointer.empty()) require_input_file(input.file, input.pointer);
@@ -189,7 +192,8 @@ RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
   run.scene.notes.insert(run.scene.notes.end(), options.notes.begin(), options.notes.end());
   print_notes(run.scene, options);
   if (options.dry_run) return print_ready(s, simulation, count_ticks(s, run.scene.trace));
-  const Identity identity = find_identity(s);
+  Identity identity = find_identity(s);
+  identity.asked_id = options.asked_run_id;
   ResumePoint from;
   if (options.resume) from = find_resume_point(result, identity);
   if (from.kind == ResumePoint::Kind::done) return end_done_before(result, options);

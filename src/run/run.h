@@ -26,6 +26,7 @@ struct RunOptions {
   bool strict = false;                         ///< /dynamics/strict
   std::vector<std::string> notes;              ///< for the user, beside the scene's
   bool is_planned = false;                     ///< /fidelity/accuracy has been looked after
+  std::string asked_run_id;                    ///< then: Identity::id() of the run that was asked for
   std::string remedy = "go on with --resume";  ///< of a run that was stopped or found no room, in its message
 };
 

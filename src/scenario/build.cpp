@@ -15,9 +15,9 @@
 #include "mesh_files/readers.h"
 #include "scenario/cell_sizes.h"
 #include "scenario/faults.h"
-#include "scenario/file_faults.h"
 #include "scenario/fix_and_load.h"
 #include "scenario/medium_check.h"
+#include "scenario/scene_faults.h"
 
 namespace argil::scenario {
 namespace {
@@ -94,6 +94,12 @@ void add_note(std::string note, Scene& scene) {
   if (!note.empty()) scene.notes.push_back(std::move(note));
 }
 
+/// The scenario's lists of vertices number those of this file.
+void add_note_of_lists(const std::string& file, Scene& scene) {
+  const std::string note = scene.file_vertices.describe(file, "tet");
+  if (!note.empty()) scene.notes.push_back(note + "; lists of vertices go on counting them");
+}
+
 mesh::TriangleMesh read_surface(const std::string& file, double scale, Scene& scene) {
   mesh_files::FileVertices vertices;
   mesh::TriangleMesh surface = mesh_files::read_triangle_mesh(file, scale, &vertices);
@@ -107,7 +113,7 @@ void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
   switch (s.body.kind) {
     case BodyKind::mesh:
       body.mesh = mesh_files::read_tet_mesh(s.body.file, s.body.scale, &scene.file_vertices);
-      add_note(scene.file_vertices.describe(s.body.file, "tet"), scene);
+      add_note_of_lists(s.body.file, scene);
       break;
     case BodyKind::shape:
       if (s.body.skin_triangles > 0) body.skin = shapes::make_shape_skin(s.body.shape, s.body.skin_triangles);
@@ -130,7 +136,7 @@ void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
         body.mesh = std::move(cage.mesh);
       } else {
         body.mesh = mesh_files::read_tet_mesh(s.body.cage_file, 1.0, &scene.file_vertices);
-        add_note(scene.file_vertices.describe(s.body.cage_file, "tet"), scene);
+        add_note_of_lists(s.body.cage_file, scene);
       }
       break;
   }
@@ -309,7 +315,28 @@ void complete_body(const Scenario& s, const Halvings& halvings, Scene& scene, Fa
     faults.check([&] { check_equilibrium_supports(s, body); });
 }
 
+/// Of the body with the cells that no motion has graded: messages name its vertices, which stay.
+void find_body_faults(const Scenario& s, Scene& scene, Faults& faults) {
+  const bool is_made = faults.check([&] { make_mesh(s, s.body.target_tets, scene); });
+  sim::Body& body = scene.body;
+  if (is_made && faults.check([&] { body.topology = mesh::make_topology(body.mesh); }))
+    faults.check([&] { fix_and_load(s, {}, scene); });
+  else if (body.mesh.num_vertices() > 0)
+    faults.check([&] { check_supports_of_vertices(s, scene); });
+}
+
 }  // namespace
+
+void find_scene_faults(const Scenario& s, Faults& faults) {
+  Scene scene;
+  if (!faults.concerns("/tool")) faults.check([&] { scene.tool = make_tool(s, scene); });
+  if (s.mode == Mode::dynamic && !s.trace.file.empty() && !faults.concerns("/trace") &&
+      faults.check([&] { scene.trace = device::read_trace(s.trace.file, s.trace.options); })) {
+    faults.check([&] { check_reach(s, scene.trace); });
+    faults.check([&] { check_stretch(s, scene.trace); });
+  }
+  if (!faults.concerns("/body")) find_body_faults(s, scene, faults);
+}
 
 Scene build_scene(const Scenario& s, const std::vector<sim::TouchedPlace>* places) {
   Scene scene;
@@ -318,7 +345,7 @@ Scene build_scene(const Scenario& s, const std::vector<sim::TouchedPlace>* place
   faults.check([&] { scene.tool = make_tool(s, scene); });
   if (s.mode == Mode::dynamic && !s.trace.file.empty()) read_motion(s, scene, faults);
   if (!faults.empty() && s.body.cells.kind != CellKind::even) {  // cells are graded by tool and motion
-    find_file_faults(s, faults);
+    find_body_faults(s, scene, faults);
     faults.throw_all();
   }
   Halvings halvings;

@@ -63,7 +63,7 @@ std::string describe_differences(const std::string& a, const std::string& b, int
   if (!Json::accept(a) || !Json::accept(b)) return "";
   std::string text;
   int count = 0;
-  for (const auto& change : nlohmann::json::diff(nlohmann::json::parse(a), nlohmann::json::parse(b)))
+  for (const auto& change : Json::diff(Json::parse(a), Json::parse(b)))
     if (++count <= most) text += (count > 1 ? ", " : "") + change["path"].get<std::string>();
   return count > most ? text + " and " + std::to_string(count - most) + " more" : text;
 }

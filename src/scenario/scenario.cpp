@@ -12,6 +12,7 @@
 #include "scenario/file_faults.h"
 #include "scenario/parameter_table.h"
 #include "scenario/scenario_text.h"
+#include "scenario/scene_faults.h"
 #include "scenario/setting.h"
 
 namespace argil::scenario {
@@ -108,7 +109,7 @@ bool is_of_trace(const std::string& pointer) {
 }
 
 Scenario load_document(Json document, const std::string& file, const std::vector<Setting>& settings,
-                       MotionSource motion) {
+                       MotionSource motion, FaultFinder find_more) {
   if (!document.is_object())
     throw InputError(file, "", "is not a JSON object", "a scenario is {\"about\": …}");
   for (const Setting& setting : settings) apply_setting(document, setting, file);
@@ -136,7 +137,7 @@ Scenario load_document(Json document, const std::string& file, const std::vector
   if (faults.empty())
     for (std::string& doubt : list_doubts(s)) s.warnings.push_back(std::move(doubt));
   else
-    find_file_faults(s, faults);
+    find_more(s, faults);
   faults.throw_all(given);
   return s;
 }
@@ -152,12 +153,22 @@ Scenario::Scenario() {
 }
 
 Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings, MotionSource motion) {
-  return load_document(read_json(file), file, settings, motion);
+  return load_scenario(file, settings, motion, find_file_faults);
+}
+
+Scenario load_scenario(const std::string& file, const std::vector<Setting>& settings, MotionSource motion,
+                       FaultFinder find_more) {
+  return load_document(read_json(file), file, settings, motion, find_more);
 }
 
 Scenario load_text(const std::string& text, const std::string& file, const std::vector<Setting>& settings,
                    MotionSource motion) {
-  return load_document(parse_json(text, file), file, settings, motion);
+  return load_text(text, file, settings, motion, find_file_faults);
+}
+
+Scenario load_text(const std::string& text, const std::string& file, const std::vector<Setting>& settings,
+                   MotionSource motion, FaultFinder find_more) {
+  return load_document(parse_json(text, file), file, settings, motion, find_more);
 }
 
 std::vector<InputFile> list_input_files(const Scenario& scenario) {

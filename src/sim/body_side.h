@@ -80,8 +80,7 @@ class BodySide {
   StepStatus move_solid(const ContactLoad& load, StepResult& result);
 
   // Stages of these: body_stages.cpp.
-  void transfer_water(const ContactLoad& load, double step_s);
-  void diffuse(double step_s);
+  void transfer_and_diffuse(const ContactLoad& load, double step_s);
   StepStatus refresh_materials(StepResult& result);
   StepStatus predict(const ContactLoad& load);
   bool assemble_or_stop();

@@ -11,17 +11,11 @@
 
 namespace argil::sim {
 
-void BodySide::transfer_water(const ContactLoad& load, double step_s) {
+void BodySide::transfer_and_diffuse(const ContactLoad& load, double step_s) {
   const StageScope scope(m_observer, Stage::water);
-  const bool wets = load.mode == device::ToolMode::wet;
-  if (wets || load.mode == device::ToolMode::dry)
-    m_water.transfer(load.touched_tet, load.touched_area, wets ? 1 : -1, step_s);
+  const int sign = load.mode == device::ToolMode::wet ? 1 : load.mode == device::ToolMode::dry ? -1 : 0;
+  m_water.move({load.touched_tet, load.touched_area, sign}, step_s);
   m_has_moved_water = true;
-}
-
-void BodySide::diffuse(double step_s) {
-  const StageScope scope(m_observer, Stage::water);
-  m_water.diffuse(step_s);
 }
 
 /// Brings the solid up to date with the water. Other moduli under strain, another weight or size: another

@@ -42,9 +42,7 @@ void HandSide::find_penalty_force(int ticks) {
 
 /// Uptake from or to the tool, diffusion, then moduli and yield of the tets whose saturation moved (eq. 6).
 StepStatus BodySide::move_water(const ContactLoad& load, StepResult& result) {
-  const double h = m_params.rates.haptic_period * m_params.rates.water_period_ticks;
-  transfer_water(load, h);
-  diffuse(h);
+  transfer_and_diffuse(load, m_params.rates.haptic_period * m_params.rates.water_period_ticks);
   return refresh_materials(result);
 }
 

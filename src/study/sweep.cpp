@@ -75,6 +75,13 @@ struct Found {
   SweepFigures figures;    ///< of what is done
 };
 
+/// Of the point that a result was made for: where /fidelity/accuracy has chosen its cells, its own id is that
+/// of the scenario with these.
+std::optional<std::string> find_point_id(const output::ResultReader& reader) {
+  const std::optional<std::string> asked = reader.find_provenance("asked_run_id");
+  return asked ? asked : reader.find_provenance("run_id");
+}
+
 Found look(const SweepPoint& point, const std::string& points) {
   const std::string name = name_point(points, point.index);
   if (fs::exists(name + ".refused")) {
@@ -89,7 +96,7 @@ Found look(const SweepPoint& point, const std::string& points) {
     return {false, false, fs::exists(name + ".part.h5") ? "not finished" : "not run", {}};
   try {
     const output::ResultReader reader(name + ".h5");
-    if (reader.find_provenance("run_id") != point.id) return {false, false, "its file is of another run", {}};
+    if (find_point_id(reader) != point.id) return {false, false, "its file is of another run", {}};
     if (reader.outcome() == output::Outcome::done) return {true, true, "", compute_sweep_figures(reader)};
     const std::optional<Failure> failure = reader.read_failure();
     if (reader.outcome() == output::Outcome::failed && failure) return {true, false, to_string(*failure), {}};
@@ -115,7 +122,7 @@ void remove_unusable(const std::string& part, const std::string& id) {
   if (!fs::exists(part)) return;
   try {
     const output::ResultReader reader(part);
-    if (reader.find_provenance("run_id") == id) {
+    if (find_point_id(reader) == id) {
       const bool is_done = reader.outcome() == output::Outcome::done;  // and was not given its name any more
       if (is_done || reader.find_checkpoint()) compute_sweep_figures(reader);
       return;

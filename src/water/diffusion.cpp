@@ -10,9 +10,7 @@
 
 namespace argil::water {
 
-int PoreWater::diffuse(double step_s) {
-  if (m_active.empty() || !(m_params.diffusivity > 0.0)) return 0;
-  if (m_params.scheme == DiffusionScheme::implicit_euler) return diffuse_implicitly(step_s);
+int PoreWater::diffuse_in_substeps(double step_s) {
   constexpr double kMostSubsteps = 1e6;  // the scenario refuses long before
   const double wanted = num_substeps(step_s);
   ARGIL_ASSERT(wanted <= kMostSubsteps, wanted, step_s, m_stencil.monotone_step);
@@ -22,18 +20,24 @@ int PoreWater::diffuse(double step_s) {
   return substeps;
 }
 
-/// Largest D/D₀ that any water present can have: S rises nowhere above its largest value.
+/// Largest D/D₀ that any water present can have: S rises nowhere above its largest value, or a wall's.
 double PoreWater::find_steepest() const {
   const double beta = m_params.diffusivity_exponent;
   if (beta <= 0.0) return 1.0;
-  double largest = 0.0;
+  double largest = m_wall.empty() ? 0.0 : m_wall_saturation;
   for (const int t : m_active) largest = std::max(largest, m_state.saturation(t));
   return std::exp(beta * largest);
 }
 
 double PoreWater::num_substeps(double step_s) const {
   constexpr double kLimitShare = 0.9;  // so far below the monotone limit that rounding cannot cross it
-  return std::max(1.0, std::ceil(step_s * find_steepest() / (kLimitShare * m_stencil.monotone_step)));
+  double longest = m_stencil.monotone_step;
+  for (const WallTet& wall : m_wall) {
+    const double through_wall = m_params.diffusivity * wall.area / m_stencil.wall_distance(wall.tet);
+    longest = std::min(
+        longest, m_stencil.volume(wall.tet) / (m_stencil.conductance.col(wall.tet).sum() + through_wall));
+  }
+  return std::max(1.0, std::ceil(step_s * find_steepest() / (kLimitShare * longest)));
 }
 
 /// Tets that hold water or are next to such.
@@ -50,10 +54,12 @@ void PoreWater::diffuse_explicitly(double step_s) {
   const auto each_active = [&](auto body) {
     tets.each(std::ssize(m_active), [&](std::ptrdiff_t t) { body(static_cast<int>(t)); });
   };
+  find_uptake(step_s);
   each_active([&](int t) {
     set_flow(t, step_s);
     if (is_corrected) set_gradient(t);
   });
+  for (const WallTet& wall : m_wall) m_change(wall.tet) += wall.uptake / m_stencil.volume(wall.tet);
   if (is_corrected)
     each_active([&](int t) {
       set_correction(t, step_s);
@@ -66,6 +72,7 @@ void PoreWater::diffuse_explicitly(double step_s) {
   const std::size_t num_active = m_active.size();
   for (std::size_t i = 0; i < num_active; ++i)
     if (m_is_newly_wet[static_cast<std::size_t>(m_active[i])]) activate_around(m_active[i]);
+  book_uptake(step_s);
 }
 
 bool PoreWater::passes(int a, int b) const {

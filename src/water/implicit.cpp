@@ -167,22 +167,83 @@ void PoreWater::relax_limits() {
   }
 }
 
+/// S of (V + h L + h G) S' = V S + h (G w + q): backward Euler of the two-point flow with walls that conduct
+/// G from w, or pass the tool's flux q where that is less. Conjugate gradients over the factor of V + h L,
+/// which stays.
+Field PoreWater::solve_wall_system(double step_s) {
+  constexpr int kMostSteps = 200;
+  constexpr double kConverged = 1e-14;
+  Field diagonal = Field::Zero(m_capacity.size());
+  Field b = m_stencil.volume.cwiseProduct(m_state.saturation);
+  for (const WallTet& wall : m_wall) {
+    if (!wall.is_limited) diagonal(wall.tet) = step_s * wall.conductance;
+    b(wall.tet) += step_s * (wall.is_limited ? (2.0 * m_wall_saturation - 1.0) * m_wall_flux * wall.area
+                                             : wall.conductance * m_wall_saturation);
+  }
+  // A p follows from p's own recurrence, as A z is the residual.
+  Field x = Field::Zero(b.size());
+  Field residual = b;
+  Field z = residual;
+  solve_two_point(z);
+  Field p = z, image_of_p = residual;  // A p
+  double product = residual.dot(z);
+  const double wanted = kConverged * kConverged * product;
+  for (int k = 0; k < kMostSteps && product > wanted; ++k) {
+    const Field q = image_of_p + diagonal.cwiseProduct(p);
+    const double step = product / p.dot(q);
+    x += step * p;
+    residual -= step * q;
+    z = residual;
+    solve_two_point(z);
+    const double before = std::exchange(product, residual.dot(z));
+    p = z + product / before * p;
+    image_of_p = residual + product / before * image_of_p;
+  }
+  return x;
+}
+
+/// The low-order solution and each wall's uptake. All walls conduct at first; those that would pass more than
+/// the tool's flux pass that, which leaves the others more: none of them goes back.
+void PoreWater::solve_with_wall(double step_s) {
+  for (WallTet& wall : m_wall) {
+    wall.conductance = compute_wall_conductance(wall, step_s);
+    wall.is_limited = false;
+  }
+  for (bool has_changed = !m_wall.empty(); has_changed;) {
+    has_changed = false;
+    const Field S = solve_wall_system(step_s);
+    for (WallTet& wall : m_wall) {
+      if (wall.is_limited) continue;
+      const double largest = m_wall_flux * wall.area;
+      const double flow = wall.conductance * (m_wall_saturation - S(wall.tet));
+      wall.is_limited = std::abs(flow) > largest;
+      has_changed = has_changed || wall.is_limited;
+      wall.uptake = step_s * std::clamp(flow, -largest, largest);
+    }
+  }
+  Field& S = m_system->low_order;
+  S = m_stencil.volume.cwiseProduct(m_state.saturation);
+  for (const WallTet& wall : m_wall) S(wall.tet) += wall.uptake;
+  solve_two_point(S);
+}
+
 int PoreWater::diffuse_implicitly(double step_s) {
   for (int t = 0; t < static_cast<int>(m_capacity.size()); ++t) activate(t);
   sort_active();
   if (!m_system) make_system();
   factorise(step_s);
   const bool corrected = m_params.flux == FluxForm::corrected;
-  m_system->low_order = m_stencil.volume.cwiseProduct(m_state.saturation);
-  solve_two_point(m_system->low_order);
+  solve_with_wall(step_s);
   const int solves = corrected ? 1 + solve_corrected(step_s) : 1;
   set_implicit_flow(step_s);
+  for (const WallTet& wall : m_wall) m_change(wall.tet) += wall.uptake / m_stencil.volume(wall.tet);
   if (corrected) {
     for (const int t : m_active) limit_correction(t);
     relax_limits();
     for (const int t : m_active) m_change(t) += compute_let_through(t);
   }
   for (const int t : m_active) add(t, m_change(t));
+  book_uptake(step_s);
   return solves;
 }
 

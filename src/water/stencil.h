@@ -17,6 +17,8 @@ struct Stencil {
   Eigen::Matrix<double, 12, Eigen::Dynamic> tangent;  ///< D A (n − d/d_n) [m⁴/s], three entries a corner
   Eigen::Matrix<double, 12, Eigen::Dynamic> gradient;  ///< ∇S = Σ gradient (S_o − S_t) [1/m], three a corner
   Field volume;                                        ///< of each tet at rest [m³]
+  Field
+      wall_distance;  ///< of a tet's centroid from its boundary faces, or from a mean face if it has none [m]
   double monotone_step = 0.0;  ///< min V_t/Σ conductance [s]: longest explicit step with a maximum principle
 };
 

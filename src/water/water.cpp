@@ -26,6 +26,7 @@ PoreWater::PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, 
       m_capacity(params.density * params.porosity * m_stencil.volume),
       m_is_active(static_cast<std::size_t>(mesh.num_tets()), 0),
       m_change(Field::Zero(mesh.num_tets())),
+      m_wall_area(Field::Zero(mesh.num_tets())),
       m_is_newly_wet(m_is_active.size(), 0) {
   const Eigen::Index num_tets = mesh.num_tets();
   ARGIL_ASSERT(initial_saturation.size() == num_tets);
@@ -33,7 +34,8 @@ PoreWater::PoreWater(const mesh::TetMesh& mesh, const mesh::Topology& topology, 
   m_active.reserve(m_is_active.size());
   m_dried.reserve(m_is_active.size());
   m_merged.reserve(m_is_active.size());
-  m_once.reserve(topology.boundary_tet.size());
+  m_once.reserve(m_is_active.size());
+  m_wall.reserve(m_is_active.size());
   if (params.flux == FluxForm::corrected) {
     m_gradient.setZero(3, num_tets);
     m_correction.setZero(4, num_tets);
@@ -135,41 +137,6 @@ bool PoreWater::add(int tet, double change) {
   m_state.saturation(tet) = bounded;
   set_potential(tet, bounded);
   return before <= kTrace && bounded > kTrace;
-}
-
-/// Adds `mass` (negative: takes it) as far as the tet can hold or has it, and books what really moved.
-void PoreWater::give(int tet, double mass) {
-  ARGIL_ASSERT(std::isfinite(mass), tet, mass);
-  const double held = m_state.saturation(tet) + m_state.carry(tet);
-  const double wanted = held + mass / m_capacity(tet);
-  activate(tet);
-  if (wanted > 0.0 && wanted < 1.0) {
-    if (add(tet, mass / m_capacity(tet))) activate_around(tet);
-    (mass > 0.0 ? m_state.added : m_state.removed).add(std::abs(mass));
-    return;
-  }
-  const double limit = wanted >= 1.0 ? 1.0 : 0.0;
-  const double moved = m_capacity(tet) * ((limit - m_state.saturation(tet)) - m_state.carry(tet));
-  (moved > 0.0 ? m_state.added : m_state.removed).add(std::abs(moved));
-  m_state.saturation(tet) = limit;
-  m_state.carry(tet) = 0.0;
-  set_potential(tet, limit);
-  if (limit > kTrace) activate_around(tet);
-}
-
-void PoreWater::transfer(std::span<const int> tet, std::span<const double> area, int sign, double step_s) {
-  ARGIL_ASSERT(tet.size() == area.size() || m_params.uptake == UptakeForm::increment);
-  if (m_params.uptake == UptakeForm::flux) {
-    const double flux = sign > 0 ? m_params.wetting_flux : -m_params.drying_flux;
-    for (std::size_t i = 0; i < tet.size(); ++i) give(tet[i], flux * area[i] * step_s);
-  } else {
-    m_once.assign(tet.begin(), tet.end());
-    std::sort(m_once.begin(), m_once.end());
-    m_once.erase(std::unique(m_once.begin(), m_once.end()), m_once.end());
-    for (const int t : m_once) give(t, sign * m_params.saturation_increment * m_capacity(t));
-  }
-  sort_active();
-  if (sign < 0) leave_dry();
 }
 
 void PoreWater::commit() {

@@ -34,6 +34,13 @@ struct WaterState {
   CompensatedSum added, removed;  ///< [kg]
 };
 
+/// What a tool touches for a step.
+struct Touch {
+  std::span<const int> tet;      ///< behind the touched triangles, each as often as it is touched
+  std::span<const double> area;  ///< [m²] of each of these triangles, what the tool touches of it
+  int sign = 0;                  ///< > 0: the tool gives water, < 0: it takes it
+};
+
 struct ImplicitSystem;
 
 /// Water in the pores of every tet. Saturation S in [0, 1]; mass of a tet = ρ_w n V_rest S. Bits depend on
@@ -48,24 +55,21 @@ class PoreWater {
   PoreWater(PoreWater&&) noexcept;
   PoreWater& operator=(PoreWater&&) noexcept;
 
-  /// Takes up (sign > 0) or gives off (sign < 0) water through touched boundary triangles during `step_s`:
-  /// `tet` are those behind the triangles, each as often as it is touched, `area` [m²] what the tool touches
-  /// of each triangle. Fills up to S = 1, empties down to 0; what the tet cannot take stays with the tool.
-  /// Every gram is booked.
-  void transfer(std::span<const int> tet, std::span<const double> area, int sign, double step_s);
-
-  /// Diffuses for `step_s`; the boundary is sealed. Conservative to round-off. S stays between the smallest
-  /// and the largest S around: in explicit substeps bit for bit, in an implicit step to the solver's
-  /// rounding. Explicit: only tets with water, or next to one that holds more than a trace (1e-12), are
-  /// touched. Returns the number of explicit substeps or of implicit solves.
-  int diffuse(double step_s);
+  /// Uptake from the tool, or to it, and diffusion for `step_s`; the rest of the boundary is sealed. No tet
+  /// holds more than it can or less than nothing; what a tet does not take stays with the tool. Every gram is
+  /// booked. Conservative to round-off. Without a touch S stays between the smallest and the largest S
+  /// around: in explicit substeps bit for bit, in an implicit step to the solver's rounding. Explicit: only
+  /// tets with water, or next to one that holds more than a trace (1e-12), are visited. Returns the number of
+  /// explicit substeps or of implicit solves.
+  int move(const Touch& touch, double step_s);
+  int diffuse(double step_s) { return move({}, step_s); }
 
   /// Explicit substeps that `diffuse(step_s)` takes with the present water.
   double num_substeps(double step_s) const;
 
   /// Tets that may hold water, in increasing order. Saturation changes in these and in dried() alone.
   std::span<const int> active() const { return m_active; }
-  /// Tets that the last transfer to a drying tool left dry; they are no longer active.
+  /// Tets that the last move to a drying tool left dry; they are no longer active.
   std::span<const int> dried() const { return m_dried; }
 
   const Field& saturation() const { return m_state.saturation; }
@@ -86,17 +90,38 @@ class PoreWater {
   void roll_back() { restore(m_committed); }
 
  private:
+  /// A tet behind the tool's wall, which is full of water or dry.
+  struct WallTet {
+    int tet = 0;
+    double area = 0.0;    // touched [m²]
+    double uptake = 0.0;  // change of S times volume in a (sub)step [m³]
+    // Implicit steps only.
+    double conductance = 0.0;  // [m³/s]
+    bool is_limited = false;   // by the tool's flux
+  };
+
   // water.cpp
   void activate(int tet);
   void activate_around(int tet);
   void activate_all_wet();
   void sort_active();
   void leave_dry();
-  void give(int tet, double mass);
   bool add(int tet, double change);
   void set_potential(int tet, double saturation);
 
+  // uptake.cpp
+  void transfer(const Touch& touch, double step_s);
+  void give(int tet, double mass);
+  void book(double mass);
+  void open_wall(const Touch& touch);
+  double compute_wall_diffusivity(int tet) const;
+  double compute_wall_conductance(const WallTet& wall, double step_s) const;
+  double find_free_before(int tet) const;
+  void find_uptake(double step_s);
+  void book_uptake(double step_s);
+
   // diffusion.cpp
+  int diffuse_in_substeps(double step_s);
   void diffuse_explicitly(double step_s);
   bool passes(int a, int b) const;
   double find_steepest() const;
@@ -115,6 +140,8 @@ class PoreWater {
   void factorise(double step_s);
   void set_implicit_correction(double step_s, const Field& S);
   void solve_two_point(Field& x);
+  void solve_with_wall(double step_s);
+  Field solve_wall_system(double step_s);
   int solve_corrected(double step_s);
   void relax_limits();
   void set_implicit_flow(double step_s);
@@ -130,8 +157,12 @@ class PoreWater {
   std::vector<int> m_merged;         // scratch of sort_active
   std::size_t m_num_sorted = 0;      // how many of m_active are in order
   std::vector<int> m_once;           // scratch of transfer
+  std::vector<WallTet> m_wall;       // of this call of move, by tet
+  double m_wall_saturation = 0.0;    // 1 or 0
+  double m_wall_flux = 0.0;          // the tool's [m/s]: volume of water over n and area
   Field m_potential;                 // u(S) of D(S): expm1(βS)/β, S itself where β = 0
   Field m_change;                    // change of S in a substep
+  Field m_wall_area;                 // of each tet, zero but in open_wall [m²]
   std::vector<char> m_is_newly_wet;  // in a substep
   Points m_gradient;              // ∇u of each active tet [1/m]; this and the next two: corrected flux only
   Eigen::Matrix4Xd m_correction;  // unlimited change of S times volume by the correction across each face

@@ -45,8 +45,7 @@ void touch(benchmark::State& state) {
   const double area[] = {1e-6, 1e-6, 1e-6, 1e-6};
   int step = 0, substeps = 0;
   for (auto _ : state) {
-    water.transfer(tets, area, (step++ / 100) % 2 == 0 ? 1 : -1, kStep);
-    substeps = water.diffuse(kStep);
+    substeps = water.move({tets, area, (step++ / 100) % 2 == 0 ? 1 : -1}, kStep);
     water.commit();
     benchmark::DoNotOptimize(water.saturation().data());
   }

@@ -9,6 +9,7 @@
 #include "scenario/build.h"
 #include "scenario/json_document.h"
 #include "scenario/scenario.h"
+#include "scenario/scene_faults.h"
 #include "support/scene_files.h"
 #include "support/temp_folder.h"
 
@@ -24,7 +25,7 @@ class Faulty : public testing::Test {
     const std::string file = folder.write("scene.json", text);
     std::vector<std::string> lines;
     try {
-      build_scene(load_scenario(file, {}));
+      build_scene(load_scenario(file, {}, MotionSource::trace, find_scene_faults));
     } catch (const InputError& error) {
       std::istringstream words(error.what());
       for (std::string line; std::getline(words, line);) lines.push_back(line);
@@ -143,19 +144,40 @@ TEST_F(Faulty, EachLoadIsCheckedAndListsCountTheFilesVertices) {
   EXPECT_EQ(made.body.supports.at(0).region.nodes, (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(made.body.loads.nodal.at(0).nodes, std::vector<int>{4});
   EXPECT_NE(made.notes.at(0).find("1 of 6 vertices belong to no tet"), std::string::npos) << made.notes.at(0);
+  EXPECT_NE(made.notes.at(0).find("lists of vertices go on counting them"), std::string::npos);
 }
 
 TEST_F(Faulty, ToolMotionAndBodyAtOnce) {
   test::write_press_trace(folder / "press.csv", 0.048, 0.0435, 0.1, "push");
   folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const std::string beyond = R"({"kind": "sphere", "centre_m": [9, 9, 9], "radius_m": 0.1})";
-  expect_faults(
-      R"({"about": "x", "body": {"shape": {"kind": "box", "size_m": 0.04, "target_tets": 300}, "fixed": [)" +
-          beyond + R"(], "cells": {"kind": "even"}},
-    "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3},
+  const auto scene = [&](const std::string& cells, const std::string& modulus) {
+    return R"({"about": "x", "body": {"shape": {"kind": "box", "size_m": 0.04, "target_tets": 300}, "fixed": [)" +
+           beyond + R"(], "cells": {"kind": ")" + cells + R"("}},
+    "material": {"youngs_modulus_Pa": )" +
+           modulus + R"(, "poissons_ratio": 0.3},
     "tool": {"shape": {"kind": "mesh", "file": "open.obj"}, "mode": "push"},
-    "trace": {"file": "press.csv", "start_s": 99}})",
-      {"/trace/start_s: lies past", "/body/fixed/0: holds no vertex", "open.obj: "});
+    "trace": {"file": "press.csv", "start_s": 99}})";
+  };
+  const std::vector<std::string> faults = {"/trace/start_s: lies past", "/body/fixed/0: holds no vertex",
+                                           "open.obj: "};
+  expect_faults(scene("even", "1e5"), faults);
+  // Cells that tool and motion would grade; and beside keys that are wrong.
+  expect_faults(scene("graded", "1e5"), faults);
+  for (const char* cells : {"even", "graded"})
+    expect_faults(scene(cells, "-1"), {"/body/fixed/0: holds no vertex", "/material/youngs_modulus_Pa: -1 is",
+                                       "/trace/start_s: lies past", "open.obj: "});
+}
+
+TEST_F(Faulty, ABodyThatItsKeysDoNotSayIsNotJudged) {
+  folder.write("two.vtk", kTwoTets);
+  const std::string lists = R"("fixed": [{"kind": "nodes", "nodes": [9]}]})";
+  const std::string rest =
+      R"(, "material": {"youngs_modulus_Pa": 0, "poissons_ratio": 0.3}, "dynamics": {"mode": "static"}})";
+  expect_faults(R"({"about": "x", "body": {"mesh": {"file": "two.vtk"}, )" + lists + rest,
+                {"/body/fixed/0/nodes: 9 is no vertex", "/material/youngs_modulus_Pa: 0 is outside"});
+  expect_faults(R"({"about": "x", "body": {"mesh": {"file": "two.vtk", "scale": 0}, )" + lists + rest,
+                {"/body/mesh/scale: 0 is outside", "/material/youngs_modulus_Pa: 0 is outside"});
 }
 
 TEST_F(Faulty, OneBodyAndOneTool) {

@@ -312,7 +312,7 @@ TEST(Rest, AWetToolLeavesAnUntouchedBodyInPlaceBitForBit) {
                         at_height(0.03, device::ToolMode::wet));
   for (int k = 0; k < 50; ++k) ASSERT_TRUE(simulation.tick(at_height(0.0245, device::ToolMode::wet)).is_ok());
   EXPECT_GT(simulation.hand_state().hand_force.z(), 0.01);
-  EXPECT_GT(simulation.pore_water().mass(), 1e-6);
+  EXPECT_GT(simulation.pore_water().mass(), 1e-7);
   EXPECT_TRUE(simulation.body_state().is_at_rest);
   EXPECT_EQ(simulation.body_state().solid.x, simulation.solid().model.elements.rest);
 }

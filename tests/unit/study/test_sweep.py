@@ -192,6 +192,30 @@ class Sweep(unittest.TestCase):
             self.call("run", self.points, "--block", 2, "--index", block)
         self.assertEqual(self.collect(), table)
 
+    def test_a_point_whose_cells_are_chosen_is_done_until_it_is_another(self):
+        asked = {"/fidelity/accuracy": [0.3], "/contact/law": ["pressure"], "/dynamics/solver/kind": ["pcg"],
+                 "/material/plasticity/enabled": [False], "/body/shape/kind": ["box"], "/body/shape/skin_triangles": [0],
+                 "/trace/device_to_world/translation_m": [[0, 0, -0.0035]], "/trace/duration_s": [0.042]}
+        self.expand(grid=asked)
+        self.call("run", self.points, "--index", 0)
+        whole, part = self.folder / "points" / "000000.h5", self.folder / "points" / "000000.part.h5"
+        with h5py.File(whole) as file:
+            self.assertIn("accuracy", file)
+        table = self.collect()
+        self.assertEqual([row["outcome"] for row in table], ["done"])
+        self.assertEqual(self.call("missing", self.points), "")
+        before = self.files()
+        self.call("run", self.points, "--index", 0)
+        self.assertEqual(self.files(), before)
+        whole.rename(part)  # as if it had been killed between its end and its name
+        self.call("run", self.points, "--index", 0)
+        self.assertEqual(self.files(), before)
+        self.expand(grid={**asked, "/material/youngs_modulus_Pa": [2e5]})
+        self.assertEqual(self.call("missing", self.points), "0")
+        self.assertEqual(self.collect()[0]["reason"], "its file is of another run")
+        self.call("run", self.points, "--index", 0)
+        self.assertGreater(float(self.collect()[0]["peak_force_N"]), 1.2 * float(table[0]["peak_force_N"]))
+
     def test_a_damaged_result_is_a_row_and_is_run_again(self):
         self.expand_and_run()
         table = self.collect()

@@ -25,8 +25,7 @@ TEST(PoreWater, AllocatesNothingOnceItIsMade) {
     double mass = 0.0;
     const std::size_t before = test::count_allocations();
     for (int i = 0; i < 200; ++i) {
-      water.transfer(tets, area, i < 100 ? 1 : -1, 0.01);
-      water.diffuse(2.0);
+      water.move({tets, area, i < 100 ? 1 : -1}, 2.0);
       water.commit();
       mass += water.mass() + water.ledger_error();
     }
