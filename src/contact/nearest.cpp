@@ -98,6 +98,12 @@ double compute_height(const SurfaceAt& surface, int face, const Vec3& p) {
   return compute_face_normal(surface, face).normalized().dot(p - surface.corner(face, 0));
 }
 
+int find_nearest_point(const Points& x, const Vec3& p) {
+  Eigen::Index nearest = 0;
+  (x.colwise() - p).colwise().squaredNorm().minCoeff(&nearest);
+  return static_cast<int>(nearest);
+}
+
 TrianglePoint compute_nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a;
   const Vec3 ac = c - a;

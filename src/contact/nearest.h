@@ -20,6 +20,9 @@ struct SurfaceAt {
   Vec3 corner(int face, int k) const { return vertex(features.triangles(k, face)); }
 };
 
+/// Number of the point (of 3×n, not none) that is nearest to p; of several the first.
+int find_nearest_point(const Points& x, const Vec3& p);
+
 /// Place on a triangle: weights of the corners, exactly 0 where the place lies on an edge or a corner.
 struct TrianglePoint {
   Vec3 weight = Vec3::Zero();

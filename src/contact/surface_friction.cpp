@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "contact/nearest.h"
+
 namespace argil::contact {
 namespace {
 
@@ -27,10 +29,20 @@ SurfaceFriction::SurfaceFriction(double friction, int num_vertices)
   m_limits.reserve(m_place.size());
 }
 
-void SurfaceFriction::go_on_from(const SurfaceFriction& before, const Points& x_t0, const Points& x_t1) {
-  m_state = before.m_state;
-  for (std::size_t i = 0; i < m_state.vertex.size(); ++i)
-    m_state.stretch[i] -= x_t1.col(m_state.vertex[i]) - x_t0.col(m_state.vertex[i]);
+void SurfaceFriction::go_on_from(const SurfaceFriction& before, const Points& x_t0, const Points& x_t1,
+                                 const Points& x) {
+  m_state.vertex.clear();
+  m_state.stretch.clear();
+  for (std::size_t i = 0; i < before.m_state.vertex.size(); ++i) {
+    const int v = before.m_state.vertex[i];
+    const int nearest = find_nearest_point(x, x_t1.col(v));
+    const auto at = std::lower_bound(m_state.vertex.begin(), m_state.vertex.end(), nearest);
+    const bool is_there = at != m_state.vertex.end() && *at == nearest;  // by another, which is as good
+    if (is_there) continue;
+    const Vec3 stretch = before.m_state.stretch[i] - (x_t1.col(v) - x_t0.col(v));
+    m_state.stretch.insert(m_state.stretch.begin() + (at - m_state.vertex.begin()), stretch);
+    m_state.vertex.insert(at, nearest);
+  }
   commit();
 }
 

@@ -21,8 +21,9 @@ class SurfaceFriction {
   void stretch(const Points& x_t0, const Points& x_t1, const Pose& pose_t0, const Pose& pose_t1,
                Contacts& contacts);
 
-  /// Of a surface that had these vertices and others, and that went from x_t0 to x_t1 since the last call.
-  void go_on_from(const SurfaceFriction& before, const Points& x_t0, const Points& x_t1);
+  /// Of a surface of other vertices, which are at `x` where it was at x_t1 and went there from x_t0 since the
+  /// last call: what belonged to a vertex goes to the nearest of these.
+  void go_on_from(const SurfaceFriction& before, const Points& x_t0, const Points& x_t1, const Points& x);
   void commit() { m_committed = m_state; }
   void roll_back() { m_state = m_committed; }
   void serialize(Archive& archive);

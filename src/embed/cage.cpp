@@ -12,6 +12,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "embed/embedding.h"
+#include "embed/mesh_parts.h"
 #include "embed/skin_shape.h"
 #include "embed/tet_locator.h"
 #include "embed/triangle_tree.h"
@@ -35,6 +36,7 @@ constexpr double kTetsPerCube = 12.0;
 constexpr double kCountTolerance = 0.15;
 constexpr double kLargestCountError = 0.5;  // where the number of tets leaps with the lattice's size
 constexpr double kMostAbove = 0.3;          // of tets, before parts are looked for that are lost
+constexpr double kMostThin = 0.05;          // of a body's volume, that is left out
 
 void require_usable_input(const mesh::TriangleMesh& surface, const CageOptions& options,
                           const std::string& name) {
@@ -94,31 +96,6 @@ shapes::ImplicitSurface make_implicit(const TriangleTree& tree, const Points& ve
     return compute(tree, x, cell_size, lower, upper) - level;
   };
   return surface;
-}
-
-// Numbers the parts of a tet mesh that hang together by faces.
-std::vector<int> label_parts(const mesh::TetMesh& mesh) {
-  const mesh::Topology topology = mesh::make_topology(mesh);
-  std::vector<int> part(static_cast<std::size_t>(mesh.num_tets()), -1);
-  std::vector<int> open;
-  int num_parts = 0;
-  for (int start = 0; start < mesh.num_tets(); ++start) {
-    if (part[static_cast<std::size_t>(start)] >= 0) continue;
-    part[static_cast<std::size_t>(start)] = num_parts;
-    open.push_back(start);
-    while (!open.empty()) {
-      const int t = open.back();
-      open.pop_back();
-      for (int i = 0; i < 4; ++i) {
-        const int n = topology.neighbours(i, t);
-        if (n < 0 || part[static_cast<std::size_t>(n)] >= 0) continue;
-        part[static_cast<std::size_t>(n)] = num_parts;
-        open.push_back(n);
-      }
-    }
-    ++num_parts;
-  }
-  return part;
 }
 
 // Skin vertices where the body must grow: those outside, or of a fitted body farther than `most_outside` [m],
@@ -258,7 +235,7 @@ class CageSearch {
       num_tets = mesh.num_tets();
       const double ratio = static_cast<double>(std::max(num_tets, 1)) / m_options.target_tets;
       const double count_error = std::abs(ratio - 1.0);
-      bad = find_bad_vertices(m_skin, mesh, is_fitted() ? kMostOutside * m_cell_size : 0.0);
+      bad = find_bad(mesh);
       const double wanted = round < kRounds / 2 ? 0.5 * kCountTolerance : kCountTolerance;
       if (bad.empty() && count_error <= wanted) return finish_body(std::move(mesh));
       if (bad.empty() && count_error < m_least_error) {
@@ -290,13 +267,21 @@ class CageSearch {
   }
 
   bool is_fitted() const { return m_options.fit == Fit::surface; }
+  bool leaves_thin() const { return is_fitted() && m_options.leaves_thin; }
+
+  /// Where the body must grow.
+  std::vector<int> find_bad(const mesh::TetMesh& mesh) const {
+    if (leaves_thin() && mesh.num_tets() > 0) return {};
+    return find_bad_vertices(m_skin, mesh, is_fitted() ? kMostOutside * m_cell_size : 0.0);
+  }
 
   mesh::TetMesh stuff(double level) {
     m_tree.set_radius(m_offset * m_cell_size);
     const shapes::ImplicitSurface surface = make_implicit(
         m_tree, m_skin.vertices, m_options.fit, m_offset.maxCoeff() * m_cell_size, level, m_cell_size);
     require_room(surface, m_cell_size, m_name);
-    return shapes::stuff_isosurface(surface, m_cell_size);
+    mesh::TetMesh mesh = shapes::stuff_isosurface(surface, m_cell_size);
+    return leaves_thin() ? take_largest_part(mesh) : mesh;
   }
 
   /// Flat facets cut off what is round, and lattices sharp edges: moves the boundary as far as gives the body
@@ -308,6 +293,9 @@ class CageSearch {
     if (!is_closed(m_surface) || m_offset.maxCoeff() > 0.0) return mesh;
     const double wanted = compute_skin_volume(m_surface);
     double error = mesh::compute_volumes(mesh.vertices, mesh.tets).sum() - wanted;
+    if (leaves_thin() && !(std::abs(error) < kMostThin * wanted))
+      throw InputError(m_name, "target_tets", "much of the surface is thinner than a cell",
+                       "ask for more tets");
     double slope = 0.0;  // of the volume with the level: first the boundary's area
     const Triangles boundary = mesh::make_topology(mesh).boundary;
     for (const auto& t : boundary.colwise())
@@ -320,9 +308,7 @@ class CageSearch {
       if (!(std::abs(next) < kMostLevel * m_cell_size)) break;
       mesh::TetMesh moved = stuff(next);
       const double moved_error = mesh::compute_volumes(moved.vertices, moved.tets).sum() - wanted;
-      if (!find_bad_vertices(m_skin, moved, kMostOutside * m_cell_size).empty() ||
-          !(std::abs(moved_error) < std::abs(error)))
-        break;
+      if (!find_bad(moved).empty() || !(std::abs(moved_error) < std::abs(error))) break;
       slope = std::max(0.5 * slope, (moved_error - error) / (next - level));
       level = next;
       error = moved_error;

@@ -15,6 +15,8 @@ enum class Fit {
 struct CageOptions {
   int target_tets = 10000;  ///< wanted number of tets; reached within 15 % where a lattice has so many
   Fit fit = Fit::enclose;
+  /// Of a fitted body: what is thinner than a cell, and what hangs on it alone, is left out, not thickened.
+  bool leaves_thin = false;
 };
 
 struct CageReport {

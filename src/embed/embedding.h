@@ -24,6 +24,7 @@ Embedding make_embedding(const mesh::TetMesh& cage, const Points& points, const 
 bool can_embed(const mesh::TetMesh& cage, const Points& points, double most_beyond);
 /// Of a body that is fitted to the points' surface.
 inline constexpr double kMostBeyondFitted = 2.0;
+inline constexpr double kAnyBeyond = 1e30;
 
 /// Positions of the embedded points for cage nodes `x`: Σ Nᵢ(w) xᵢ. `nodes`: 4×m (N = w) or 10×m (quadratic)
 /// node numbers of the cage's tets. `out` is resized once.

@@ -116,7 +116,6 @@ struct ResultFile::Impl {
   Table haptic;
   Table physics;
   int epoch = 0;
-  bool has_ended_epochs = false;
   std::optional<Table> fidelity = {};
   std::optional<Table> force_error = {};
   bool is_checked = false;  // fidelity has errors
@@ -222,8 +221,6 @@ ResultFile::ResultFile(const std::string& name, Tick last_tick, std::uint64_t nu
   m_impl = std::make_unique<Impl>(Impl{std::move(file), std::move(root),
                                        FrameWriter(std::move(frames), num_frames, precision),
                                        std::move(timing), std::move(haptic), std::move(physics), epoch});
-  m_impl->has_ended_epochs = m_impl->root.has_attribute(schema::kEpochsEnd) &&
-                             m_impl->root.read_integer(schema::kEpochsEnd) <= last_tick;
   if (haptic_group.has(schema::kForceError[0].name))
     m_impl->force_error = Table::reopen(haptic_group, schema::kForceError, schema::kHapticChunk,
                                         count_rows_until(haptic_group, last_tick));
@@ -341,16 +338,6 @@ void ResultFile::begin_epoch(const sim::Body& body) {
                        schema::kHeld);
     }
   });
-}
-
-void ResultFile::end_epochs(Tick tick) {
-  ARGIL_ASSERT(m_impl, "append after finish");
-  m_impl->has_ended_epochs = true;
-  m_impl->guarded([&] { m_impl->root.write_attribute(schema::kEpochsEnd, tick); });
-}
-
-bool ResultFile::has_ended_epochs() const {
-  return m_impl->has_ended_epochs;
 }
 
 void ResultFile::begin_session(const SessionHead& head, bool is_timed) {

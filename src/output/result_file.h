@@ -103,9 +103,6 @@ class ResultFile {
   void append(const sim::Frame& frame);
   /// The body has got new cells, of which the frames that follow are.
   void begin_epoch(const sim::Body& body);
-  /// After this tick it gets none any more; of a file that is continued, before it.
-  void end_epochs(Tick tick);
-  bool has_ended_epochs() const;
   /// From here on a session: a SessionTick before each haptic record. `is_timed`: with a TickTiming each, and
   /// a StepTiming before each physics record.
   void begin_session(const SessionHead& head, bool is_timed);

@@ -164,9 +164,7 @@ inline hdf5::Group open_mesh(const hdf5::Group& root, int epoch) {
 /// In /timing: what the ticks of passes before the result's own took of all processors [s].
 inline constexpr const char* kCpuOfPasses = "cpu_of_passes";
 inline constexpr const char* kAccuracy = "accuracy";  ///< group: attributes of a run to /fidelity/accuracy
-inline constexpr const char* kEpochsEnd =
-    "last_cells_tick";                          ///< root: after it cells were not made anew any more
-inline constexpr const char* kEpoch = "epoch";  ///< attribute of a frame; none in the first
+inline constexpr const char* kEpoch = "epoch";        ///< attribute of a frame; none in the first
 inline constexpr hdf5::Label kTouchedPosition{"m", "what the tool meets: positions of its vertices, at rest"};
 inline constexpr hdf5::Label kTouchedTriangles{"1", "what the tool meets: vertex numbers, outward"};
 inline constexpr hdf5::Label kSkinRestPosition{"m", "rest positions of the skin's vertices"};

@@ -38,7 +38,7 @@ void SurfaceFrames::add_skin(Epoch& epoch, const FrameInfo& info) {
   cage.vertices = frame.position;
   cage.tets = epoch.cells.tets;
   const embed::Embedding embedding =
-      embed::make_embedding(cage, frame.skin_position, m_reader.file(), embed::kMostBeyondFitted);
+      embed::make_embedding(cage, frame.skin_position, m_reader.file(), embed::kAnyBeyond);
   epoch.skin_tets = embedding.tet;
   if (m_num_vertices > 0) return;
   m_num_vertices = static_cast<int>(frame.skin_position.cols());

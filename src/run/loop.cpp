@@ -11,6 +11,8 @@
 namespace argil::run {
 namespace {
 
+const char* const kNoCellsUntil = "cells/none_until";  // in a checkpoint
+
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -134,11 +136,17 @@ double RecordedTicks::end() {
   return seconds;
 }
 
+Tick find_no_cells_until(const Snapshot& checkpoint) {
+  const auto found = checkpoint.find(kNoCellsUntil);
+  return found == checkpoint.end() ? -1 : static_cast<Tick>(found->second(0, 0));
+}
+
 LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, sim::Simulation& simulation,
-                 FullModel* full, output::ResultFile& file, bool shows_progress) {
+                 FullModel* full, output::ResultFile& file, bool shows_progress, Tick no_cells_until) {
   watch_signals();
   Progress progress(num_ticks, shows_progress);
   RecordedTicks ticks(s, simulation, full, file, !shows_progress);
+  ticks.remesher().wait_until(no_cells_until);
   StepStatus status = StepStatus::ok();
   Tick last_checkpoint = simulation.clock().tick;
   for (Tick k = simulation.clock().tick + 1; k <= num_ticks; ++k) {
@@ -151,6 +159,8 @@ LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, 
       Snapshot snapshot = simulation.take_snapshot();
       Archive archive = Archive::make_saving(snapshot);
       hand.serialize(archive);
+      snapshot[kNoCellsUntil] =
+          Eigen::MatrixXd::Constant(1, 1, static_cast<double>(ticks.remesher().waits_until()));
       if (full) full->save(snapshot);
       file.write_checkpoint(snapshot);
       last_checkpoint = k;

@@ -48,6 +48,7 @@ class RecordedTicks {
   /// Appends the last good state, where no frame shows it, and what the ticks cost. Returns seconds of wall
   /// clock.
   double end();
+  Remesher& remesher() { return m_remesher; }
 
  private:
   struct Cost;
@@ -72,7 +73,11 @@ struct LoopEnd {
 
 /// Feeds the simulation the hand's motion from its present tick to `num_ticks`, with record and checkpoints.
 /// A signal ends it after the next physics step, with a checkpoint there. `full`, if any, goes beside.
+/// `no_cells_until`: what a checkpoint that it goes on from has of find_no_cells_until.
 LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, sim::Simulation& simulation,
-                 FullModel* full, output::ResultFile& file, bool shows_progress);
+                 FullModel* full, output::ResultFile& file, bool shows_progress, Tick no_cells_until = -1);
+
+/// Remesher::waits_until at a checkpoint.
+Tick find_no_cells_until(const Snapshot& checkpoint);
 
 }  // namespace argil::run

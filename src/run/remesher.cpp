@@ -1,6 +1,7 @@
 #include "run/remesher.h"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -21,6 +22,7 @@ constexpr Wear kTenNodes = {2, 0.02};
 // and while something does.
 constexpr double kWorn = 0.12;
 constexpr double kSpoilt = 0.1;
+constexpr double kWait = 0.25;  // [s] after a shape that gave no cells
 
 }  // namespace
 
@@ -28,12 +30,13 @@ Remesher::Remesher(const scenario::Scenario& s, output::ResultFile* file, bool i
     : m_scenario(s),
       m_file(file),
       m_is_quiet(is_quiet),
-      m_can_renew(scenario::find_remesh_obstacle(s).empty() && !(file && file->has_ended_epochs())) {}
+      m_can_renew(scenario::find_remesh_obstacle(s).empty()) {}
 
 bool Remesher::is_due(const sim::Simulation& simulation) const {
   const sim::RateParams& rates = m_scenario.params.rates;
   const Wear& wear = m_scenario.params.solid.element == solid::ElementKind::p2 ? kTenNodes : kFourNodes;
   const Tick tick = simulation.clock().tick;
+  if (tick <= m_waits_until) return false;
   if (tick % (wear.steps_between_looks * rates.physics_period_ticks) != 0) return false;
   const sim::Body& body = simulation.body();
   if (static_cast<double>(tick - body.epoch_tick) * rates.haptic_period < wear.shortest_epoch) return false;
@@ -50,30 +53,34 @@ bool Remesher::renew_if_spoilt(sim::Simulation& simulation) {
   const sim::HandState& hand = simulation.hand_state();
   const double worst = simulation.body_side().find_worst_shape();
   const int num_before = before.mesh.num_tets();
+  bool is_torn = false;
   try {
-    sim::Body body = scenario::make_new_cells(
+    scenario::NewCells made = scenario::make_new_cells(
         m_scenario, {before,
                      x,
                      simulation.solid().model.elements.nodes,
                      {simulation.surface_now(), simulation.body_side().surface().triangles()},
                      simulation.tool(),
                      hand.num_contacts > 0 ? std::optional(hand.contact_tool) : std::nullopt});
+    is_torn = made.is_torn;
+    sim::Body& body = made.body;
     body.epoch = before.epoch + 1;
     body.epoch_tick = simulation.clock().tick;
     if (!simulation.renew_cells(std::move(body)))
       throw InputError("the clay", "", "is pressed beyond what its law bears", "");
   } catch (const InputError& error) {
-    if (!m_is_quiet)
+    if (!m_is_quiet && !m_has_told)
       std::fprintf(stderr, "argil: note: the clay's shape gives no new cells: %s\n", error.what());
-    m_can_renew = false;
-    if (m_file) m_file->end_epochs(simulation.clock().tick);
+    m_has_told = true;
+    m_waits_until =
+        simulation.clock().tick + static_cast<Tick>(std::ceil(kWait / m_scenario.params.rates.haptic_period));
     return false;
   }
   if (!m_is_quiet)
     std::fprintf(stderr,
-                 "argil: note: tick %lld: new cells, %d tets for %d whose worst had the quality %.2g\n",
+                 "argil: note: tick %lld: new cells, %d tets for %d whose worst had the quality %.2g%s\n",
                  static_cast<long long>(simulation.clock().tick), simulation.body().mesh.num_tets(),
-                 num_before, worst);
+                 num_before, worst, is_torn ? "; what is thinner than a cell is torn off" : "");
   if (m_file) m_file->begin_epoch(simulation.body());
   m_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return true;

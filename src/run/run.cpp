@@ -195,6 +195,7 @@ RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
   Identity identity = find_identity(s);
   identity.asked_id = options.asked_run_id;
   ResumePoint from;
+  Tick no_cells_until = -1;
   if (options.resume) from = find_resume_point(result, identity);
   if (from.kind == ResumePoint::Kind::done) return end_done_before(result, options);
   if (from.kind == ResumePoint::Kind::checkpoint) {
@@ -203,6 +204,7 @@ RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
     if (full) full->restore(from.state, result);
     Archive archive = Archive::make_restoring(from.state, result);
     run.hand.serialize(archive);
+    no_cells_until = find_no_cells_until(from.state);
     from.state.clear();
   }
   const Tick first = simulation.clock().tick;
@@ -213,7 +215,8 @@ RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
     file.emplace(result, run.make_header(identity));
   LoopEnd end;
   try {
-    end = run_loop(s, count_ticks(s, run.scene.trace), run.hand, simulation, full, *file, !options.quiet);
+    end = run_loop(s, count_ticks(s, run.scene.trace), run.hand, simulation, full, *file, !options.quiet,
+                   no_cells_until);
     file->finish(end.failure, end.is_interrupted);
   } catch (const IoError&) {
     std::fprintf(stderr, "argil: note: %s is readable up to its last flush; make room and %s\n",

@@ -2,15 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "embed/curved_split.h"
+#include "embed/join_fine.h"
+#include "embed/lay_on_surface.h"
 #include "embed/skin_shape.h"
+#include "embed/triangle_tree.h"
 #include "mesh/order.h"
 #include "mesh/quality.h"
 #include "scenario/cell_sizes.h"
+#include "sim/contact_surface.h"
 
 namespace argil::scenario {
 namespace {
@@ -19,7 +25,9 @@ constexpr int kFewestTets = 100;  // that a body may be made of
 
 /// What the tool has pressed round, in facets as large as cells, lies on it.
 void lay_on_tool(const PresentShape& now, const Scenario& s, mesh::TriangleMesh& surface) {
-  constexpr double kNear = 0.3;    // of an edge, to both sides
+  constexpr double kNear = 0.3;    // of an edge, to both sides,
+  constexpr double kRound = 1.5;   // and of its square over the tool's radius: twelve times what facets miss
+  constexpr double kFlat = 0.01;   // of an edge, of a tool without a curve
   constexpr double kDepth = 1e-3;  // of an edge: contacts press with about the clay's strength then
   if (!now.touching) return;
   Field edge = Field::Zero(surface.num_vertices());
@@ -33,17 +41,16 @@ void lay_on_tool(const PresentShape& now, const Scenario& s, mesh::TriangleMesh&
   for (int v = 0; v < surface.num_vertices(); ++v) {
     const Vec3 in_tool = pose.orientation.conjugate() * (surface.vertices.col(v) - pose.position);
     const contact::ToolDistance found = tool.find_distance(in_tool, face);
-    if (std::abs(found.distance) < kNear * edge(v))
+    if (std::abs(found.distance) < std::min(kNear, kFlat + kRound * edge(v) / tool.radius()) * edge(v))
       surface.vertices.col(v) -= (found.distance + kDepth * edge(v)) * (pose.orientation * found.outward);
   }
 }
 
-/// Moves the boundary out or in, everywhere alike, until it encloses as much as the surface that it follows.
-/// Where that is more than a cell gives, the surface is not closed, and nothing moves.
-void match_volume(const mesh::TriangleMesh& surface, const Triangles& boundary, Points& x) {
+/// Moves the boundary out or in, everywhere alike, until it encloses as much as `wanted` [m³]. Where that is
+/// more than a cell gives, nothing moves.
+void match_volume(double wanted, const Triangles& boundary, Points& x) {
   constexpr int kTimes = 2;
   constexpr double kMost = 0.1;  // of the mean edge of the boundary
-  const double wanted = embed::compute_skin_volume(surface);
   for (int i = 0; i < kTimes; ++i) {
     Points normal = Points::Zero(3, x.cols());
     double area = 0.0, edge = 0.0;
@@ -92,6 +99,13 @@ embed::Embedding embed_in(const mesh::TetMesh& mesh, const Points& points, const
   return embed::make_embedding(mesh, points, file, embed::kMostBeyondFitted);
 }
 
+/// What was torn off hangs on as a part of the skin.
+void embed_surfaces(const Scenario& s, sim::Body& body) {
+  body.touched_embedding = embed_in(body.mesh, body.touched.vertices, s.file);
+  if (body.skin.num_triangles() > 0)
+    body.skin_embedding = embed::make_embedding(body.mesh, body.skin.vertices, s.file, embed::kAnyBeyond);
+}
+
 }  // namespace
 
 std::string find_remesh_obstacle(const Scenario& s) {
@@ -119,34 +133,83 @@ sim::Body complete_cells(const Scenario& s, sim::Body body) {
     support.region = std::move(body.supports[i].region);
     body.supports[i] = std::move(support);
   }
-  body.touched_embedding = embed_in(body.mesh, body.touched.vertices, s.file);
-  if (body.skin.num_triangles() > 0) body.skin_embedding = embed_in(body.mesh, body.skin.vertices, s.file);
+  embed_surfaces(s, body);
   return body;
 }
 
-/// Of a surface with thin parts, finer ones all over until they have all of its vertices.
-mesh::TetMesh make_first_cells(const mesh::TriangleMesh& surface, int num_tets, const Points& skin,
-                               const std::string& file) {
-  constexpr int kTries = 4;
-  for (int i = 0; i < kTries; ++i) {
-    mesh::TetMesh mesh = embed::make_cage(surface, {num_tets << i, embed::Fit::surface}, file).mesh;
-    try {
-      embed_in(mesh, surface.vertices, file);
-      embed_in(mesh, skin, file);
-      return mesh;
-    } catch (const InputError&) {
-      if (i + 1 == kTries) throw;
-    }
+namespace {
+
+/// How far boundary and surface are from one another.
+struct Off {
+  double farthest = 0.0;  ///< vertex of the one from the other [m]
+  double edges = 0.0;     ///< the same over the edges there, at most
+  void add(double distance, double edge) {
+    farthest = std::max(farthest, distance);
+    edges = std::max(edges, distance / edge);
   }
-  return {};
+};
+
+Off find_off(const sim::Body& body) {
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  const Points& x = body.mesh.vertices;
+  const Triangles& faces = body.topology.boundary;
+  const embed::TriangleTree surface(body.touched), boundary({x, faces});
+  Field edge = Field::Zero(x.cols());
+  for (const auto& v : faces.colwise())
+    for (Eigen::Index k = 0; k < 3; ++k)
+      edge(v(k)) = std::max(edge(v(k)), (x.col(v(k)) - x.col(v((k + 1) % 3))).norm());
+  Off off;
+  for (Eigen::Index v = 0; v < x.cols(); ++v)
+    if (edge(v) > 0.0) off.add(surface.find_nearest(x.col(v), kAnywhere).distance, edge(v));
+  for (const auto& p : body.touched.vertices.colwise()) {
+    const embed::TriangleTree::Nearest found = boundary.find_nearest(p, kAnywhere);
+    off.add(found.distance, edge(faces(0, found.triangle)));
+  }
+  return off;
 }
 
-sim::Body make_new_cells(const Scenario& s, const PresentShape& now) {
-  const Scenario of_surface = make_scenario_of_surface(s, now.body);
+/// Small edges that the tool does not touch are joined: `surface` is split again where it is coarser than
+/// half a cell.
+void join_far_from_tool(const PresentShape& now, const Scenario& s, const sim::Body& body,
+                        mesh::TriangleMesh& surface) {
+  constexpr double kShortest = 0.5 * sim::kTouchedOverCell;  // edge, over the mean one of the tet beneath
+  constexpr double kNear = 2.0;                              // such edges, from the tool
+  const double per_edge = s.params.solid.element == solid::ElementKind::p2 ? 2.0 : 1.0;
+  const embed::Embedding embedding = embed_in(body.mesh, surface.vertices, s.file);
+  std::optional<contact::ToolSolid> tool;
+  if (now.touching) tool.emplace(contact::make_tool_solid(s.params.contact.round_tool, now.tool));
+  Field shortest(surface.num_vertices());
+  int face = 0;
+  for (int v = 0; v < surface.num_vertices(); ++v) {
+    const auto corners = body.mesh.tets.col(embedding.tet[static_cast<std::size_t>(v)]);
+    double edges = 0.0;
+    for (Eigen::Index i = 0; i < 4; ++i)
+      for (Eigen::Index j = 0; j < i; ++j)
+        edges += (body.mesh.vertices.col(corners(i)) - body.mesh.vertices.col(corners(j))).norm();
+    shortest(v) = kShortest * edges / (6.0 * per_edge);
+    if (!tool) continue;
+    const contact::Pose& pose = *now.touching;
+    const Vec3 in_tool = pose.orientation.conjugate() * (surface.vertices.col(v) - pose.position);
+    if (tool->find_distance(in_tool, face).distance < kNear * shortest(v)) shortest(v) = 0.0;
+  }
+  surface = embed::join_fine(surface, shortest);
+}
+
+}  // namespace
+
+namespace {
+
+/// Of so many tets to begin with. `is_torn`: they leave out what is thinner than a cell, where that is
+/// little.
+sim::Body make_cells(const Scenario& s, const Scenario& of_surface, const PresentShape& now, int first_tets,
+                     bool is_torn) {
   sim::Body body;
   const bool is_boundary = now.body.skin.num_triangles() == 0 && now.body.touched.num_triangles() == 0;
-  body.touched = is_boundary ? embed::split_where_curved(now.touched) : now.touched;
-  if (is_boundary) lay_on_tool(now, s, body.touched);
+  body.touched = embed::join_fine(now.touched, Field::Zero(now.touched.num_vertices()));  // none is loose
+  if (is_boundary) {
+    body.touched = embed::split_where_curved(body.touched);
+    lay_on_tool(now, s, body.touched);
+  }
   body.loads = now.body.loads;
   body.first_tets = now.body.first_tets > 0 ? now.body.first_tets : now.body.mesh.num_tets();
   Points skin;
@@ -154,8 +217,7 @@ sim::Body make_new_cells(const Scenario& s, const PresentShape& now) {
     embed::interpolate_positions(now.body.skin_embedding, now.nodes, now.x, skin);
   const std::vector<sim::TouchedPlace> places = move_places(now, skin);
   const bool is_graded = !places.empty() || !s.body.cells.regions.empty();
-  const int num_tets = is_graded ? count_first_tets(of_surface.body) : of_surface.body.target_tets;
-  body.mesh = make_first_cells(body.touched, num_tets, skin, s.file);
+  body.mesh = embed::make_cage(body.touched, {first_tets, embed::Fit::surface, is_torn}, s.file).mesh;
   if (is_graded) {
     std::swap(body.skin, body.touched);  // that the cells follow
     std::vector<std::string> notes;
@@ -166,13 +228,49 @@ sim::Body make_new_cells(const Scenario& s, const PresentShape& now) {
   mesh::sort_tets(body.mesh);
   body.mesh.numbers.clear();
   body.topology = mesh::make_topology(body.mesh);
-  match_volume(body.touched, body.topology.boundary, body.mesh.vertices);
+  if (!is_torn) embed::lay_on_surface(body.touched, body.topology, body.mesh);
+  const bool has_own_boundary = skin.size() == 0 && s.params.solid.element != solid::ElementKind::p2;
+  const double wanted = has_own_boundary ? embed::compute_skin_volume({now.x, now.body.topology.boundary})
+                                         : embed::compute_skin_volume(body.touched);
+  match_volume(wanted, body.topology.boundary, body.mesh.vertices);
   mesh::require_usable(mesh::compute_quality(body.mesh), s.file);
-  body.touched_embedding = embed_in(body.mesh, body.touched.vertices, s.file);
-  if (skin.size() == 0) return body;
-  body.skin = {skin, now.body.skin.triangles};
-  body.skin_embedding = embed_in(body.mesh, skin, s.file);
+  if (is_torn) {
+    body.touched = embed::split_where_curved(embed::join_fine({body.mesh.vertices, body.topology.boundary},
+                                                              Field::Zero(body.mesh.num_vertices())));
+    lay_on_tool(now, s, body.touched);
+  } else {
+    join_far_from_tool(now, s, body, body.touched);
+  }
+  if (skin.size() > 0) body.skin = {skin, now.body.skin.triangles};
+  embed_surfaces(s, body);
   return body;
+}
+
+}  // namespace
+
+/// Of those that follow the surface the ones with the fewest tets; else those that come nearest to it.
+NewCells make_new_cells(const Scenario& s, const PresentShape& now) {
+  constexpr double kMostTets = 1.5;  // of those wanted, where thin parts need them
+  constexpr double kFollows = 0.4;   // of an edge, off at most
+  const Scenario of_surface = make_scenario_of_surface(s, now.body);
+  const int wanted = of_surface.body.target_tets;
+  const bool is_graded = !now.body.touched_places.empty() || !s.body.cells.regions.empty();
+  int tets = is_graded ? count_first_tets(of_surface.body) : wanted;
+  std::optional<sim::Body> nearest;
+  double farthest = std::numeric_limits<double>::infinity();
+  for (bool is_last = false; !is_last; tets *= 2) {
+    is_last = 2.0 * tets > kMostTets * wanted;
+    try {
+      sim::Body body = make_cells(s, of_surface, now, tets, false);
+      const Off off = find_off(body);
+      if (off.farthest < farthest) nearest = std::move(body);
+      farthest = std::min(farthest, off.farthest);
+      if (off.edges < kFollows) break;
+    } catch (const InputError&) {
+      if (is_last && !nearest) return {make_cells(s, of_surface, now, tets, true), true};
+    }
+  }
+  return {std::move(*nearest), false};
 }
 
 }  // namespace argil::scenario

@@ -26,10 +26,14 @@ std::string find_remesh_obstacle(const Scenario& s);
 /// of its mesh and its scenario.
 sim::Body complete_cells(const Scenario& s, sim::Body body);
 
+struct NewCells {
+  sim::Body body;        ///< mesh, topology, skin and what the tool meets; not the clay's state
+  bool is_torn = false;  ///< they leave out what is thinner than a cell, and what hung on it
+};
+
 /// New cells for a body in its present shape: a lattice that is fitted to what the tool meets, about as many
-/// tets as before, small at the places by which the old ones were graded, which have moved with the clay.
-/// Mesh, topology, skin and what the tool meets; not the clay's state. Throws InputError where there is no
-/// such lattice.
-sim::Body make_new_cells(const Scenario& s, const PresentShape& now);
+/// tets as before, or half as many more for thin parts, small at the places by which the old ones were
+/// graded, which have moved with the clay. Throws InputError where there is no such lattice.
+NewCells make_new_cells(const Scenario& s, const PresentShape& now);
 
 }  // namespace argil::scenario

@@ -29,7 +29,8 @@ PhysicsRecord BodySide::make_record() {
   record.residual = m_solid.history.counters.residual;
   record.active_nodes = is_at_rest ? 0 : m_region.num_active();
   record.min_volume_ratio = m_solid.kinematics.min_volume_ratio();
-  record.max_plastic_strain = strain.largest_plastic_strain;
+  record.max_plastic_strain =
+      m_earlier_flow.size() == 0 ? strain.largest_plastic_strain : find_flow().colwise().norm().maxCoeff();
   record.epoch = m_body.epoch;
   record.limited_tets = m_limit.num_tets;
   record.limited_tet = m_limit.worst_tet;
@@ -67,13 +68,22 @@ TensorField BodySide::mean_plastic_strain() const {
   return mean;
 }
 
+TensorField BodySide::find_flow() const {
+  if (m_earlier_flow.size() == 0) return mean_plastic_strain();
+  return m_earlier_flow + mean_plastic_strain();
+}
+
+void BodySide::set_flow(const TensorField& flow) {
+  m_earlier_flow = flow - mean_plastic_strain();
+}
+
 Frame BodySide::make_frame(const HandPose& hand) const {
   Frame frame;
   frame.tick = hand.ticks;
   frame.time = static_cast<double>(hand.ticks) * m_params.rates.haptic_period;
   frame.position = m_state.solid.x.leftCols(m_body.mesh.num_vertices());
   frame.saturation = mesh::in_file_order(m_body.mesh, m_water.saturation());
-  frame.plastic_strain = mesh::in_file_order(m_body.mesh, mean_plastic_strain());
+  frame.plastic_strain = mesh::in_file_order(m_body.mesh, find_flow());
   if (m_body.skin_embedding.num_points() > 0) {
     embed::interpolate_positions(m_body.skin_embedding, m_solid.model.elements.nodes, m_state.solid.x,
                                  frame.skin_position);

@@ -52,6 +52,10 @@ class BodySide {
   /// where supports alone do not hold the body.
   void balance(const Points& contact_force);
 
+  /// Plastic strain of each tet since the run began, also in earlier cells (6×tets), Mandel: for pictures.
+  TensorField find_flow() const;
+  /// It is that now.
+  void set_flow(const TensorField& flow);
   /// mesh::compute_shape of the worst of the tets that the last step has moved; 1 where there is none.
   double find_worst_shape() const;
   const BodyState& state() const { return m_state; }
@@ -126,6 +130,7 @@ class BodySide {
   PlasticFlow m_flow;
   Economy m_economy;
   ForceErrorEstimate m_error;
+  TensorField m_earlier_flow;  // what find_flow adds; empty: nothing
   solid::MotionLimiter m_limiter;
   solid::MotionLimit m_limit;      // of the last step; all tets: of the whole body, or the step was not made
   bool m_has_moved_water = false;  // since the last commit, as is the next

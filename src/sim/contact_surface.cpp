@@ -45,8 +45,9 @@ ContactSurface::ContactSurface(SurfaceKind kind, contact::ContactLaw law, const 
     return;
   }
   const double nodes_per_edge = elements.nodes_per_tet == 4 ? 1.0 : 2.0;
-  const embed::FineSkin fine =
-      embed::split_to_cells(surface, embedding, body.mesh, kSkinOverCell / nodes_per_edge);
+  const bool is_new = has_own && body.epoch > 0;
+  const embed::FineSkin fine = embed::split_to_cells(
+      surface, embedding, body.mesh, (is_new ? kTouchedOverCell : kSkinOverCell) / nodes_per_edge);
   take_skin(fine.triangles, fine.embedding, elements);
 }
 

@@ -11,6 +11,10 @@
 
 namespace argil::sim {
 
+/// Longest edge of a triangle that the tool meets, over the mean edge of the tet beneath, in a body that has
+/// got new cells; a half of that with ten nodes.
+inline constexpr double kTouchedOverCell = 0.5;
+
 /// A force on vertices of the touched surface, shared by weights of sum 1.
 struct SurfaceForce {
   std::array<int, 3> vertex = {-1, -1, -1};  ///< −1 beyond the last

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "contact/nearest.h"
+
 namespace argil::sim {
 namespace {
 
@@ -93,8 +95,20 @@ Vec3 Grip::find_normal(const contact::Pose& tool) const {
 void Grip::go_on_from(const Grip& before, const Points& x_before, const Points& x,
                       const contact::Pose& tool) {
   m_state = before.m_state;
-  for (Bond& bond : m_state.bonds)
-    bond.place += tool.orientation.conjugate() * Vec3(x.col(bond.vertex) - x_before.col(bond.vertex));
+  const double radius = std::sqrt(m_state.area / std::numbers::pi);
+  double whole = 0.0, lost = 0.0;
+  for (Bond& bond : m_state.bonds) {
+    const Vec3 at = x_before.col(bond.vertex);
+    bond.vertex = contact::find_nearest_point(x, at);
+    const Vec3 way = x.col(bond.vertex) - at;
+    bond.place += tool.orientation.conjugate() * way;
+    whole += bond.stiffness;
+    if (!(way.norm() <= radius)) lost += bond.stiffness;
+  }
+  if (lost > 0.5 * whole) {
+    m_state.bonds.clear();
+    m_state.has_let_go = true;
+  }
   commit();
 }
 

@@ -36,8 +36,9 @@ class Grip {
   void find_contacts(const Points& x, const contact::Pose& from, const contact::Pose& to,
                      contact::Contacts& contacts) const;
 
-  /// Of a surface that had these vertices and others, and is now at `x` where it was at `x_before`: bonds go
-  /// with them, so that they carry what they carried.
+  /// Of a surface of other vertices, which are at `x` where it was at `x_before`: bonds go to the nearest of
+  /// them, so that they carry what they carried. It lets go where most of the patch has none within its
+  /// radius: the clay that it held is torn off.
   void go_on_from(const Grip& before, const Points& x_before, const Points& x, const contact::Pose& tool);
   void commit() { m_committed = m_state; }
   void roll_back() { m_state = m_committed; }

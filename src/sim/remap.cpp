@@ -204,6 +204,16 @@ Field find_rest_volume_ratio(const TensorField& elastic, Eigen::Index num_tets) 
   return ratio;
 }
 
+/// Of each tet, from its shape at rest to the present one.
+TensorField turn_with_clay(const solid::Body& solid, const TensorField& flow) {
+  TensorField turned(6, flow.cols());
+  for (Eigen::Index t = 0; t < flow.cols(); ++t) {
+    const Mat3 R = solid.kinematics.rotation().middleCols<3>(3 * solid.model.elements.points_per_tet * t);
+    turned.col(t) = to_mandel(R * from_mandel(flow.col(t)) * R.transpose());
+  }
+  return turned;
+}
+
 Points take_speed(const std::vector<embed::TetLocator::Place>& of_node, const solid::Elements& elements,
                   const Points& v) {
   Points speed(3, static_cast<Eigen::Index>(of_node.size()));
@@ -221,7 +231,7 @@ Points take_speed(const std::vector<embed::TetLocator::Place>& of_node, const so
 }  // namespace
 
 RemappedState remap(const Body& from, const solid::Body& solid, const Points& x, const Field& saturation,
-                    Body& to) {
+                    const TensorField& flow, Body& to) {
   mesh::TetMesh now = from.mesh;
   now.vertices = x.leftCols(from.mesh.num_vertices());
   const Places places(now);
@@ -240,6 +250,7 @@ RemappedState remap(const Body& from, const solid::Body& solid, const Points& x,
   RemappedState state;
   state.elastic = take_strain(places, origins, find_elastic_strain(solid), to.mesh, is_quadratic);
   to.rest_volume_ratio = find_rest_volume_ratio(state.elastic, to.mesh.num_tets());
+  state.flow = take_means(origins, turn_with_clay(solid, flow));
   state.v = take_speed(of_node, solid.model.elements, solid.committed.v);
   return state;
 }

@@ -9,6 +9,7 @@ namespace argil::sim {
 struct RemappedState {
   Points v;             ///< 3×nodes [m/s]
   TensorField elastic;  ///< 6×points: logarithmic elastic strain ½ ln FₑFₑᵀ in space, Mandel
+  TensorField flow;     ///< 6×tets: plastic strain so far, turned with the clay, Mandel; for pictures
 };
 
 /// ½ ln FₑFₑᵀ at each point in space, Mandel. Of Hencky's law.
@@ -21,8 +22,9 @@ TensorField find_elastic_strain(const solid::Body& solid);
 /// and more. Water keeps its mass to rounding: so does the saturation, but for what the sizes of both bodies
 /// differ by.
 ///
-/// `to`: mesh, topology and skin are made. The cells' shape at rest is the present one.
+/// `to`: mesh, topology and skin are made. The cells' shape at rest is the present one. `flow`: of each old
+/// tet, in its shape at rest.
 RemappedState remap(const Body& from, const solid::Body& solid, const Points& x, const Field& saturation,
-                    Body& to);
+                    const TensorField& flow, Body& to);
 
 }  // namespace argil::sim

@@ -25,8 +25,8 @@ void Simulation::set_sides(std::unique_ptr<Sides> sides) {
 
 bool Simulation::renew_cells(Body body) {
   constexpr double kLeastVolume = 0.05;  // of a tet, over that at rest
-  const RemappedState clay =
-      remap(this->body(), solid(), body_state().solid.x, pore_water().saturation(), body);
+  const RemappedState clay = remap(this->body(), solid(), body_state().solid.x, pore_water().saturation(),
+                                   body_side().find_flow(), body);
   const double most = 1.0 / std::max(kLeastVolume, m_params.solid.min_volume_ratio);
   if (!clay.elastic.allFinite() || !(body.rest_volume_ratio.maxCoeff() < most)) return false;
   auto sides = std::make_unique<Sides>(std::move(body), m_tool, m_params, device::DeviceSample{});
@@ -36,6 +36,7 @@ bool Simulation::renew_cells(Body body) {
   sides->hand.go_on_from(hand(), x);
   set_sides(std::move(sides));
   body_side().balance(hand().find_contact_force());
+  body_side().set_flow(clay.flow);
   return true;
 }
 

@@ -76,6 +76,7 @@ void BodySide::serialize(Archive& archive) {
   m_materials.serialize(archive);
   solid::serialize(archive, m_solid, m_region, m_state.solid);
   m_flow.serialize(archive);
+  if (m_body.epoch > 0) archive.any_size("flow/earlier", m_earlier_flow);
   m_economy.serialize(archive);
   m_error.serialize(archive);
   if (!archive.is_restoring()) return;

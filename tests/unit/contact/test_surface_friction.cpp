@@ -120,7 +120,7 @@ TEST(SurfaceFriction, GoesOnAfterABodyThatWentAlong) {
   patch.x.colwise() += 0.75 * way;
   patch.place();
   SurfaceFriction next(kFriction, kVertices);
-  next.go_on_from(patch.friction, before, patch.x);
+  next.go_on_from(patch.friction, before, patch.x, patch.x);
   next.stretch(patch.x, patch.x, patch.pose, patch.pose, patch.contacts);
   for (const Contact& c : patch.contacts.contacts)
     EXPECT_LT((c.resistance - 0.25 * c.stiffness * way).norm(), 1e-12 * c.stiffness);

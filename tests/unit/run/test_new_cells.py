@@ -61,11 +61,15 @@ class NewCells(unittest.TestCase):
     VOLUME = 5e-3  # of the first, by which it may differ
 
     @classmethod
+    def write(cls, folder):
+        return write_scene(folder, cls.SKIN, cls.ELEMENT, cls.NEAR)
+
+    @classmethod
     def setUpClass(cls):
         cls.temp = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.temp.cleanup)
         cls.folder = Path(cls.temp.name)
-        cls.scene = write_scene(cls.folder, cls.SKIN, cls.ELEMENT, cls.NEAR)
+        cls.scene = cls.write(cls.folder)
         cls.result = cls.folder / "press.h5"
         cls.notes = run(cls.scene, cls.result)
 
@@ -146,6 +150,35 @@ class NewCellsUnderASkin(NewCells):
             for frame in result["frames"].values():
                 a, b, c = (frame["skin_position"][:][triangles[:, k]] for k in range(3))
                 self.assertAlmostEqual(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 / EDGE**3, 1, delta=1e-2)
+
+
+class NewCellsOfAHorn(NewCells):
+    """The top of a ball is drawn up by 0.6 radii of it, and let go."""
+    BALL, WAY = 0.02, 0.006  # [m]
+
+    @classmethod
+    def write(cls, folder):
+        top = cls.BALL + RADIUS
+        t = np.arange(0, 0.5, 0.001)
+        height = top + np.interp(t, [0, 0.06, 0.4, 0.45], [0.0005, -0.0015, -0.0015 + cls.WAY, 0.001 + cls.WAY])
+        mode = np.where((t > 0.06) & (t < 0.4), "pull", "push")
+        lines = [f"{a:.3f},0,0,{z:.6f},{m}" for a, z, m in zip(t, height, mode)]
+        (folder / "horn.csv").write_text("t,x,y,z,mode\n" + "\n".join(lines) + "\n")
+        (folder / "horn.json").write_text(json.dumps({
+            "about": "a horn that is drawn from a ball of clay",
+            "body": {"shape": {"kind": "sphere", "size_m": cls.BALL, "target_tets": 3000, "skin_triangles": 0}, "initial_saturation": 0.3,
+                     "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 0.004}]},
+            "material": {"youngs_modulus_Pa": 1e6, "poissons_ratio": 0.3, "plasticity": {"strength_Pa": 15e3}},
+            "tool": {"shape": {"kind": "sphere", "radius_m": RADIUS}},
+            "haptics": {"frame_period_ticks": 20, "physics_period_ticks": 2}, "trace": {"file": "horn.csv"}}))
+        return folder / "horn.json"
+
+    def test_follow_the_tool_and_let_go(self):
+        with h5py.File(self.result) as result:
+            self.assertTrue((result["physics/limited_tets"][:] == 0).all())
+            frames = list(result["frames"].values())
+            self.assertGreater(frames[-1]["position"][:, 2].max(), self.BALL + 0.5 * self.WAY)
+            self.assertEqual(np.linalg.norm(result["haptic/force"][-1]), 0)
 
 
 class NewCellsOfTenNodes(NewCells):

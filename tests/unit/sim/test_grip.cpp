@@ -73,6 +73,35 @@ TEST(Grip, GoesOnWithVerticesThatLieElsewhere) {
     EXPECT_LT((c.force + find_pressing(c.vertex[0]) * Vec3::UnitZ()).norm(), 1e-12);
 }
 
+TEST(Grip, GoesOnWithTheSameVerticesInAnotherOrder) {
+  Scene patch;
+  patch.hold();
+  const Points before = patch.x;
+  patch.x = Points(before.rowwise().reverse());
+  Grip grip{kStrength};
+  grip.go_on_from(patch.grip, before, patch.x, patch.tool);
+  contact::Contacts found;
+  grip.find_contacts(patch.x, patch.tool, patch.tool, found);
+  ASSERT_EQ(found.contacts.size(), 3 * kPoints);
+  for (const contact::Contact& c : found.contacts) {
+    const int vertex = 3 * kPoints - 1 - c.vertex[0];
+    EXPECT_LT((c.force + find_pressing(vertex) * Vec3::UnitZ()).norm(), 1e-12);
+  }
+}
+
+TEST(Grip, LetsGoOfClayThatIsTornOff) {
+  for (const double way : {0.8 * kPatch.radius, 1.2 * kPatch.radius}) {
+    Scene patch;
+    patch.hold();
+    Points left = patch.x;
+    left.colwise() += Vec3(0, 0, -way);
+    Grip grip{kStrength};
+    grip.go_on_from(patch.grip, patch.x, left, patch.tool);
+    EXPECT_EQ(grip.holds(), way < kPatch.radius);
+    EXPECT_EQ(grip.has_let_go(), way > kPatch.radius);
+  }
+}
+
 TEST(Grip, TakesHoldWithTheForcesThatPress) {
   Scene patch;
   patch.hold();

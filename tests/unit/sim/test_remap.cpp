@@ -33,6 +33,7 @@ struct Change : ::testing::TestWithParam<solid::ElementKind> {
                     0.3};
   Body from, to;
   Mat3 A = Mat3::Identity();
+  TensorField flow = TensorField::Zero(6, scene.mesh.num_tets());
 
   static std::vector<int> find_bottom(const mesh::TetMesh& mesh) {
     std::vector<int> bottom;
@@ -53,7 +54,7 @@ struct Change : ::testing::TestWithParam<solid::ElementKind> {
     to.topology = mesh::make_topology(to.mesh);
   }
   RemappedState remap(const Field& saturation) {
-    return sim::remap(from, scene.solid, scene.state.x, saturation, to);
+    return sim::remap(from, scene.solid, scene.state.x, saturation, flow, to);
   }
   Points new_nodes() const {
     return GetParam() == solid::ElementKind::p2 ? mesh::make_quadratic_mesh(to.mesh, to.topology).nodes
@@ -77,6 +78,15 @@ TEST_P(Change, OfCellsKnowsFlowFromStrain) {
   scene.state.plastic_strain.colwise() = to_mandel(Mat3(stretch.asDiagonal()));
   deform(Vec3(stretch.array().exp()).asDiagonal());
   EXPECT_LT(remap(dry()).elastic.cwiseAbs().maxCoeff(), kRounding);
+}
+
+TEST_P(Change, OfCellsTurnsTheFlowWithTheClay) {
+  flow.colwise() = to_mandel(Mat3(Vec3(0.5, -0.2, -0.3).asDiagonal()));
+  deform((Mat3() << 0, -1.1, 0, 0.9, 0, 0, 0, 0, 1).finished());  // stretched, then a quarter turn about z
+  const RemappedState state = remap(dry());
+  ASSERT_EQ(state.flow.cols(), to.mesh.num_tets());
+  const Vec6 turned = to_mandel(Mat3(Vec3(-0.2, 0.5, -0.3).asDiagonal()));
+  EXPECT_LT((state.flow.colwise() - turned).cwiseAbs().maxCoeff(), kRounding);
 }
 
 TEST_P(Change, OfCellsKeepsALinearSpeed) {
@@ -141,7 +151,7 @@ TEST_P(Change, OfCellsHoldsSomethingWhereOneVertexIsHeld) {
   test::Scene held(test::make_irregular_block(4, 3, 2, kSize), {0}, make_hencky(GetParam()), 1e5, 0.3);
   held.solid.plastic_strain = &held.state.plastic_strain;
   from.supports = {test::hold_nodes({0})};
-  sim::remap(from, held.solid, held.state.x, dry(), to);
+  sim::remap(from, held.solid, held.state.x, dry(), flow, to);
   EXPECT_EQ(to.supports[0].region.nodes.size(), 1U);
 }
 

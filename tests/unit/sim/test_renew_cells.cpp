@@ -108,6 +108,24 @@ TEST(NewCells, KeepWhatIsBooked) {
   EXPECT_EQ(after.epoch, 1);
 }
 
+/// Of a tensor that is turned the norm stays.
+TEST(NewCells, ShowTheFlowThatThereWas) {
+  Pressed p;
+  p.go(-1e-3, 2e-3, 60);
+  const TensorField before = p.simulation.make_frame().plastic_strain;
+  const double largest = p.simulation.physics_record().max_plastic_strain;
+  ASSERT_GT(largest, 0.1);
+  p.renew();
+  const Snapshot snapshot = p.simulation.take_snapshot();
+  const TensorField after = p.simulation.make_frame().plastic_strain;
+  EXPECT_LT((after.colwise().norm() - before.colwise().norm()).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_NEAR(p.simulation.physics_record().max_plastic_strain, largest, 1e-12);
+  p.go(2e-3, 2.2e-3, 10);
+  EXPECT_GE(p.simulation.physics_record().max_plastic_strain, 0.99 * largest);
+  p.simulation.restore(snapshot, "renewed");
+  EXPECT_EQ(p.simulation.make_frame().plastic_strain, after);
+}
+
 TEST(NewCells, HangOnAToolThatPulls) {
   Pressed alone, renewed;
   for (Pressed* p : {&alone, &renewed}) {
