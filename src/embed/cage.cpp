@@ -205,13 +205,13 @@ double guess_cell_size(const mesh::TriangleMesh& skin, int target_tets, double c
   return high;
 }
 
-void require_room(const shapes::ImplicitSurface& thick, double cell_size, const std::string& name) {
-  constexpr double kMostCubes = 1e8;
+void require_room(const shapes::ImplicitSurface& thick, double cell_size, double most_cubes,
+                  const std::string& name) {
   const double num_cubes = ((thick.upper - thick.lower).array() / cell_size + 4.0).prod();
-  if (!(num_cubes <= kMostCubes))
-    throw InputError(name, "target_tets",
-                     "the surface is so thin in its box that the lattice needs more than 1e8 cubes",
-                     "ask for fewer tets or cut the surface into parts");
+  if (num_cubes <= most_cubes) return;
+  std::ostringstream problem;
+  problem << "the surface is so thin in its box that the lattice needs more than " << most_cubes << " cubes";
+  throw InputError(name, "target_tets", problem.str(), "ask for fewer tets or cut the surface into parts");
 }
 
 /// A lattice and how far the skin is thickened, by which a body gets the wanted number of tets and holds the
@@ -279,7 +279,7 @@ class CageSearch {
     m_tree.set_radius(m_offset * m_cell_size);
     const shapes::ImplicitSurface surface = make_implicit(
         m_tree, m_skin.vertices, m_options.fit, m_offset.maxCoeff() * m_cell_size, level, m_cell_size);
-    require_room(surface, m_cell_size, m_name);
+    require_room(surface, m_cell_size, m_options.most_cubes, m_name);
     mesh::TetMesh mesh = shapes::stuff_isosurface(surface, m_cell_size);
     return leaves_thin() ? take_largest_part(mesh) : mesh;
   }

@@ -17,6 +17,7 @@ struct CageOptions {
   Fit fit = Fit::enclose;
   /// Of a fitted body: what is thinner than a cell, and what hangs on it alone, is left out, not thickened.
   bool leaves_thin = false;
+  double most_cubes = 1e8;  ///< that the lattice may have in the box of the surface
 };
 
 struct CageReport {

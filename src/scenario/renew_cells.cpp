@@ -217,7 +217,9 @@ sim::Body make_cells(const Scenario& s, const Scenario& of_surface, const Presen
     embed::interpolate_positions(now.body.skin_embedding, now.nodes, now.x, skin);
   const std::vector<sim::TouchedPlace> places = move_places(now, skin);
   const bool is_graded = !places.empty() || !s.body.cells.regions.empty();
-  body.mesh = embed::make_cage(body.touched, {first_tets, embed::Fit::surface, is_torn}, s.file).mesh;
+  constexpr double kMostCubes = 300.0;  // a tet: of clay that is drawn out across a wide box
+  const embed::CageOptions options{first_tets, embed::Fit::surface, is_torn, kMostCubes * first_tets};
+  body.mesh = embed::make_cage(body.touched, options, s.file).mesh;
   if (is_graded) {
     std::swap(body.skin, body.touched);  // that the cells follow
     std::vector<std::string> notes;

@@ -111,9 +111,9 @@ class NewCells(unittest.TestCase):
                 if "new cells" in line:
                     program.send_signal(signal.SIGINT)
         self.assertEqual(program.returncode, 130)
-        with h5py.File(other) as result:
+        with h5py.File(other) as result, h5py.File(self.result) as whole:
             self.assertGreaterEqual(len(result["epochs"]), 1)
-            self.assertLess(len(result["haptic/tick"]), 249)
+            self.assertLess(len(result["haptic/tick"]), len(whole["haptic/tick"]))
         run(self.scene, other, "--resume", "--quiet")
         self.assertEqual(subprocess.run([ARGIL, "compare", self.result, other], capture_output=True).returncode, 0)
 
@@ -176,8 +176,8 @@ class NewCellsOfAHorn(NewCells):
     def test_follow_the_tool_and_let_go(self):
         with h5py.File(self.result) as result:
             self.assertTrue((result["physics/limited_tets"][:] == 0).all())
-            frames = list(result["frames"].values())
-            self.assertGreater(frames[-1]["position"][:, 2].max(), self.BALL + 0.5 * self.WAY)
+            held = [frame for frame in result["frames"].values() if frame.attrs["tick"] < 400]
+            self.assertGreater(held[-1]["position"][:, 2].max(), self.BALL + 0.5 * self.WAY)
             self.assertEqual(np.linalg.norm(result["haptic/force"][-1]), 0)
 
 
