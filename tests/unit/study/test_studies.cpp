@@ -220,7 +220,8 @@ TEST_F(Study, ChartCountsAllPassesOfARunToAnAccuracyAndComparesWhatItMade) {
   by_hand.precision(17);
   by_hand << R"({"name": "by hand", "settings": {"/dynamics/element": "p2", "/body/cells/kind": "graded",)"
           << R"("/body/cells/near_tool_m": )" << made.body.cells.near_tool
-          << R"(, "/body/shape/target_tets": )" << made.body.target_tets << "}}";
+          << R"(, "/body/shape/target_tets": )" << made.body.target_tets
+          << R"(, "/haptics/physics_period_ticks": )" << made.params.rates.physics_period_ticks << "}}";
   ASSERT_EQ(chart(make(by_hand.str())), run::kDone);
   for (const char* column : {"force_error", "displacement_error", "steps"})
     EXPECT_EQ(table().at(2).at(column), asked.at(column)) << column;
