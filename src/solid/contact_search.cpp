@@ -199,16 +199,12 @@ void start_alone(std::span<const PointStiffness> contacts, const Points& v, doub
     if (contacts[i].is_near) activity.acts[i] = 0;
   }
   if (!has_friction) return;
-  const auto find_way = [&](const PointStiffness& contact) {
-    Vec3 mean = Vec3::Zero();
-    for (std::size_t k = 0; k < contact.count(); ++k) mean += contact.weight[k] * v.col(contact.vertex[k]);
-    return Vec3(step_s * mean);
-  };
   activity.friction.resize(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i)
     if (contacts[i].friction > 0.0)
-      activity.friction[i] = make_friction(contacts[i], find_limit(contacts, i, trial),
-                                           compute_trial(contacts[i], find_way(contacts[i])), Slip::secant);
+      activity.friction[i] =
+          make_friction(contacts[i], find_limit(contacts, i, trial),
+                        compute_trial(contacts[i], step_s * find_mean(contacts[i], v)), Slip::secant);
 }
 
 void choose_alone(const StepContacts& contacts, const Points& x, ContactActivity& activity) {

@@ -20,6 +20,12 @@ void ContactActivity::start(std::span<const PointStiffness> contacts, const Poin
   if (are_alone) start_alone(contacts, v, step_s, *this);
 }
 
+Vec3 find_mean(const PointStiffness& contact, const Points& u) {
+  Vec3 mean = Vec3::Zero();
+  for (std::size_t k = 0; k < contact.count(); ++k) mean += contact.weight[k] * u.col(contact.vertex[k]);
+  return mean;
+}
+
 Vec3 compute_trial(const PointStiffness& contact, const Vec3& u) {
   const Vec3 trial = contact.force - contact.stiffness * u;
   const Vec3 pressing = contact.normal.dot(trial) * contact.normal;
@@ -98,8 +104,7 @@ void add_contact_product(const StepContacts& contacts, const ContactActivity& ac
   for (std::size_t i = 0; i < contacts.list.size(); ++i) {
     const PointStiffness& c = contacts.list[i];
     if (!activity.is_acting(c.group)) continue;
-    Vec3 mean = Vec3::Zero();
-    for (std::size_t k = 0; k < c.count(); ++k) mean += c.weight[k] * u.col(c.vertex[k]);
+    const Vec3 mean = find_mean(c, u);
     if (c.friction > 0.0)
       spread(c, scale * (contacts.stiffness(i, activity) * mean), force);
     else

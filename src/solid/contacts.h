@@ -49,6 +49,9 @@ struct ContactActivity {
   bool is_acting(int group) const { return group < 0 || acts[static_cast<std::size_t>(group)] != 0; }
 };
 
+/// Σ wᵢ uᵢ over the nodes that a contact presses; u: 3×n.
+Vec3 find_mean(const PointStiffness& contact, const Points& u);
+
 /// What a contact would exert once its point has moved by u [m], if it could draw, and its friction had no
 /// limit [N].
 Vec3 compute_trial(const PointStiffness& contact, const Vec3& u);

@@ -66,7 +66,7 @@ void PoreWater::book(double mass) {
   (mass > 0.0 ? m_state.added : m_state.removed).add(std::abs(mass));
 }
 
-/// From here to close_wall() the touched boundary is not sealed.
+/// From here to the end of move() the touched boundary is not sealed.
 void PoreWater::open_wall(const Touch& touch) {
   m_wall_saturation = touch.sign > 0 ? 1.0 : 0.0;
   m_wall_flux = (touch.sign > 0 ? m_params.wetting_flux : m_params.drying_flux) /
