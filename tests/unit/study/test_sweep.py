@@ -250,19 +250,29 @@ class Sweep(unittest.TestCase):
             file.write(bytes(512))
 
     def kill_after_a_checkpoint(self, part):
-        process = subprocess.Popen([ARGIL, "sweep", "run", self.points, "--index", "0"], cwd=self.folder)
-        for _ in range(6000):
-            time.sleep(0.01)
-            try:
-                with h5py.File(part, "r", locking=False) as file:
-                    if "checkpoint" in file:
-                        break
-            except OSError:
-                pass  # not there, or between two flushes
-        process.kill()
-        process.wait()
+        for _ in range(10):  # as often as the run comes to its end before it is looked at
+            process = subprocess.Popen([ARGIL, "sweep", "run", self.points, "--index", "0"], cwd=self.folder)
+            while process.poll() is None and not self.has_checkpoint(part):
+                time.sleep(0.001)
+            process.kill()
+            process.wait()
+            if part.exists():
+                break
+            (self.folder / "points" / "000000.h5").unlink()
         self.assertTrue(part.exists())
         subprocess.run([ARGIL, "info", part], check=True, capture_output=True)  # finishes a flush that the kill broke off
+
+    def has_checkpoint(self, part):
+        try:
+            with h5py.File(part, "r", locking=False) as file:
+                return "checkpoint" in file
+        except OSError:
+            return False  # not there, or between two flushes
+
+    def stop(self, process):
+        """Returns when it stands still: the signal alone does not wait for that."""
+        process.send_signal(signal.SIGSTOP)
+        self.wait_until(lambda: Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()[0] == "T")
 
     def test_what_is_there_of_a_point_is_gone_on_with_unless_it_is_damaged(self):
         self.expand(list=[{"/output/checkpoint_period_ticks": 20}])
@@ -379,7 +389,7 @@ class Sweep(unittest.TestCase):
         process = self.start()
         part = self.folder / "points" / "000000.part.h5"
         self.wait_until(part.exists)
-        process.send_signal(signal.SIGSTOP)
+        self.stop(process)
         before = self.files()
         error = self.call("run", self.points, "--index", 0, expected=4)
         self.assertIn("point 0 is being computed by another process", error)
