@@ -76,6 +76,8 @@ void BodySide::serialize(Archive& archive) {
   m_materials.serialize(archive);
   solid::serialize(archive, m_solid, m_region, m_state.solid);
   m_flow.serialize(archive);
+  if (m_solid.model.params.flows_in_solve && !m_solid.elastic.is_empty())
+    archive.list("flow/unloads", m_solid.system.unloads);
   if (m_body.epoch > 0) archive.any_size("flow/earlier", m_earlier_flow);
   m_economy.serialize(archive);
   m_error.serialize(archive);

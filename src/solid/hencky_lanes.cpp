@@ -155,12 +155,12 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
 namespace {
 
 /// Perfectly plastic flow takes what a change of ε along dev ε_e would add to the stress, 2μ n nᵀ with n =
-/// dev ε_e over its norm: of tets at their yield. Not quite all of it, so that the tangent stays positive.
+/// dev ε_e over its norm: of tets at their yield that do not leave it. Not quite all of it, so that the
+/// tangent stays positive.
 ARGIL_INLINE void set_spent(const TangentArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end,
                             const ElasticStretch<Lanes>& stretch, const Lanes& mu,
                             PrincipalTangent<Lanes>& tangent) {
   constexpr double kMost = 0.98;
-  constexpr double kAtYield = 1.0 - 1e-6;
   const Lanes zero = {};
   Lanes yield, squares = {}, deviator[3];
   read_lanes<1>(tets.yield, begin, end - 1, &yield);
@@ -168,7 +168,9 @@ ARGIL_INLINE void set_spent(const TangentArrays& tets, std::ptrdiff_t begin, std
     deviator[i] = stretch.logarithm[i] - stretch.trace / 3.0;
     squares += deviator[i] * deviator[i];
   }
-  const Lanes flows = squares >= kAtYield * kAtYield * (yield * yield) ? zero + 1.0 : zero;
+  Lanes flows = squares >= kAtYield * kAtYield * (yield * yield) ? zero + 1.0 : zero;
+  for (std::ptrdiff_t p = begin; tets.unloads && p < end; ++p)
+    if (tets.unloads[p] != 0) flows[p - begin] = 0.0;
   if (!any(flows)) return;
   Lanes least = tangent.normal[0];
   for (int i = 1; i < 3; ++i) least = tangent.normal[i] < least ? tangent.normal[i] : least;

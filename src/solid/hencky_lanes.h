@@ -26,6 +26,9 @@ struct FlowArrays {
 /// flowed. released: ‖dev ε‖² that each loses. No point flows to ‖E_p‖ > 8.
 unsigned flow_by_hencky(const FlowArrays& points, std::ptrdiff_t begin, std::ptrdiff_t end, double* released);
 
+/// Share of the yield from which a point's stiffness is that of one that flows.
+inline constexpr double kAtYield = 1.0 - 1e-6;
+
 /// Their stiffness.
 void compute_hencky_stiffness(const TangentArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
 

@@ -51,7 +51,8 @@ void set_pairs(Body& body, const Part& part, bool all) {
                              share.exact,
                              share.kept,
                              is_quadratic ? system.point_pairs.data() : system.pairs.data(),
-                             body.model.params.flows_in_solve ? body.materials.yield().data() : nullptr};
+                             body.model.params.flows_in_solve ? body.materials.yield().data() : nullptr,
+                             system.unloads.data()};
   const auto set = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     const auto is_changed = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
       const auto first = system.is_tet_changed.begin() + from, last = system.is_tet_changed.begin() + to;

@@ -12,6 +12,7 @@
 #include "solid/move.h"
 #include "solid/newton.h"
 #include "solid/solve.h"
+#include "solid/unloading.h"
 
 namespace argil::solid {
 namespace {
@@ -95,6 +96,7 @@ StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loa
     set_iterate(body, region.part(), 1.0);
     solved = settle_contacts(body, region.part(), loads.contacts);
   }
+  solved = solved && !find_unloading(body, region.part());
   if (!solved) set_iterate(body, region.part(), 0.0);  // the same step anew
   return StepStatus::ok();
 }
@@ -118,6 +120,7 @@ bool assemble(Body& body, ActiveRegion& region, const StepLoads& loads) {
   region.wake(loads);
   assemble_residual(body, region.part(), loads);
   if (body.is_explicit()) return false;
+  if (body.newton.iterations == 0) begin_unloading(body, region.part());
   body.system.is_projected = true;
   assemble_matrix(body, region.part(), loads.contacts);
   region.grow_by_speed(loads);

@@ -77,6 +77,7 @@ System::System(const Model& model, const Materials& materials) {
     nodal_product = make_nodal_product(model, materials);
   make_pattern(model, materials, *this);
   is_tet_changed.resize(static_cast<std::size_t>(model.elements.num_tets()), 1);
+  unloads.resize(static_cast<std::size_t>(model.elements.num_points()), 0);
   is_row_stale.resize(static_cast<std::size_t>(model.num_free()), 1);
   if (model.keeps_tet_stiffness()) {
     const Elements& elements = model.elements;

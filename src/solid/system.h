@@ -26,6 +26,8 @@ struct System {
   std::vector<int> block_of_corner_pair;  ///< N² a tet: place of block (i, j), −1 where there is none
   MatrixShares stored_shares;             ///< of the matrix that is stored
   std::vector<char> is_tet_changed;       ///< its stiffness or frame, since then
+  std::vector<char> unloads;              ///< 1 a point: is elastic although at its yield (unloading.h)
+  int unloading_rounds = 0;               ///< of the step
   std::vector<char> is_row_stale;         ///< holds something that the next matrix may not
   Eigen::Matrix<double, 81, Eigen::Dynamic> tangent;  ///< ∂P/∂F of each point, where it is wanted [Pa]
   Eigen::Matrix<double, 9, Eigen::Dynamic>

@@ -123,6 +123,7 @@ struct TangentArrays {
   double kept = 0.0;                       ///< and the stiffness of the shape at rest, turned by R
   double* blocks = nullptr;                ///< kPairBlocks 3×3 a point, of the pairs of its corners
   const double* yield = nullptr;           ///< ‖dev ε_e‖ at which a point flows; null: none does
+  const char* unloads = nullptr;           ///< 1 a point: leaves its yield, and is elastic
 };
 
 /// Stiffness of points of a law that is quadratic in the strain of their frame.

@@ -180,6 +180,12 @@ class NewCellsOfAHorn(NewCells):
             self.assertGreater(held[-1]["position"][:, 2].max(), self.BALL + 0.5 * self.WAY)
             self.assertEqual(np.linalg.norm(result["haptic/force"][-1]), 0)
 
+    def test_lose_no_more_energy_than_they_had_once_let_go(self):
+        with h5py.File(self.result) as result:
+            energy = sum(result["physics"][name][:] for name in ("kinetic_energy", "elastic_energy", "plastic_dissipation"))
+            held = result["physics/tick"][:] < 400
+            self.assertLessEqual(energy[-1], energy[held][-1])
+
 
 class NewCellsOfTenNodes(NewCells):
     ELEMENT, NEAR = "p2", 0.0024

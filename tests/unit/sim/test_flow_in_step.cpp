@@ -1,4 +1,5 @@
-// Clay that flows under a ball at the speed of a hand: steps of a millisecond feel it as steps of a tenth do.
+// Clay that flows under a ball at the speed of a hand: steps of a millisecond feel it as steps of a tenth do,
+// and it is let go without harm.
 #include <gtest/gtest.h>
 
 #include "contact/tool_shape.h"
@@ -21,8 +22,7 @@ double depth_at(double t) {
   return t < kIn + kHeld ? kDeepest : kDeepest - kSpeed * (t - kIn - kHeld);
 }
 
-/// Force at the hand at the end of each millisecond [N].
-std::vector<double> press(int ticks_per_ms) {
+Params make_params(int ticks_per_ms) {
   Params p;
   p.elastic = {1.2e6, 0.3};
   p.plasticity.form = material::FlowForm::j2;
@@ -34,16 +34,27 @@ std::vector<double> press(int ticks_per_ms) {
   p.rates.haptic_period = 1e-3 / ticks_per_ms;
   p.rates.water_period_ticks = 1;
   p.device.max_force = 1e3;
-  const auto sample = [](double t) {
-    device::DeviceSample at;
-    at.position = {0.0212, 0.0195, kTop + kRadius - depth_at(t)};
-    return at;
-  };
-  Simulation simulation(test::make_block_body(10, 10, 5, Vec3(0.04, 0.04, kTop)),
-                        contact::make_sphere_tool(kRadius, 2), p, sample(-1e-3));
+  return p;
+}
+
+device::DeviceSample place_at(double depth) {
+  device::DeviceSample at;
+  at.position = {0.0212, 0.0195, kTop + kRadius - depth};
+  return at;
+}
+
+Simulation make_press(const Params& p) {
+  return Simulation(test::make_block_body(10, 10, 5, Vec3(0.04, 0.04, kTop)),
+                    contact::make_sphere_tool(kRadius, 2), p, place_at(depth_at(-1e-3)));
+}
+
+/// Force at the hand at the end of each millisecond [N].
+std::vector<double> press(int ticks_per_ms) {
+  const Params p = make_params(ticks_per_ms);
+  Simulation simulation = make_press(p);
   std::vector<double> forces;
   for (int k = 1; k <= 110 * ticks_per_ms; ++k) {
-    EXPECT_TRUE(simulation.tick(sample(k * p.rates.haptic_period)).is_ok()) << k;
+    EXPECT_TRUE(simulation.tick(place_at(depth_at(k * p.rates.haptic_period))).is_ok()) << k;
     if (k % ticks_per_ms == 0) forces.push_back(simulation.hand_state().hand_force.z());
   }
   return forces;
@@ -62,6 +73,37 @@ TEST(FlowInAStep, IsFeltInStepsOfAMillisecondAsInMuchShorterOnes) {
   EXPECT_LT(std::sqrt(squares / static_cast<double>(fine.size())), 0.01 * peak);
   EXPECT_LT(largest, 0.04 * peak);
 }
+
+/// Steps make the more of a misjudged stiffness the longer they are.
+class LetGo : public testing::TestWithParam<int> {};
+
+TEST_P(LetGo, ClayAtItsYieldLosesNoMoreEnergyThanItHad) {
+  Params p = make_params(1);
+  p.rates.physics_period_ticks = p.rates.water_period_ticks = GetParam();
+  p.contact.grip_strength = 1e9;
+  Simulation simulation = make_press(p);
+  const auto go = [&](double from, double to, int ticks, device::ToolMode mode) {
+    for (int k = 1; k <= ticks; ++k) {
+      device::DeviceSample at = place_at(from + (to - from) * k / ticks);
+      at.mode = mode;
+      ASSERT_TRUE(simulation.tick(at).is_ok()) << k;
+    }
+  };
+  go(0.0, kDeepest, 60, device::ToolMode::push);
+  go(kDeepest, -2.0 * kDeepest, 120, device::ToolMode::pull);  // clay follows, and flows
+  const PhysicsRecord held = simulation.physics_record();
+  ASSERT_LT(simulation.hand_state().hand_force.z(), -1.0);
+  ASSERT_GT(held.plastic_dissipation, held.elastic_energy);
+  go(-0.02, -0.02, 120, device::ToolMode::push);  // gone
+  const PhysicsRecord left = simulation.physics_record();
+  EXPECT_NEAR(left.contact_work, held.contact_work, 1e-9 * held.contact_work);
+  EXPECT_LE(left.plastic_dissipation + left.elastic_energy + left.kinetic_energy,
+            held.plastic_dissipation + held.elastic_energy + held.kinetic_energy);
+  EXPECT_LT(left.kinetic_energy, 1e-6 * held.elastic_energy);  // and is at rest
+}
+
+INSTANTIATE_TEST_SUITE_P(Steps, LetGo, testing::Values(1, 2, 5),
+                         [](const auto& ticks) { return std::to_string(ticks.param) + "_ms"; });
 
 }  // namespace
 }  // namespace argil::sim

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "solid/body.h"
+#include "solid/part.h"
+
+namespace argil::solid {
+
+/// Points at their yield resist a step as they flow, but those that it takes back from there, which do so as
+/// elastic ones. Does the present iterate take n : dε of them, n along their elastic strain, below zero? At a
+/// step's start, by the speed of the last one. Elastic strains must be known.
+void begin_unloading(Body& body, const Part& part);
+
+/// By a solution. True where it takes points back that were to flow: the same step is to be solved anew.
+/// Those that were not to flow stay elastic for this step.
+bool find_unloading(Body& body, const Part& part);
+
+}  // namespace argil::solid
