@@ -1,10 +1,13 @@
 #include "scenario/fix_and_load.h"
 
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "base/error.h"
 #include "base/print.h"
+#include "embed/triangle_tree.h"
 #include "scenario/faults.h"
 #include "solid/rigid_motion.h"
 
@@ -35,17 +38,55 @@ solid::Region find_region(const Scenario& s, const std::string& pointer, solid::
   return region;
 }
 
+/// Where the body's vertices lie, and, of a body that is fitted to a surface, where that is nearest to those
+/// of its boundary: cells follow a flat face to a share of their size, a region means the face.
+class VertexPlaces {
+ public:
+  VertexPlaces(const Scenario& s, const sim::Body& body) : m_own(body.mesh.vertices) {
+    const bool is_fitted =
+        body.skin.num_triangles() > 0 && s.body.fit == embed::Fit::surface && s.body.cage_file.empty();
+    if (!is_fitted || body.topology.boundary.cols() == 0) return;
+    const embed::TriangleTree surface(body.skin);
+    m_on_surface = m_own;
+    for (const int v : body.topology.boundary.reshaped())
+      m_on_surface.col(v) = surface.find_nearest(m_own.col(v), std::numeric_limits<double>::infinity()).point;
+  }
+  /// By either of their places.
+  std::vector<int> find_in(const solid::Region& region) const {
+    std::vector<int> found = solid::find_nodes(m_own, std::span(&region, 1));
+    if (m_on_surface.cols() == 0) return found;
+    const std::vector<int> more = solid::find_nodes(m_on_surface, std::span(&region, 1));
+    found.insert(found.end(), more.begin(), more.end());
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+  }
+  /// The same vertices, as a list where a surface has a say in which they are.
+  solid::Region resolve(const solid::Region& region) const {
+    if (m_on_surface.cols() == 0) return region;
+    solid::Region list;
+    list.kind = solid::Region::Kind::nodes;
+    list.nodes = find_in(region);
+    return list;
+  }
+
+ private:
+  const Points& m_own;
+  Points m_on_surface;  // empty: of no body that is fitted
+};
+
 /// Adds the supports to the body as they are before its cells are graded.
 void take_supports(const Scenario& s, const Scene& scene, int num_given, std::vector<solid::Support>& out,
                    Faults& faults) {
   const Points& vertices = scene.body.mesh.vertices;
+  const VertexPlaces places(s, scene.body);
   for (std::size_t i = 0; i < s.body.fixed.size(); ++i)
     faults.check([&] {
       const std::string pointer = "/body/fixed/" + std::to_string(i);
       solid::Support support = s.body.fixed[i];
       support.region = find_region(s, pointer, std::move(support.region), scene.file_vertices, num_given);
       out.push_back(support);
-      if (!solid::find_nodes(vertices, std::span(&support.region, 1)).empty()) return;
+      if (!places.find_in(support.region).empty()) return;
       const Vec3 low = vertices.rowwise().minCoeff();
       const Vec3 high = vertices.rowwise().maxCoeff();
       throw InputError(
@@ -69,7 +110,11 @@ void fix_and_load(const Scenario& s, const Halvings& halvings, Scene& scene) {
   Faults faults(s.file);
   body.supports.clear();
   take_supports(s, scene, num_given, body.supports, faults);
-  for (solid::Support& support : body.supports) halvings.renumber_with_middles(support.region.nodes);
+  const VertexPlaces places(s, body);
+  for (solid::Support& support : body.supports) {
+    halvings.renumber_with_middles(support.region.nodes);
+    support.region = places.resolve(support.region);
+  }
   body.loads = s.body.loads;
   for (std::size_t i = 0; i < s.body.loads.nodal.size(); ++i)
     faults.check([&] {
@@ -84,6 +129,7 @@ void fix_and_load(const Scenario& s, const Halvings& halvings, Scene& scene) {
       solid::Region& region = body.loads.pressure[i].region;
       region = find_region(s, pointer, region, scene.file_vertices, num_given);
       halvings.renumber_with_middles(region.nodes);
+      region = places.resolve(region);
       if (solid::find_faces(body.mesh.vertices, body.topology.boundary, region).empty())
         throw InputError(s.file, pointer, "holds no boundary face of the body",
                          "widen it so that all three corners of a face lie in it");

@@ -1,6 +1,7 @@
 // Cells that are small where the tool comes: where, how small, how many, and what stays as it was.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -43,6 +44,34 @@ const std::string* find_note(const scenario::Scene& scene, const std::string& wo
   for (const std::string& note : scene.notes)
     if (note.find(words) != std::string::npos) return &note;
   return nullptr;
+}
+
+/// Area of the body's lower faces whose corners all are held, over that of the block [–].
+double find_held_share(const sim::Body& body, double edge) {
+  const std::vector<int> held = solid::find_nodes(body.mesh.vertices, std::span(&body.supports[0].region, 1));
+  double area = 0.0;
+  for (const auto& v : body.topology.boundary.colwise()) {
+    const Vec3 a = body.mesh.vertices.col(v(0));
+    const Vec3 normal = (body.mesh.vertices.col(v(1)) - a).cross(body.mesh.vertices.col(v(2)) - a);
+    const bool is_held = std::all_of(v.begin(), v.end(),
+                                     [&](int n) { return std::binary_search(held.begin(), held.end(), n); });
+    if (is_held && normal.z() < 0.0) area -= 0.5 * normal.z();
+  }
+  return area / (edge * edge);
+}
+
+TEST_F(GradedCells, OfABlockAreHeldByThePlaneOfItsFaceWhetherTheyFollowItExactlyOrASkin) {
+  // The cells of a skin follow a flat face to a share of their size, all of them to one side of it.
+  constexpr double kEdge = 0.03;
+  for (const char* skin : {"0", "800", "8000"}) {
+    const scenario::Scene scene =
+        build({"/body/shape/kind=box", "/body/shape/size_m=0.03", "/body/shape/fit=surface",
+               "/body/cells/kind=graded", "/body/shape/target_tets=3000",
+               std::string("/body/shape/skin_triangles=") + skin,
+               R"(/body/fixed=[{"kind": "plane", "normal": [0, 0, 1], "offset_m": 0}])"},
+              0.034);
+    EXPECT_NEAR(find_held_share(scene.body, kEdge), 1.0, 0.1) << skin;
+  }
 }
 
 TEST_F(GradedCells, ArePlacedAtTheDeepestContactWithHertzsRadius) {
