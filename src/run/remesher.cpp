@@ -20,8 +20,8 @@ constexpr Wear kFourNodes = {8, 0.05};
 constexpr Wear kTenNodes = {2, 0.02};
 // Of the worst tet, mesh::compute_shape: below which cells are renewed while nothing touches the body,
 // and while something does.
-constexpr double kWorn = 0.12;
-constexpr double kSpoilt = 0.1;
+constexpr double kWorn = 0.24;
+constexpr double kSpoilt = 0.2;
 constexpr double kWait = 0.25;  // [s] after a shape that gave no cells
 
 }  // namespace

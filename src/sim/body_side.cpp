@@ -97,9 +97,10 @@ void BodySide::begin_strained(const TensorField& elastic) {
 }
 
 /// By turns to the elastic equilibrium, which is the nearest stress in balance, and to the nearest within the
-/// strength; both sets are convex, so that the turns lead to a stress in both, where there is one.
+/// strength; both sets are convex, so that the turns lead to a stress in both, where there is one. Sooner where
+/// each return goes on beyond [Agmon1954].
 void BodySide::balance(const Points& contact_force) {
-  constexpr int kTurns = 6;
+  constexpr int kTurns = 20;
   constexpr double kEnough = 1e-3;  // past the strength
   const Points v = m_state.solid.v;
   const Points force = m_force.loads() + contact_force;
@@ -116,8 +117,9 @@ void BodySide::balance(const Points& contact_force) {
   }
 }
 
-/// Returns by what share the farthest was beyond.
+/// And on as far again, all but a fifth. Returns by what share the farthest was beyond.
 double BodySide::limit_to_strength(TensorField& elastic) const {
+  constexpr double kFarther = 1.8;
   double farthest = 0.0;
   for (Eigen::Index point = 0; point < elastic.cols(); ++point) {
     Vec6 deviator = elastic.col(point);
@@ -126,7 +128,7 @@ double BodySide::limit_to_strength(TensorField& elastic) const {
     const double norm = deviator.norm();
     if (!(norm > yield)) continue;
     farthest = std::max(farthest, norm / yield - 1.0);
-    elastic.col(point) -= (1.0 - yield / norm) * deviator;
+    elastic.col(point) -= kFarther * (1.0 - yield / norm) * deviator;
   }
   return farthest;
 }

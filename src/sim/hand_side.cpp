@@ -17,7 +17,8 @@ HandState::HandState(const Params& params)
 
 HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const ContactSurface& surface,
                    BodySide& body, const device::DeviceSample& start)
-    : m_params(params),
+    : m_tool(tool),
+      m_params(params),
       m_surface(surface),
       m_body(body),
       m_state(params),
@@ -79,6 +80,22 @@ void HandSide::go_on_from(const HandSide& before, const Points& x) {
   m_pressure->stiffness() = m_body.find_surface_stiffness();
   place_surface(x);
   commit();
+}
+
+std::vector<PressedPoint> HandSide::find_pressed() {
+  if (!m_pressure || keeps_shape() || m_grip.holds() || m_state.num_contacts == 0) return {};
+  contact::Contacts contacts;
+  m_pressure->prepare(m_touched.x_t1());
+  m_pressure->find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.contact_tool, m_state.yielding,
+                            contacts);
+  m_pressure->forget();
+  return list_pressed(contacts, m_surface.triangles(), m_touched.x_t1(), m_pressure->stiffness().per_area);
+}
+
+Points HandSide::put_under_tool(const std::vector<PressedPoint>& before, const Points& x) {
+  contact::ToolSolid tool = contact::make_tool_solid(m_params.contact.round_tool, m_tool);
+  return keep_pressure(before, {tool, m_state.contact_tool, m_state.hand_force.norm()}, m_surface.triangles(),
+                       x, *m_pressure);
 }
 
 Points HandSide::find_contact_force() {

@@ -13,6 +13,7 @@
 #include "sim/contact_surface.h"
 #include "sim/force_between_steps.h"
 #include "sim/grip.h"
+#include "sim/kept_pressure.h"
 #include "sim/params.h"
 #include "sim/record.h"
 #include "sim/stage.h"
@@ -69,6 +70,11 @@ class HandSide {
   void place_surface(const Points& x);
   /// Goes on as the hand of a body whose surface, now at `x`, has other vertices besides those it had.
   void go_on_from(const HandSide& before, const Points& x);
+  /// What it presses on now; empty where nothing yields to it, or it holds.
+  std::vector<PressedPoint> find_pressed();
+  /// A surface at `x` is put under the tool so that it presses as it did before (keep_pressure). Returns
+  /// where its vertices are then.
+  Points put_under_tool(const std::vector<PressedPoint>& before, const Points& x);
   /// On the body, 3×n nodes [N]: pressures where the tool is now, scaled to the force that the hand feels.
   Points find_contact_force();
   /// Does the tool touch or lie in a body whose surface is at x?
@@ -119,6 +125,7 @@ class HandSide {
   void serialize_contacts(Archive& archive);
   void serialize_springs(Archive& archive);
 
+  const mesh::TriangleMesh& m_tool;
   const Params& m_params;
   const ContactSurface& m_surface;
   BodySide& m_body;

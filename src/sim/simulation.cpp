@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "base/check.h"
-#include "sim/remap.h"
 
 namespace argil::sim {
 
@@ -23,17 +22,31 @@ void Simulation::set_sides(std::unique_ptr<Sides> sides) {
   observe_stages(m_observer);
 }
 
+std::unique_ptr<Simulation::Sides> Simulation::make_next_sides(Body body, const RemappedState& clay) {
+  auto sides = std::make_unique<Sides>(std::move(body), m_tool, m_params, device::DeviceSample{});
+  sides->body.go_on_from(body_side(), clay);
+  Points x;
+  sides->body.surface().find_positions(sides->body.state().solid.x, x);
+  sides->hand.go_on_from(hand(), x);
+  return sides;
+}
+
 bool Simulation::renew_cells(Body body) {
   constexpr double kLeastVolume = 0.05;  // of a tet, over that at rest
   const RemappedState clay = remap(this->body(), solid(), body_state().solid.x, pore_water().saturation(),
                                    body_side().find_flow(), body);
   const double most = 1.0 / std::max(kLeastVolume, m_params.solid.min_volume_ratio);
   if (!clay.elastic.allFinite() || !(body.rest_volume_ratio.maxCoeff() < most)) return false;
-  auto sides = std::make_unique<Sides>(std::move(body), m_tool, m_params, device::DeviceSample{});
-  sides->body.go_on_from(body_side(), clay);
-  Points x;
-  sides->body.surface().find_positions(sides->body.state().solid.x, x);
-  sides->hand.go_on_from(hand(), x);
+  std::unique_ptr<Sides> sides = make_next_sides(std::move(body), clay);
+  const bool has_own_surface = sides->body.body().touched.num_triangles() > 0;
+  if (const std::vector<PressedPoint> pressed = hand().find_pressed(); has_own_surface && !pressed.empty()) {
+    Body laid = sides->body.body();
+    laid.touched = {sides->hand.put_under_tool(pressed, sides->hand.surface_x()),
+                    sides->body.surface().triangles()};
+    laid.touched_embedding =
+        embed::make_embedding(laid.mesh, laid.touched.vertices, "the clay", embed::kAnyBeyond);
+    sides = make_next_sides(std::move(laid), clay);
+  }
   set_sides(std::move(sides));
   body_side().balance(hand().find_contact_force());
   body_side().set_flow(clay.flow);

@@ -5,6 +5,7 @@
 
 #include "sim/body_side.h"
 #include "sim/hand_side.h"
+#include "sim/remap.h"
 #include "sim/tick.h"
 
 namespace argil::sim {
@@ -90,6 +91,8 @@ class Simulation final : private BodySteps {
   void serialize(Archive& archive);
   struct Sides;
   void set_sides(std::unique_ptr<Sides> sides);
+  /// That go on from the present ones with other cells.
+  std::unique_ptr<Sides> make_next_sides(Body body, const RemappedState& clay);
 
   /// Body and hand, who know each other.
   struct Sides {
