@@ -52,7 +52,8 @@ struct argil_plugin {
   /* From now on the hand feels this, also after a release. */
   void (*write)(void* device, const double force[3], const double torque[3]);
   /* Zero force at once, until the next write. Called at any time between open and close by any thread, also
-   * while another is in read or write, and by a signal handler: it takes no lock and does not wait. */
+   * while another is in read or write, and by a signal handler: it takes no lock. It may wait for 5 ms until a
+   * thread of the library has told the device, because the process may end right after it. */
   void (*release)(void* device);
   void (*close)(void* device);
 };
