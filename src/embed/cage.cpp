@@ -11,11 +11,13 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "embed/bent_edges.h"
 #include "embed/embedding.h"
 #include "embed/mesh_parts.h"
 #include "embed/skin_shape.h"
 #include "embed/tet_locator.h"
 #include "embed/triangle_tree.h"
+#include "mesh/curved.h"
 #include "mesh/quality.h"
 #include "mesh/topology.h"
 #include "shapes/implicit.h"
@@ -172,11 +174,13 @@ Cage finish(mesh::TetMesh mesh, double cell_size, const mesh::TriangleMesh& surf
   report.median_distance = distances[distances.size() / 2];
   report.max_distance = distances.back();
   report.max_skin_distance = list_distances(skin.vertices, TriangleTree({mesh.vertices, boundary})).back();
-  if (is_closed(surface)) report.volume_ratio = quality.volume / compute_skin_volume(surface);
+  if (is_closed(surface))
+    report.volume_ratio = mesh::compute_rest_volumes(mesh).sum() / compute_skin_volume(surface);
   report.num_vertices = surface.num_vertices();
   const TetLocator locator(mesh);
   for (const auto& x : surface.vertices.colwise())
     report.enclosed_vertices += locator.find(x).tet >= 0 ? 1 : 0;
+  mesh.edge_nodes.clear();
   cage.mesh = std::move(mesh);
   return cage;
 }
@@ -262,8 +266,11 @@ class CageSearch {
 
  private:
   Cage finish_body(mesh::TetMesh mesh) {
-    if (is_fitted()) mesh = fit_volume(std::move(mesh));
-    return finish(std::move(mesh), m_cell_size, m_surface, m_skin, m_tree);
+    double level = 0.0;
+    if (is_fitted()) mesh = fit_volume(std::move(mesh), level);
+    Cage cage = finish(std::move(mesh), m_cell_size, m_surface, m_skin, m_tree);
+    cage.report.level = level;
+    return cage;
   }
 
   bool is_fitted() const { return m_options.fit == Fit::surface; }
@@ -281,18 +288,23 @@ class CageSearch {
         m_tree, m_skin.vertices, m_options.fit, m_offset.maxCoeff() * m_cell_size, level, m_cell_size);
     require_room(surface, m_cell_size, m_options.most_cubes, m_name);
     mesh::TetMesh mesh = shapes::stuff_isosurface(surface, m_cell_size);
-    return leaves_thin() ? take_largest_part(mesh) : mesh;
+    if (leaves_thin()) mesh = take_largest_part(mesh);
+    if (is_fitted() && m_options.bends_edges && mesh.num_tets() > 0)
+      mesh::curve_boundary(
+          [this, level](const Vec3& a, const Vec3& b) { return find_bent_middle(m_tree, level, a, b); },
+          mesh::make_topology(mesh), mesh);
+    return mesh;
   }
 
   /// Flat facets cut off what is round, and lattices sharp edges: moves the boundary as far as gives the body
-  /// the volume of its surface, if that is closed.
-  mesh::TetMesh fit_volume(mesh::TetMesh mesh) {
+  /// the volume of its surface, if that is closed. `level` [m]: how far.
+  mesh::TetMesh fit_volume(mesh::TetMesh mesh, double& level) {
     constexpr int kTries = 4;
     constexpr double kCloseEnough = 1e-3;
     constexpr double kMostLevel = 0.15;  // in cube edges
     if (!is_closed(m_surface) || m_offset.maxCoeff() > 0.0) return mesh;
     const double wanted = compute_skin_volume(m_surface);
-    double error = mesh::compute_volumes(mesh.vertices, mesh.tets).sum() - wanted;
+    double error = mesh::compute_rest_volumes(mesh).sum() - wanted;
     if (leaves_thin() && !(std::abs(error) < kMostThin * wanted))
       throw InputError(m_name, "target_tets", "much of the surface is thinner than a cell",
                        "ask for more tets");
@@ -302,12 +314,11 @@ class CageSearch {
       slope += 0.5 * (mesh.vertices.col(t(1)) - mesh.vertices.col(t(0)))
                          .cross(mesh.vertices.col(t(2)) - mesh.vertices.col(t(0)))
                          .norm();
-    double level = 0.0;
     for (int i = 0; i < kTries && std::abs(error) > kCloseEnough * wanted; ++i) {
       const double next = level - error / slope;
       if (!(std::abs(next) < kMostLevel * m_cell_size)) break;
       mesh::TetMesh moved = stuff(next);
-      const double moved_error = mesh::compute_volumes(moved.vertices, moved.tets).sum() - wanted;
+      const double moved_error = mesh::compute_rest_volumes(moved).sum() - wanted;
       if (!find_bad(moved).empty() || !(std::abs(moved_error) < std::abs(error))) break;
       slope = std::max(0.5 * slope, (moved_error - error) / (next - level));
       level = next;

@@ -18,6 +18,8 @@ struct CageOptions {
   /// Of a fitted body: what is thinner than a cell, and what hangs on it alone, is left out, not thickened.
   bool leaves_thin = false;
   double most_cubes = 1e8;  ///< that the lattice may have in the box of the surface
+  /// Of a fitted body: the edges of its boundary are to bend with the surface, so that less is cut off.
+  bool bends_edges = false;
 };
 
 struct CageReport {
@@ -28,6 +30,7 @@ struct CageReport {
   double max_distance = 0.0;     ///< [m] the largest of these
   double max_skin_distance =
       0.0;                    ///< [m] of the surface's vertices from the boundary: what is lost, or covered
+  double level = 0.0;         ///< [m] by which the boundary was moved out for the body's volume
   double volume_ratio = 0.0;  ///< body over what the surface encloses; 0 where it is not closed
   double min_dihedral_degrees = 0.0;  ///< worst of all tets
   double max_dihedral_degrees = 0.0;

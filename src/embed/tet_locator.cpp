@@ -12,6 +12,12 @@ namespace {
 constexpr double kWeightTolerance = 1e-10;  // round-off of a weight in a tet of the worst shape we accept
 constexpr double kMaxBoxes = 2e7;
 
+TetLocator::Place bend_place(const mesh::CurvedTets& curved, const TetLocator::Place& straight,
+                             const Vec3& x) {
+  const mesh::QuadraticNodes* nodes = straight.tet < 0 ? nullptr : curved.find(straight.tet);
+  return nodes ? TetLocator::Place{straight.tet, mesh::find_in_tet(*nodes, x, straight.weights)} : straight;
+}
+
 }  // namespace
 
 Vec4 compute_barycentric_weights(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& x) {
@@ -26,7 +32,8 @@ Vec4 compute_barycentric_weights(const Vec3& a, const Vec3& b, const Vec3& c, co
   return {1.0 - wb - wc - wd, wb, wc, wd};
 }
 
-TetLocator::TetLocator(const mesh::TetMesh& mesh) : m_vertices(mesh.vertices), m_tets(mesh.tets) {
+TetLocator::TetLocator(const mesh::TetMesh& mesh)
+    : m_vertices(mesh.vertices), m_tets(mesh.tets), m_curved(mesh) {
   ARGIL_ASSERT(mesh.num_tets() > 0);
   m_lower = m_vertices.rowwise().minCoeff();
   const Vec3 extent = m_vertices.rowwise().maxCoeff() - m_lower;
@@ -84,6 +91,10 @@ Vec4 TetLocator::compute_weights(int tet, const Vec3& x) const {
 }
 
 TetLocator::Place TetLocator::find(const Vec3& x) const {
+  return bend_place(m_curved, find_straight(x), x);
+}
+
+TetLocator::Place TetLocator::find_straight(const Vec3& x) const {
   const std::size_t index = box_index(x);
   for (int i = m_begin[index]; i < m_begin[index + 1]; ++i) {
     const int t = m_list[static_cast<std::size_t>(i)];
@@ -94,8 +105,8 @@ TetLocator::Place TetLocator::find(const Vec3& x) const {
 }
 
 TetLocator::Place TetLocator::find_near(const Vec3& x, double beyond) const {
-  Place near = find(x);
-  if (near.tet >= 0) return near;
+  Place near = find_straight(x);
+  if (near.tet >= 0) return bend_place(m_curved, near, x);
   const std::size_t index = box_index(x);
   double highest = -beyond;
   for (int i = m_begin[index]; i < m_begin[index + 1]; ++i) {
@@ -105,14 +116,15 @@ TetLocator::Place TetLocator::find_near(const Vec3& x, double beyond) const {
     highest = weights.minCoeff();
     near = {t, weights};
   }
-  return near;
+  return bend_place(m_curved, near, x);
 }
 
 BoundaryTets::BoundaryTets(const mesh::TetMesh& mesh, const mesh::Topology& topology)
     : m_vertices(mesh.vertices),
       m_tets(mesh.tets),
       m_boundary_tet(topology.boundary_tet),
-      m_boundary({mesh.vertices, topology.boundary}) {}
+      m_boundary({mesh.vertices, topology.boundary}),
+      m_curved(mesh) {}
 
 TetLocator::Place BoundaryTets::find(const Vec3& x, double most_beyond, double farthest) const {
   const TriangleTree::Nearest nearest = m_boundary.find_nearest(x, farthest);
@@ -124,7 +136,8 @@ TetLocator::Place BoundaryTets::find(const Vec3& x, double most_beyond, double f
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = i + 1; j < 4; ++j) longest = std::max(longest, (corner[j] - corner[i]).norm());
   if (!(nearest.distance <= most_beyond * longest)) return {};
-  return {tet, compute_barycentric_weights(corner[0], corner[1], corner[2], corner[3], x)};
+  return bend_place(m_curved,
+                    {tet, compute_barycentric_weights(corner[0], corner[1], corner[2], corner[3], x)}, x);
 }
 
 }  // namespace argil::embed

@@ -4,13 +4,14 @@
 #include <vector>
 
 #include "embed/triangle_tree.h"
-#include "mesh/tet_mesh.h"
+#include "mesh/curved.h"
 #include "mesh/topology.h"
 
 namespace argil::embed {
 
 /// Finds the tet of a mesh that contains a point, by a uniform grid of boxes that list the tets reaching into
-/// them.
+/// them. Of tets with bent edges the straight ones are looked at; weights are those of the bent one, and may
+/// then be a little negative.
 class TetLocator {
  public:
   explicit TetLocator(const mesh::TetMesh& mesh);
@@ -31,6 +32,7 @@ class TetLocator {
   std::array<int, 3> box(const Vec3& x) const;
   std::size_t box_index(const Vec3& x) const;
   Vec4 compute_weights(int tet, const Vec3& x) const;
+  Place find_straight(const Vec3& x) const;
 
   Points m_vertices;
   Tets m_tets;
@@ -39,6 +41,7 @@ class TetLocator {
   std::array<int, 3> m_counts = {1, 1, 1};
   std::vector<int> m_begin;  // per box: where its tets begin
   std::vector<int> m_list;   // tets, increasing in each box
+  mesh::CurvedTets m_curved;
 };
 
 /// Finds for points outside a mesh the tet below the nearest place of the boundary.
@@ -56,6 +59,7 @@ class BoundaryTets {
   Tets m_tets;
   std::vector<int> m_boundary_tet;
   TriangleTree m_boundary;
+  mesh::CurvedTets m_curved;
 };
 
 /// Barycentric weights of x in the tet a, b, c, d; they sum to 1 and are negative beyond a face.

@@ -34,6 +34,7 @@ QuadraticMesh make_quadratic_mesh(const TetMesh& mesh, const Topology& topology)
   for (std::size_t e = 0; e < edges.size(); ++e)
     out.nodes.col(mesh.num_vertices() + static_cast<Eigen::Index>(e)) =
         0.5 * (mesh.vertices.col(edges[e].first) + mesh.vertices.col(edges[e].second));
+  for (const EdgeNode& node : mesh.edge_nodes) out.nodes.col(node_of_edge.at({node.a, node.b})) = node.place;
   return out;
 }
 
@@ -42,6 +43,17 @@ Eigen::Matrix<double, 10, 1> compute_quadratic_shape(const Vec4& L) {
   for (int i = 0; i < 4; ++i) N(i) = L(i) * (2.0 * L(i) - 1.0);
   for (int e = 0; e < 6; ++e) N(4 + e) = 4.0 * L(kTetEdges[e][0]) * L(kTetEdges[e][1]);
   return N;
+}
+
+Eigen::Matrix<double, 3, 4> compute_tangent_tet(const QuadraticNodes& nodes, const Vec4& L) {
+  Eigen::Matrix<double, 3, 4> corners;
+  for (int i = 0; i < 4; ++i) corners.col(i) = (4.0 * L(i) - 1.0) * nodes.col(i);
+  for (int e = 0; e < 6; ++e) {
+    const auto [a, b] = kTetEdges[e];
+    corners.col(a) += 4.0 * L(b) * nodes.col(4 + e);
+    corners.col(b) += 4.0 * L(a) * nodes.col(4 + e);
+  }
+  return corners;
 }
 
 }  // namespace argil::mesh

@@ -16,12 +16,19 @@ struct TriangleMesh {
   int num_triangles() const { return static_cast<int>(triangles.cols()); }
 };
 
+/// A node of ten-node tets that is off the middle of its edge, where the body's surface bends.
+struct EdgeNode {
+  int a = 0, b = 0;           ///< ends of the edge, a < b
+  Vec3 place = Vec3::Zero();  ///< [m] at rest
+};
+
 /// Tetrahedral body at rest, with the fields its file carried.
 struct TetMesh {
   Points vertices;                           ///< 3×n rest positions [m]
   Tets tets;                                 ///< 4×m vertex numbers; det(x1−x0, x2−x0, x3−x0) > 0
   std::map<std::string, Field> cell_fields;  ///< scalar data per tet found in the file, by its name there
   std::vector<int> numbers = {};             ///< of the tets in the file; empty: their own
+  std::vector<EdgeNode> edge_nodes = {};     ///< by a, then b; of all other edges the middle is the node
   int num_vertices() const { return static_cast<int>(vertices.cols()); }
   int num_tets() const { return static_cast<int>(tets.cols()); }
   /// What a tet is called in the file, in messages and in results.

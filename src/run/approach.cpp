@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "run/loop.h"
+#include "solid/elements.h"
 
 namespace argil::run {
 
@@ -22,7 +23,8 @@ contact::ApproachFinder make_approach_finder(const scenario::Scenario& s, const 
   contact::ToolSolid tool = contact::make_tool_solid(s.params.contact.round_tool, scene.tool);
   const sim::Body& body = scene.body;
   if (s.params.contact_surface == sim::SurfaceKind::skin) return {body.skin, std::move(tool)};
-  return {{body.mesh.vertices, body.topology.boundary}, std::move(tool)};
+  const solid::Elements elements = solid::make_elements(body.mesh, body.topology, s.params.solid.element);
+  return {{elements.rest, elements.surface}, std::move(tool)};
 }
 
 std::string describe_miss(const scenario::Scenario& s, const scenario::Scene& scene) {

@@ -77,7 +77,8 @@ void require_free_start(const sim::Simulation& simulation, mesh::TriangleMesh to
   if (!simulation.tool_overlaps_body()) return;
   const contact::Pose& pose = simulation.hand_state().tool;
   tool.vertices = (pose.orientation.toRotationMatrix() * tool.vertices).colwise() + pose.position;
-  const mesh::TriangleMesh body{simulation.body().mesh.vertices, simulation.body().topology.boundary};
+  const solid::Elements& elements = simulation.solid().model.elements;
+  const mesh::TriangleMesh body{elements.rest, elements.surface};
   const double depth = std::max(find_depth(tool.vertices, body), find_depth(body.vertices, tool));
   std::ostringstream text;
   text << "the tool starts in or across the body, " << std::setprecision(3) << 1e3 * depth

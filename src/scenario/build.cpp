@@ -18,6 +18,7 @@
 #include "scenario/fix_and_load.h"
 #include "scenario/medium_check.h"
 #include "scenario/scene_faults.h"
+#include "scenario/true_surface.h"
 
 namespace argil::scenario {
 namespace {
@@ -107,6 +108,19 @@ mesh::TriangleMesh read_surface(const std::string& file, double scale, Scene& sc
   return surface;
 }
 
+bool bends_edges(const Scenario& s) {
+  return s.params.solid.element == solid::ElementKind::p2;
+}
+
+void make_cage(const Scenario& s, int num_tets, const std::string& name, Scene& scene) {
+  embed::CageOptions options{num_tets, s.body.fit};
+  options.bends_edges = bends_edges(s);
+  embed::Cage cage = embed::make_cage(scene.body.skin, options, name);
+  scene.notes.push_back("cage: " + embed::describe(cage.report));
+  scene.surface_level = cage.report.level;
+  scene.body.mesh = std::move(cage.mesh);
+}
+
 /// Before its cells are graded: messages name the tets of the file.
 void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
   sim::Body& body = scene.body;
@@ -118,9 +132,7 @@ void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
     case BodyKind::shape:
       if (s.body.skin_triangles > 0) body.skin = shapes::make_shape_skin(s.body.shape, s.body.skin_triangles);
       if (body.skin.num_triangles() > 0) {
-        embed::Cage cage = embed::make_cage(body.skin, {num_tets, s.body.fit}, s.file);
-        scene.notes.push_back("cage: " + embed::describe(cage.report));
-        body.mesh = std::move(cage.mesh);
+        make_cage(s, num_tets, s.file, scene);
       } else {
         body.mesh =
             from_scenario(s, "/body/shape", [&] { return shapes::make_shape_mesh(s.body.shape, num_tets); });
@@ -131,9 +143,7 @@ void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
     case BodyKind::surface:
       body.skin = read_surface(s.body.file, s.body.scale, scene);
       if (s.body.cage_file.empty()) {
-        embed::Cage cage = embed::make_cage(body.skin, {num_tets, s.body.fit}, s.body.file);
-        scene.notes.push_back("cage: " + embed::describe(cage.report));
-        body.mesh = std::move(cage.mesh);
+        make_cage(s, num_tets, s.body.file, scene);
       } else {
         body.mesh = mesh_files::read_tet_mesh(s.body.cage_file, 1.0, &scene.file_vertices);
         add_note_of_lists(s.body.cage_file, scene);
@@ -172,7 +182,8 @@ Halvings make_cells(const Scenario& s, const std::vector<sim::TouchedPlace>* pla
     scene.notes = notes;
     make_mesh(s, static_cast<int>(count), scene);
     std::optional<Halvings> halvings =
-        grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes);
+        grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes,
+                    bends_edges(s) ? std::optional(scene.surface_level) : std::nullopt);
     if (!halvings) break;
     if (holds_skin(s, scene.body) || kMore * count > most) return *std::move(halvings);
   }
@@ -303,6 +314,7 @@ void complete_body(const Scenario& s, const Halvings& halvings, Scene& scene, Fa
   mesh::sort_tets(body.mesh);
   take_fields(s, body);
   body.topology = mesh::make_topology(body.mesh);
+  if (bends_edges(s)) bend_edges(s.body, scene.surface_level, body, scene.notes);
   const bool has_motion = faults.empty();
   if (body.skin.num_triangles() > 0) faults.check([&] { embed_skin(s, scene); });
   if (has_motion) scene.contact_cells = describe_contact_cells(s, scene.trace, scene.tool, body);

@@ -11,7 +11,7 @@
 #include "embed/triangle_tree.h"
 #include "mesh/order.h"
 #include "mesh/topology.h"
-#include "shapes/shapes.h"
+#include "scenario/true_surface.h"
 
 namespace argil::scenario {
 namespace {
@@ -153,14 +153,6 @@ mesh::BisectedMesh halve(const Whole& whole, CellSizes& sizes, int target_tets) 
   }
   sizes = search.sizes;
   return std::move(search.best);
-}
-
-/// Of the boundary of a fitted body; where it was thickened, the skin is too far.
-Vec3 find_on_skin(const embed::TriangleTree& skin, const Vec3& a, const Vec3& b) {
-  constexpr double kNear = 0.25;  // of the edge's length
-  const Vec3 middle = 0.5 * (a + b);
-  const embed::TriangleTree::Nearest nearest = skin.find_nearest(middle, kNear * (b - a).norm());
-  return nearest.triangle >= 0 ? nearest.point : middle;
 }
 
 std::string describe(const CellSizes& sizes, int before, int after) {
@@ -313,8 +305,7 @@ std::string describe_contact_cells(const Scenario& s, const device::Trace& trace
 std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
-                                    std::vector<std::string>& notes) {
-  const bool has_skin = body.skin.num_triangles() > 0;
+                                    std::vector<std::string>& notes, std::optional<double> bent_level) {
   CellSizes sizes{s.body.cells.near_tool, s.body.cells.growth, {}, s.body.cells.regions};
   sizes.places =
       touched_places ? *touched_places : find_places(s, trace, tool_surface, make_touched_tree(s, body));
@@ -328,13 +319,8 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
     return std::nullopt;
   }
   Whole whole{body.mesh, {}};
-  if (s.body.kind == BodyKind::shape && !has_skin)
-    whole.boundary_point = shapes::make_boundary_point(s.body.shape);
-  std::optional<embed::TriangleTree> skin;
-  if (has_skin && s.body.fit == embed::Fit::surface) {
-    skin.emplace(body.skin);
-    whole.boundary_point = [&skin](const Vec3& a, const Vec3& b) { return find_on_skin(*skin, a, b); };
-  }
+  const TrueSurface surface(s.body, body.skin);
+  whole.boundary_point = bent_level ? surface.make_edge_point(*bent_level) : surface.make_vertex_point();
   mesh::BisectedMesh bisected = halve(whole, sizes, has_target ? s.body.target_tets : 0);
   if (bisected.mesh.num_tets() > kMostTets)
     throw InputError(s.file, "/body/cells", "asks for cells that make more than 5 million tets",

@@ -62,11 +62,13 @@ struct Halvings {
 /// of linear tets least; here they are h₀ up to 1.5 a from the middle of a patch of radius a, and then grow
 /// by 2.4 h₀/a of the distance, at most 0.8. Clay that flows wants them to grow so fast; elastic clay hardly
 /// minds (results/clay, results/contact). None, and the reason in `notes`, where neither motion nor regions
-/// say where, or no tets are left to halve.
+/// say where, or no tets are left to halve. `bent_level` [m]: the edges of the boundary are to bend with the
+/// surface moved out by so much; none: they stay straight.
 std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
-                                    std::vector<std::string>& notes);
+                                    std::vector<std::string>& notes,
+                                    std::optional<double> bent_level = std::nullopt);
 
 /// The error of an elastic force falls as the size of cells to this power: a pressure has a rim.
 inline constexpr double kContactOrder = 1.5;

@@ -10,7 +10,7 @@
 
 #include "base/mandel.h"
 #include "embed/tet_locator.h"
-#include "mesh/quadratic.h"
+#include "mesh/curved.h"
 #include "mesh/topology.h"
 
 namespace argil::sim {
@@ -233,6 +233,7 @@ Points take_speed(const std::vector<embed::TetLocator::Place>& of_node, const so
 RemappedState remap(const Body& from, const solid::Body& solid, const Points& x, const Field& saturation,
                     const TensorField& flow, Body& to) {
   mesh::TetMesh now = from.mesh;
+  now.edge_nodes.clear();  // as they were at rest
   now.vertices = x.leftCols(from.mesh.num_vertices());
   const Places places(now);
   const bool is_quadratic = solid.model.elements.nodes_per_tet == 10;
@@ -242,8 +243,7 @@ RemappedState remap(const Body& from, const solid::Body& solid, const Points& x,
   for (const Vec3 node : nodes.colwise()) of_node.push_back(places.find(node));
   const Origins origins = find_origins(places, to.mesh);
   to.initial_saturation = take_means(origins, saturation);
-  keep_water(mesh::compute_volumes(to.mesh.vertices, to.mesh.tets),
-             mesh::compute_volumes(from.mesh.vertices, from.mesh.tets).dot(saturation),
+  keep_water(mesh::compute_rest_volumes(to.mesh), mesh::compute_rest_volumes(from.mesh).dot(saturation),
              to.initial_saturation);
   if (from.youngs_modulus.size() > 0) to.youngs_modulus = take_means(origins, from.youngs_modulus);
   take_supports(from, solid, x, of_node, to);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
-#include "mesh/quadratic.h"
+#include "mesh/curved.h"
 #include "solid/element.h"
 
 namespace argil::solid {
@@ -43,6 +43,41 @@ void lay_out_quadratic(const mesh::TetMesh& mesh, const mesh::Topology& topology
       e.node_corners[static_cast<std::size_t>(count[static_cast<std::size_t>(e.nodes(k, t))]++)] = 10 * t + k;
 }
 
+/// Returns the volume [m³].
+double set_points(const mesh::TetMesh& mesh, Eigen::Index t, Elements& e) {
+  const Eigen::Index Q = e.points_per_tet;
+  Mat34 corners;
+  for (int i = 0; i < 4; ++i) corners.col(i) = mesh.vertices.col(mesh.tets(i, t));
+  const TetGeometry tet = make_tet_geometry(corners);
+  ARGIL_ASSERT(tet.volume > 0.0, t, tet.volume);
+  e.weight.segment(Q * t, Q).setConstant(tet.volume / static_cast<double>(Q));
+  for (Eigen::Index p = Q * t; p < Q * (t + 1); ++p) e.gradient.middleCols<4>(4 * p) = tet.gradient;
+  return tet.volume;
+}
+
+/// The same with bent edges: each point has a gradient and a volume of its own.
+double set_bent_points(const mesh::QuadraticNodes& nodes, Eigen::Index t, Elements& e) {
+  for (Eigen::Index k = 0; k < 4; ++k) {
+    Vec4 L = Vec4::Constant(kPointNear);
+    L(k) = kPointFar;
+    const TetGeometry tet = make_tet_geometry(mesh::compute_tangent_tet(nodes, L));
+    ARGIL_ASSERT(tet.volume > 0.0, t, tet.volume);
+    e.weight(4 * t + k) = tet.volume;
+    e.gradient.middleCols<4>(4 * (4 * t + k)) = tet.gradient;
+  }
+  const Eigen::Matrix<double, 10, 1> of_shape = mesh::integrate_shape(nodes);
+  const double volume = of_shape.sum();
+  e.weight.segment<4>(4 * t) *= volume / e.weight.segment<4>(4 * t).sum();
+  e.shape_shares.col(t) = of_shape / volume;
+  return volume;
+}
+
+void set_straight_shares(Elements& e) {
+  Eigen::Matrix<double, 10, 1> share;
+  for (int i = 0; i < 10; ++i) share(i) = e.shape_share(0, i);
+  e.shape_shares = share.replicate(1, e.num_tets());
+}
+
 }  // namespace
 
 template <>
@@ -73,22 +108,19 @@ Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology
     lay_out_linear(mesh, topology, e);
   e.numbers = mesh.numbers;
   const int N = e.nodes_per_tet;
-  const int Q = e.points_per_tet;
-  e.weight.resize(static_cast<Eigen::Index>(Q) * mesh.num_tets());
+  e.weight.resize(static_cast<Eigen::Index>(e.points_per_tet) * mesh.num_tets());
   e.gradient.resize(3, 4 * e.weight.size());
   e.node_volume.setZero(e.num_nodes());
   e.shape_volume.setZero(e.num_nodes());
-  for (Eigen::Index t = 0; t < mesh.num_tets(); ++t) {
-    Mat34 corners;
-    for (int i = 0; i < 4; ++i) corners.col(i) = mesh.vertices.col(mesh.tets(i, t));
-    const TetGeometry tet = make_tet_geometry(corners);
-    ARGIL_ASSERT(tet.volume > 0.0, t, tet.volume);
-    e.weight.segment(Q * t, Q).setConstant(tet.volume / Q);
+  const mesh::CurvedTets curved(kind == ElementKind::p2 ? mesh : mesh::TetMesh{});
+  if (kind == ElementKind::p2 && !mesh.edge_nodes.empty()) set_straight_shares(e);
+  for (int t = 0; t < mesh.num_tets(); ++t) {
+    const mesh::QuadraticNodes* bent = curved.find(t);
+    const double volume = bent ? set_bent_points(*bent, t, e) : set_points(mesh, t, e);
     for (int i = 0; i < N; ++i) {
-      e.node_volume(e.nodes(i, t)) += tet.volume * e.mass_share(i);
-      e.shape_volume(e.nodes(i, t)) += tet.volume * e.shape_share(i);
+      e.node_volume(e.nodes(i, t)) += volume * e.mass_share(i);
+      e.shape_volume(e.nodes(i, t)) += volume * e.shape_share(t, i);
     }
-    for (Eigen::Index p = Q * t; p < Q * (t + 1); ++p) e.gradient.middleCols<4>(4 * p) = tet.gradient;
   }
   return e;
 }

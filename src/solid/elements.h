@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/lanes.h"
+#include "mesh/quadratic.h"
 #include "mesh/topology.h"
 #include "solid/parameters.h"
 
@@ -19,6 +20,7 @@ struct Elements {
   Eigen::Matrix3Xd gradient;      ///< ∇λ [1/m] of the barycentric coordinates: four columns a point
   Field node_volume;              ///< lumped rest volume of each node [m³]
   Field shape_volume;             ///< ∫Nᵢ dV [m³]: carries body forces; p2's corners below 0
+  Eigen::MatrixXd shape_shares;   ///< 10×m: of ∫Nᵢ dV in each tet's volume; empty: no edge is bent
   std::vector<int> node_begin;    ///< n+1: where each node's corners begin in node_corners
   std::vector<int> node_corners;  ///< N·tet + corner of every tet around a node, tets increasing
   Triangles surface;              ///< boundary as flat triangles between nodes, outward
@@ -37,12 +39,14 @@ struct Elements {
   /// Share of a tet's mass at its node i in time (p2: diagonal of the consistent mass, 6 and 32 times V/420,
   /// over their sum), and of its body force in statics.
   double mass_share(int i) const { return nodes_per_tet == 4 ? 0.25 : (i < 4 ? 6.0 : 32.0) / 216.0; }
-  double shape_share(int i) const { return nodes_per_tet == 4 ? 0.25 : (i < 4 ? -0.05 : 0.2); }
+  double shape_share(int tet, int i) const {
+    if (shape_shares.size() > 0) return shape_shares(i, tet);
+    return nodes_per_tet == 4 ? 0.25 : (i < 4 ? -0.05 : 0.2);
+  }
 };
 
-/// Four points of degree 2 [Hammer1956]: one barycentric coordinate of each is far, the others are near.
-inline constexpr double kPointFar = 0.58541019662496845446;
-inline constexpr double kPointNear = 0.13819660112501051518;
+using mesh::kPointFar;
+using mesh::kPointNear;
 
 /// ∇N [1/m] of the N nodes of a tet at a point, from `gradient`, ∇λ there.
 template <int N>
@@ -70,9 +74,10 @@ void each_points(const Elements& elements, std::ptrdiff_t begin, std::ptrdiff_t 
     body(p, std::min<std::ptrdiff_t>(p + kLanes, last));
 }
 
-/// p1, p1_nodal: one point, mass in quarters. p2: four points, which is exact for straight-sided tets; mass
-/// lumped in proportion to the consistent diagonal [Hinton1976], so that no node has a negative one.
-/// Tets must have positive volume (asserted).
+/// p1, p1_nodal: one point, mass in quarters. p2: four points, which is exact for straight-sided tets, and
+/// with bent edges but for the square of how far they bend in different directions; mass lumped in proportion
+/// to the consistent diagonal of straight ones [Hinton1976], so that no node has a negative one. Tets must
+/// have positive volume (asserted).
 Elements make_elements(const mesh::TetMesh& mesh, const mesh::Topology& topology, ElementKind kind);
 
 /// Nodes that share a tet with each node, itself included, increasing.

@@ -83,7 +83,7 @@ void Materials::set_water_mass(int tet, double mass) {
          c < elements.node_begin[static_cast<std::size_t>(node) + 1]; ++c) {
       const int corner = elements.node_corners[static_cast<std::size_t>(c)];
       moving += m_water_mass(corner / N) * elements.mass_share(corner % N);
-      at_rest += m_water_mass(corner / N) * elements.shape_share(corner % N);
+      at_rest += m_water_mass(corner / N) * elements.shape_share(corner / N, corner % N);
     }
     m_mass(node) = m_model.params.density * elements.node_volume(node) + moving;
     m_static_mass(node) = m_model.params.density * elements.shape_volume(node) + at_rest;

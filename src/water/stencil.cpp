@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/check.h"
+#include "mesh/curved.h"
 
 namespace argil::water {
 namespace {
@@ -92,7 +93,7 @@ Stencil make_stencil(const mesh::TetMesh& mesh, const mesh::Topology& topology, 
   const int num_tets = mesh.num_tets();
   Stencil stencil;
   stencil.neighbours = topology.neighbours;
-  stencil.volume = mesh::compute_volumes(mesh.vertices, mesh.tets);
+  stencil.volume = mesh::compute_rest_volumes(mesh);
   stencil.wall_distance.setZero(num_tets);
   stencil.conductance.setZero(4, num_tets);
   if (form == FluxForm::corrected) {
