@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Clay that is sculpted far: six motions that take a body of clay far from the shape that it began with.
 
-Usage: sculpt_table.py ARGIL [-o TABLE.csv] [--scenes NAME ...] [--tets N] [--share S] [--keep FOLDER]
+Usage: sculpt_table.py ARGIL [-o TABLE.csv] [--scenes NAME ...] [--tets N] [--element p1|p2] [--share S] [--keep FOLDER]
 
 `presses`: a ball is pressed by 30 % of a block's height into about one place, twenty times. `knead`: a ball presses and slides over a
 wet lump for a minute, at random. `horn`: a horn of 20 mm is pulled from a lump, and let go. `tear`: it is pulled until it tears. `bend`: the end of a bar is led half
 round and back. `flatten`: a lump is pressed to a third of its height.
-Columns: exit code; share of the motion that was made; times that the body got new cells; least volume ratio; worst mean ratio of a tet in a
+Columns: element; exit code; share of the motion that was made; times that the body got new cells; least volume ratio; worst mean ratio of a tet in a
 frame; volume at the end, with the tool away, off that at the start [%]; water that the books miss [%]; largest force [N]; largest change of the force in the
 step after new cells, less that of the step before [N] and over the largest force [%]; triangles that the tool
 meets over faces of cells, at the end; seconds of the processor a second of motion; force against that of twice as many cells, root mean square
@@ -26,7 +26,7 @@ import numpy as np
 from table_file import write_table
 
 TICK = 1e-3  # [s]
-COLUMNS = ("scene", "tets", "exit_code", "made_percent", "new_cells", "least_volume_ratio", "worst_mean_ratio", "volume_percent",
+COLUMNS = ("scene", "element", "tets", "exit_code", "made_percent", "new_cells", "least_volume_ratio", "worst_mean_ratio", "volume_percent",
            "water_percent", "peak_N", "jump_N", "jump_percent", "touched_per_face", "cpu_s_per_s", "finer_percent", "two_threads",
            "resumed")
 CLAY = {"youngs_modulus_Pa": 1.2e6, "poissons_ratio": 0.3, "plasticity": {"strength_Pa": 15e3}}
@@ -148,9 +148,10 @@ def flatten(share):
 SCENES = {scene.__name__: scene for scene in (presses, knead, horn, tear, bend, flatten)}
 
 
-def write_scene(folder, name, share, tets):
-    scene, motion = SCENES[name](share)
-    scene["body"]["shape"]["target_tets"] = tets
+def write_scene(folder, name, options):
+    scene, motion = SCENES[name](options.share)
+    scene["body"]["shape"]["target_tets"] = options.tets
+    scene["dynamics"] = {"element": options.element}
     write_motion(folder / f"{name}.csv", *motion)
     scene |= {"about": SCENES[name].__name__, "material": CLAY, "trace": {"file": f"{name}.csv"},
               "haptics": {"frame_period_ticks": 100, "physics_period_ticks": 2, "device": {"max_force_N": 1e3}}}
@@ -219,11 +220,11 @@ def is_equal(argil, first, second):
 
 
 def make_row(argil, folder, name, options):
-    scene, num_ticks = write_scene(folder, name, options.share, options.tets)
+    scene, num_ticks = write_scene(folder, name, options)
     result, finer, other = (folder / f"{name}{word}.h5" for word in ("", "_finer", "_other"))
     code = run(argil, scene, result)
     row, force = measure(result, num_ticks)
-    row |= {"scene": name, "exit_code": code, "finer_percent": "-", "two_threads": "-", "resumed": "-"}
+    row |= {"scene": name, "element": options.element, "exit_code": code, "finer_percent": "-", "two_threads": "-", "resumed": "-"}
     if options.finer:
         run(argil, scene, finer, "--set", f"/body/shape/target_tets={2 * options.tets}")
         there, of_finer = measure(finer, num_ticks)
@@ -246,6 +247,7 @@ def main():
     parser.add_argument("-o", "--output", type=Path, default=Path("results/clay/sculpt.csv"))
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
     parser.add_argument("--tets", type=int, default=4000)
+    parser.add_argument("--element", choices=("p1", "p2"), default="p1")
     parser.add_argument("--share", type=float, default=1.0, help="of the motion: of the presses, the time or the way")
     parser.add_argument("--finer", action=argparse.BooleanOptionalAction, default=True, help="a run of twice as many cells, too")
     parser.add_argument("--bits", action=argparse.BooleanOptionalAction, default=True, help="the same on two threads and after a stop")
