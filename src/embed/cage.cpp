@@ -288,12 +288,16 @@ class CageSearch {
         m_tree, m_skin.vertices, m_options.fit, m_offset.maxCoeff() * m_cell_size, level, m_cell_size);
     require_room(surface, m_cell_size, m_options.most_cubes, m_name);
     mesh::TetMesh mesh = shapes::stuff_isosurface(surface, m_cell_size);
-    if (leaves_thin()) mesh = take_largest_part(mesh);
-    if (is_fitted() && m_options.bends_edges && mesh.num_tets() > 0)
+    return leaves_thin() ? take_largest_part(mesh) : mesh;
+  }
+
+  /// Of the body with the edges that it is to have [m³].
+  double find_volume(double level, mesh::TetMesh& mesh) const {
+    if (m_options.bends_edges)
       mesh::curve_boundary(
           [this, level](const Vec3& a, const Vec3& b) { return find_bent_middle(m_tree, level, a, b); },
           mesh::make_topology(mesh), mesh);
-    return mesh;
+    return mesh::compute_rest_volumes(mesh).sum();
   }
 
   /// Flat facets cut off what is round, and lattices sharp edges: moves the boundary as far as gives the body
@@ -304,7 +308,7 @@ class CageSearch {
     constexpr double kMostLevel = 0.15;  // in cube edges
     if (!is_closed(m_surface) || m_offset.maxCoeff() > 0.0) return mesh;
     const double wanted = compute_skin_volume(m_surface);
-    double error = mesh::compute_rest_volumes(mesh).sum() - wanted;
+    double error = find_volume(level, mesh) - wanted;
     if (leaves_thin() && !(std::abs(error) < kMostThin * wanted))
       throw InputError(m_name, "target_tets", "much of the surface is thinner than a cell",
                        "ask for more tets");
@@ -318,7 +322,7 @@ class CageSearch {
       const double next = level - error / slope;
       if (!(std::abs(next) < kMostLevel * m_cell_size)) break;
       mesh::TetMesh moved = stuff(next);
-      const double moved_error = mesh::compute_rest_volumes(moved).sum() - wanted;
+      const double moved_error = find_volume(next, moved) - wanted;
       if (!find_bad(moved).empty() || !(std::abs(moved_error) < std::abs(error))) break;
       slope = std::max(0.5 * slope, (moved_error - error) / (next - level));
       level = next;
