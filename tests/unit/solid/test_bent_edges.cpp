@@ -81,8 +81,11 @@ TEST_P(BentEdges, OfACylinderPassThePatchTest) {
   EXPECT_LT(find_patch_error(make_bent(shapes::ShapeKind::cylinder, 400), GetParam()), 1e-11);
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, BentEdges, testing::ValuesIn(test::every_model()),
-                         [](const auto& info) { return std::string(find_law(info.param).name); });
+std::string name_model(const testing::TestParamInfo<StrainModel>& info) {
+  return find_law(info.param).name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, BentEdges, testing::ValuesIn(test::every_model()), name_model);
 
 TEST(BentBall, MissesThePatchTestByBendsThatCross) {
   // (h/R)²/8 is a bend over an edge, h/R the angle between two: what the points miss falls as h³.
