@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/lanes.h"
 #include "contact/triangle_pieces.h"
 
 namespace argil::contact {
@@ -15,6 +16,34 @@ namespace {
 constexpr double kFinerOnRigid = 2.0;  // points along a line, over those where it can
 constexpr int kMostHalvings = 4;       // of pieces on which the way out of the tool turns,
 constexpr double kTurned = 0.9;        // whose cosine to that at the middle is less
+
+/// Of a point that the tool does not touch: may the body come to the tool there in a step?
+template <class Depth>
+bool is_near(const Depth& depth, double margin) {
+  constexpr double kMargins = 2.0;
+  return depth.end > -kMargins * margin;
+}
+
+/// The largest |b − a| of the numbers at both.
+ARGIL_EVERY_PROCESSOR double find_largest_change(const double* a, const double* b, std::ptrdiff_t count) {
+  constexpr int kChains = 4;
+  Lanes largest[kChains] = {};
+  std::ptrdiff_t i = 0;
+  for (; i + kChains * kLanes <= count; i += kChains * kLanes)
+    for (int c = 0; c < kChains; ++c) {
+      Lanes from, to;
+      read(a + i + kLanes * c, from);
+      read(b + i + kLanes * c, to);
+      const Lanes change = to - from;
+      const Lanes size = change > 0.0 ? change : -change;
+      largest[c] = size > largest[c] ? size : largest[c];
+    }
+  double most = 0.0;
+  for (; i < count; ++i) most = std::max(most, std::abs(b[i] - a[i]));
+  for (const Lanes& chain : largest)
+    for (int k = 0; k < kLanes; ++k) most = std::max(most, chain[k]);
+  return most;
+}
 
 }  // namespace
 
@@ -31,7 +60,10 @@ PressureContact::PressureContact(const Triangles& surface, int num_vertices, Too
   ARGIL_ASSERT(m_stiffness.per_area.size() == surface.cols(), m_stiffness.per_area.size());
   m_places.reserve(kMostPlaces);
   m_candidates.reserve(static_cast<std::size_t>(surface.cols()));
+  m_reached.reserve(m_candidates.capacity());
   m_faces.reserve(m_candidates.capacity());
+  for (std::vector<double>& of_axis : m_balls.centre) of_axis.reserve(m_candidates.capacity() + kLanes);
+  m_balls.radius.reserve(m_candidates.capacity() + kLanes);
   m_corners.reserve(m_corner_of_vertex.size());
   m_nearness.reserve(m_corner_of_vertex.size());
 }
@@ -53,7 +85,7 @@ void PressureContact::add_contact(const std::array<int, 3>& vertex, int triangle
                                   const PointDepth& depth, double stiffness, const Vec3& point,
                                   Contacts& out) const {
   const bool touches = depth.mean > 0.0 || depth.begin > 0.0;
-  if (!(stiffness > 0.0) || (!touches && !finds_near())) return;
+  if (!(stiffness > 0.0) || (!touches && !(finds_near() && is_near(depth, m_margin)))) return;
   Contact& c = (touches ? out.contacts : out.near).emplace_back();
   c.vertex = vertex;
   c.weight = {weight(0), weight(1), weight(2)};
@@ -78,6 +110,8 @@ void PressureContact::press_corners(const Face& face, double share) {
       m_corners.push_back({vertex, find_depth(face.x[k])});
     }
     Corner& corner = m_corners[static_cast<std::size_t>(place)];
+    const PointDepth& depth = corner.depth;
+    if (!(depth.mean > 0.0 || depth.begin > 0.0 || is_near(depth, m_margin))) continue;
     const double area = share * face.area / 3.0 * facing_share(corner.depth.outward, face.normal);
     corner.stiffness += area * stiffness_of(face);
   }
@@ -226,8 +260,9 @@ void PressureContact::hold_shape(bool will_yield, Contacts& out) const {
 
 void PressureContact::advance(const Points& x_before, const Points& x, std::optional<double> motion) {
   if (!m_tree) prepare(x_before);
-  m_motion = motion ? *motion : (x - x_before).cwiseAbs().maxCoeff();
+  m_motion = motion ? *motion : find_largest_change(x_before.data(), x.data(), x.size());
   m_tree->advance(m_motion);
+  m_balls.motion += m_motion;
   if (!m_ahead) return;
   m_ahead->box = m_ahead->box.grown(-m_motion);
   m_ahead->reach.radius -= find_nearing(m_motion);

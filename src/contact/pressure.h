@@ -125,6 +125,13 @@ class PressureContact {
     mesh::Box box;
     BoundingTree::Reach reach;
   };
+  /// Balls that hold m_candidates, where these were when they were found.
+  struct CandidateBalls {
+    std::array<std::vector<double>, 3>
+        centre;                  ///< [m]; after the last one, as many far away as fill the lanes
+    std::vector<double> radius;  ///< [m]
+    double motion = 0.0;         ///< of the body since then, along any axis [m]
+  };
   struct PlacedPiece {  // of a triangle
     std::array<Vec3, 3> x;
     Vec3 centre;
@@ -160,6 +167,8 @@ class PressureContact {
   // pressure_cover.cpp
   void find_faces(const Points& x);
   void find_candidates(const mesh::Box& query, const BoundingTree::Reach& reach, const Points& x);
+  void keep_balls(const Points& x);
+  void find_reached(const Vec3& centre, double radius);
   static double find_nearing(double motion);
   bool find_face(const mesh::Box& query, const Points& x, Face& face);
   Nearness find_vertex_nearness(int vertex, const Vec3& x);
@@ -217,6 +226,7 @@ class PressureContact {
   double m_motion = 0.0;          // of the body before the present call, along any axis [m]
   std::vector<int> m_candidates;  // triangles that may be near the tool for some calls, by number
   std::optional<Ahead> m_ahead;   // none: they have to be found anew
+  CandidateBalls m_balls;
   Passage m_passages;
   // Of the present call.
   std::vector<Place> m_places;                 // along the tool's way, the end last
@@ -230,6 +240,7 @@ class PressureContact {
   std::size_t m_num_measured = 0;  // pieces, in the present pass over all faces
   double m_margin = 0.0;           // how far from the tool points are near it [m]
   double m_patch_radius = 0.0;     // [m]; 0: nothing is touched
+  std::vector<int> m_reached;      // of m_candidates, those that may be near it
   std::vector<Face> m_faces;       // near the tool's way, by number
   std::vector<Corner> m_corners;
   std::vector<int> m_corner_of_vertex;     // place in m_corners; −1: none

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/lanes.h"
 #include "contact/pressure.h"
 #include "contact/triangle_pieces.h"
 
@@ -44,9 +45,11 @@ void PressureContact::find_faces(const Points& x) {
   }
   const double radius = 0.5 * (box.high - box.low).norm() + m_tool.radius() + m_margin;
   const mesh::Box query = box.grown(m_tool.radius() + m_margin);
-  find_candidates(query, {0.5 * (box.low + box.high), radius, kPerSide}, x);
+  const Vec3 centre = 0.5 * (box.low + box.high);
+  find_candidates(query, {centre, radius, kPerSide}, x);
   m_faces.clear();
-  for (const int number : m_candidates) {
+  find_reached(centre, radius);
+  for (const int number : m_reached) {
     Face& face = m_faces.emplace_back();
     face.number = number;
     if (!find_face(query, x, face)) m_faces.pop_back();
@@ -80,6 +83,52 @@ void PressureContact::find_candidates(const mesh::Box& query, const BoundingTree
   m_candidates.clear();
   m_tree->find_overlaps(m_ahead->box, m_ahead->reach, x, m_candidates);
   std::sort(m_candidates.begin(), m_candidates.end());
+  keep_balls(x);
+}
+
+void PressureContact::keep_balls(const Points& x) {
+  m_balls.motion = 0.0;
+  for (std::vector<double>& of_axis : m_balls.centre) of_axis.clear();
+  m_balls.radius.clear();
+  for (const int number : m_candidates) {
+    const Eigen::Vector3i vertex = m_surface.col(number);
+    const std::array<Vec3, 3> corners = {x.col(vertex(0)), x.col(vertex(1)), x.col(vertex(2))};
+    const PlacedPiece whole = place_piece(corners, find_centre(corners));
+    for (std::size_t k = 0; k < 3; ++k)
+      m_balls.centre[k].push_back(whole.centre(static_cast<Eigen::Index>(k)));
+    m_balls.radius.push_back(whole.reach);
+  }
+  constexpr double kNowhere = 1e150;  // [m]
+  while (m_balls.radius.size() % kLanes != 0) {
+    for (std::vector<double>& of_axis : m_balls.centre) of_axis.push_back(kNowhere);
+    m_balls.radius.push_back(0.0);
+  }
+}
+
+/// Of the candidates, those that find_face() may find near a tool in this ball: eight at a time, by where
+/// they were when they were found. A passage reaches beyond the ball; there it is all of them.
+ARGIL_EVERY_PROCESSOR void PressureContact::find_reached(const Vec3& centre, double radius) {
+  m_reached.clear();
+  // As far as a middle may have come since then, and a corner from it.
+  const double moved = (1.0 + 1e-9) * std::numbers::sqrt3 * m_balls.motion;
+  const double widest = has_band() ? 2.0 * kWidestBand : 0.0;
+  for (std::size_t begin = 0; begin < m_candidates.size(); begin += kLanes) {
+    Lanes x, y, z, reach;
+    read(m_balls.centre[0].data() + begin, x);
+    read(m_balls.centre[1].data() + begin, y);
+    read(m_balls.centre[2].data() + begin, z);
+    read(m_balls.radius.data() + begin, reach);
+    x -= centre(0);
+    y -= centre(1);
+    z -= centre(2);
+    reach += 2.0 * moved;
+    const Lanes band = widest * reach;
+    const Lanes most = (1.0 + 1e-9) * ((radius + moved) + reach + band);
+    const Lanes is_far = x * x + y * y + z * z < most * most ? Lanes{} : Lanes{} + 1.0;
+    const std::size_t count = std::min<std::size_t>(kLanes, m_candidates.size() - begin);
+    for (std::size_t k = 0; k < count; ++k)
+      if (m_passage || is_far[k] == 0.0) m_reached.push_back(m_candidates[begin + k]);
+  }
 }
 
 /// Measures a face. False where the tool is not near it.

@@ -37,10 +37,11 @@ struct ContactPatch {
 /// share of the step. Ticks only append to it, so that a tick that fails is cut off again.
 struct ContactLoad {
   // When it is handed over.
-  HandPose hand;       ///< at the end of the tick in which it is
-  int num_ticks = 0;   ///< since the last one
-  int detections = 1;  ///< whose mean the body gets
-  double scale = 1.0;  ///< by which the sum of `forces` has yet to be multiplied for that
+  HandPose hand;                ///< at the end of the tick in which it is
+  int num_ticks = 0;            ///< since the last one
+  int detections = 1;           ///< whose mean the body gets
+  double way_over_patch = 0.0;  ///< the tool's in the last detection, over the radius of what it presses on
+  double scale = 1.0;           ///< by which the sum of `forces` has yet to be multiplied for that
   device::ToolMode mode = device::ToolMode::push;
   std::vector<int> touched_tet;      ///< by a tool that wets or dries in the tick that hands over
   std::vector<double> touched_area;  ///< [m²] of each, for the whole water period
@@ -78,8 +79,8 @@ class LoadCollector {
   double share() const { return m_share; }
   const ContactLoad& load() const { return m_load; }
 
-  /// Contacts of another detection follow.
-  void begin_detection();
+  /// Contacts of another detection follow. `way_over_patch`: of the tool in it.
+  void begin_detection(double way_over_patch);
   /// Adds a contact's force on the body, by its share of the step.
   void add_force(const contact::Contact& contact, const Vec3& force);
   /// How a contact's force changes as the body moves on. `force`: on the body, by its share of the step; `x`:

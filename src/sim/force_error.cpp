@@ -70,19 +70,28 @@ void ForceErrorEstimate::keep_solution(const ContactLoad& load, const NodalForce
   m_state.solved_power += m_solid.prediction.tau * find_stiffness_power(v);
 }
 
+<<<<<<< HEAD
 /// v·K v [W/s], K of the step's matrix: elastic, but for tets at their yield that flow on as they did.
+=======
+/// v·K (v − v₀) [W/s], v₀ where the step's last solve began, K of its matrix: elastic, but for tets at their
+/// yield, which flow on as they did.
+>>>>>>> 576d040cb305a4020b0db06dc9feebe69fc0ae5d
 double ForceErrorEstimate::find_stiffness_power(const Points& v) const {
   const solid::Elements& elements = m_solid.model.elements;
   const solid::ElasticArrays elastic = m_solid.elastic.arrays();
+  const auto find_rate = [&](const Points& speed, int p) {
+    const Mat3 H = elements.nodes_per_tet == 4
+                       ? solid::find_gradient<4>(elements, m_solid.materials.gradient(), speed, p)
+                       : solid::find_gradient<10>(elements, m_solid.materials.gradient(), speed, p);
+    const Mat3 turned = m_solid.kinematics.rotation().middleCols<3>(3 * p).transpose() * H;
+    return to_mandel(0.5 * (turned + turned.transpose()));
+  };
   const auto of_point = [&](int p) {
     const int tet = elements.tet_of_point(p);
-    const Mat3 H = elements.nodes_per_tet == 4
-                       ? solid::find_gradient<4>(elements, m_solid.materials.gradient(), v, p)
-                       : solid::find_gradient<10>(elements, m_solid.materials.gradient(), v, p);
-    const Mat3 turned = m_solid.kinematics.rotation().middleCols<3>(3 * p).transpose() * H;
-    const Vec6 rate = to_mandel(0.5 * (turned + turned.transpose()));
+    const Vec6 rate = find_rate(v, p);
+    const Vec6 change = m_solid.newton.is_follow_up ? Vec6(rate - find_rate(m_solid.system.v_base, p)) : rate;
     const solid::Elasticity e = m_solid.materials.elasticity(tet);
-    double power = rate.dot(solid::compute_stress(e, rate));
+    double power = rate.dot(solid::compute_stress(e, change));
     if (m_solid.model.params.flows_in_solve && elastic.strain &&
         elastic.is_known[static_cast<std::size_t>(p / kLanes)] != 0) {
       const double* of_tet = elastic.strain + 6 * p;
@@ -90,9 +99,14 @@ double ForceErrorEstimate::find_stiffness_power(const Points& v) const {
       strain << of_tet[0], of_tet[1], of_tet[2], kSqrt2 * of_tet[3], kSqrt2 * of_tet[4], kSqrt2 * of_tet[5];
       strain.head<3>().array() -= strain.head<3>().mean();
       const double norm = strain.norm();
+<<<<<<< HEAD
       if (norm > 0.0 && norm >= solid::kAtYield * m_solid.materials.yield()(p) &&
           m_solid.system.unloads[static_cast<std::size_t>(p)] == 0)
         power -= 2.0 * e.mu * std::pow(strain.dot(rate) / norm, 2);
+=======
+      if (norm > 0.0 && norm >= kAtYield * m_solid.materials.yield()(p))
+        power -= 2.0 * e.mu * (strain.dot(rate) / norm) * (strain.dot(change) / norm);
+>>>>>>> 576d040cb305a4020b0db06dc9feebe69fc0ae5d
     }
     return m_solid.materials.weight()(p) * power;
   };

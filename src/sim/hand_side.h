@@ -103,6 +103,7 @@ class HandSide {
   void find_pressure_force(bool begins_step);
   void feel_between_steps();
   void meet_surface();
+  double find_way_over_patch() const;
   void gather_pressure();
   // compliant_contact.cpp
   StepStatus find_compliant_force();

@@ -37,6 +37,13 @@ void HandSide::meet_surface() {
   m_has_met_surface = true;
 }
 
+/// Of the tool in a detection that has just been made, over the radius of what it presses on; 0 where it
+/// grips.
+double HandSide::find_way_over_patch() const {
+  const double radius = m_grip.holds() ? 0.0 : m_pressure->find_patch().radius;
+  return radius > 0.0 ? (m_state.tool.position - m_state.contact_tool.position).norm() / radius : 0.0;
+}
+
 /// The body is told of one detection a step; until it answers, the hand feels the last answer.
 void HandSide::find_pressure_force(bool begins_step) {
   if (!begins_step) return;

@@ -46,6 +46,8 @@ struct ContactActivity {
   /// Of a step of this length [s] with these contacts, of a body that goes at v (3×n) [m/s]. All act but
   /// those that are near.
   void start(std::span<const PointStiffness> contacts, const Points& v, double step_s);
+  /// They act as they do; the search for others begins anew.
+  void go_on() { num_updates = search.num_rounds = 0; }
   bool is_acting(int group) const { return group < 0 || acts[static_cast<std::size_t>(group)] != 0; }
 };
 

@@ -101,6 +101,7 @@ bool predict(Body& body, const Part& part, const StepLoads& loads, double step_s
   step.load_share = 1.0;
   body.history.counters = {};
   body.newton.iterations = 0;
+  body.newton.is_follow_up = body.newton.has_moved = false;
   body.newton.tolerance = body.model.params.newton_tolerance;
   body.contacts.start(loads.contacts, start.v, step_s);
   keep_damping_frame(body);

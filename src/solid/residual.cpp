@@ -112,8 +112,9 @@ Vec3 find_imbalance(const Body& body, const StepLoads& loads, Eigen::Index node)
 void assemble_residual(Body& body, const Part& part, const StepLoads& loads) {
   const SolidParams& params = body.model.params;
   const Points& v = body.trial.v;
-  if (body.is_newton() || body.newton.iterations == 0)  // else other contacts, the same place
+  if (body.is_newton() || body.newton.iterations == 0 || body.newton.has_moved)  // else the same place
     assemble_forces(body.strained(), part, body.forces);
+  body.newton.has_moved = false;
   if (body.is_newton()) set_rounding(body);
   const bool is_viscous =
       !body.prediction.is_static && params.rayleigh_stiffness > 0.0 &&

@@ -10,6 +10,8 @@ struct Body;
 /// What Newton's method measures its residual and potential by.
 struct NewtonMeasures {
   int iterations = 0;               ///< of the present step or share of the load
+  bool is_follow_up = false;        ///< it is solved once more about where it came to
+  bool has_moved = false;           ///< the internal forces are to be found anew
   double tolerance = 0.0;           ///< of the residual over residual_scale
   double first_residual = 0.0;      ///< of the first guess of the step's first solve
   double residual_scale = 0.0;      ///< loads, momenta and reactions, which the residual is small against

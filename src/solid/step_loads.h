@@ -51,6 +51,9 @@ struct StepLoads {
   double region_slack = 0.0;
   /// Of an active region: nodes whose force may be another than in the last step; null: any.
   const std::vector<int>* changed = nullptr;
+  /// A step with one linearisation is solved once more about where it came to: what turns and stretches on
+  /// the way is a part of its forces then.
+  bool follows_turns = false;
 };
 
 }  // namespace argil::solid

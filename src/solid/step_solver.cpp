@@ -85,6 +85,18 @@ class OneStep {
   bool m_is_first;
 };
 
+/// The step is to be solved once more about where it came to, from the contacts that it has. False where it
+/// has been, is not asked for, or the body would turn inside out there.
+bool begin_follow_up(Body& body, const ActiveRegion& region, const StepLoads& loads, Tick tick) {
+  if (!loads.follows_turns || body.newton.is_follow_up) return false;
+  body.newton.is_follow_up = true;
+  if (!update_kinematics(body, region, body.trial.x, tick).is_ok()) return false;
+  body.newton.has_moved = true;
+  body.contacts.go_on();
+  body.system.delta.setZero();
+  return true;
+}
+
 StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loads, Tick tick, bool& solved) {
   const bool is_first = body.newton.iterations++ == 0;
   ++body.history.counters.newton_iterations;
@@ -96,8 +108,15 @@ StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loa
     set_iterate(body, region.part(), 1.0);
     solved = settle_contacts(body, region.part(), loads.contacts);
   }
+<<<<<<< HEAD
   solved = solved && !find_unloading(body, region.part());
   if (!solved) set_iterate(body, region.part(), 0.0);  // the same step anew
+=======
+  if (!solved)
+    set_iterate(body, region.part(), 0.0);  // the same step anew
+  else
+    solved = !begin_follow_up(body, region, loads, tick);
+>>>>>>> 576d040cb305a4020b0db06dc9feebe69fc0ae5d
   return StepStatus::ok();
 }
 

@@ -55,6 +55,7 @@ struct Scene {
   solid::SolidState state;
   Points load;
   double time = 0.0;
+  bool follows_turns = false;
 
   Scene(mesh::TetMesh m, std::vector<solid::Support> supports, const solid::SolidParams& p, double E,
         double nu, int threads = 1, bool restricts = false)
@@ -80,7 +81,8 @@ struct Scene {
 
   /// Velocities of the next step, before the body moves.
   StepStatus solve(double h, std::span<const solid::PointStiffness> contacts = {}) {
-    const solid::StepLoads loads{load, contacts};
+    solid::StepLoads loads{load, contacts};
+    loads.follows_turns = follows_turns;
     ARGIL_TRY(solid::begin_step(solid, region, state, loads, {h, time += h, 0}));
     for (bool solved = false; !solved;) {
       solved = solid::assemble(solid, region, loads);

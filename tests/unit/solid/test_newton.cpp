@@ -229,6 +229,31 @@ TEST(Newton, FindsABodyAtRestAtRest) {
   }
 }
 
+/// A second linearisation, about where the first one came to, leaves a small part of what the first one did.
+class FollowedTurns : public testing::TestWithParam<std::tuple<StrainModel, ElementKind>> {};
+
+TEST_P(FollowedTurns, BringAStepNearToNewtons) {
+  const auto run = [](Iteration iteration, bool follows_turns) {
+    SolidParams params;
+    std::tie(params.model, params.element) = GetParam();
+    params.iteration = iteration;
+    params.rayleigh_mass = 3.0;
+    params.solver.tolerance = 1e-9;
+    Pressed pressed(params);
+    pressed.scene.follows_turns = follows_turns;
+    return pressed.run();
+  };
+  const Points exact = run(Iteration::newton, false);
+  const double once = (run(Iteration::one, false) - exact).norm();
+  ASSERT_GT(once, 1e-4 * exact.norm());
+  EXPECT_LT((run(Iteration::one, true) - exact).norm(), 0.2 * once);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    LawsAndElements, FollowedTurns,
+    testing::Combine(testing::Values(StrainModel::corotational, StrainModel::hencky, StrainModel::curnier),
+                     testing::Values(ElementKind::p1, ElementKind::p2, ElementKind::p1_nodal)));
+
 TEST(Newton, ThatMayNotGoOnReportsItAndLeavesTheState) {
   SolidParams params;
   params.iteration = Iteration::newton;
