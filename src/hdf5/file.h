@@ -124,6 +124,8 @@ class Dataset : public Object {
   Element element() const;
   /// As for attributes.
   bool has_same_type(const Dataset& other) const;
+  /// Is it put together from others of its file?
+  bool is_view() const;
   /// Adds `rows` rows at the end of the first dimension; `data` holds them row by row. Extendible datasets
   /// only.
   template <class T>
@@ -167,6 +169,15 @@ class Group : public Object {
                         const Label& label) const;
   /// Gives the dataset at `path`, from the root, a second name here.
   void link_dataset(const std::string& name, const std::string& path) const;
+  /// Copies the dataset or group `name` of another group, also of another file, to the same name here.
+  void copy_from(const Group& other, const std::string& name) const;
+  /// Dataset that grows by rows of shape `row`, of which neighbours differ little: its chunks hold
+  /// `chunk_rows` rows of a part of them, compressed harder than those of a series.
+  Dataset create_packed(const std::string& name, const Shape& row, std::uint64_t chunk_rows,
+                        const Label& label) const;
+  /// Makes an array that is row `row` of another dataset of this file: a view, which takes no room of its
+  /// own.
+  void create_view(const std::string& name, const Dataset& of, std::uint64_t row, const Label& label) const;
   /// Array of fixed shape; `compress` stores it shuffled and deflated where is_compressed().
   template <class T>
   void write_array(const std::string& name, const T* data, const Shape& shape, bool compress,

@@ -38,6 +38,16 @@ Shape read_shape(Id space);
 std::uint64_t count_stored_values(const Object& dataset);
 std::uint64_t count_stored_values(const Object& object, const std::string& attribute, Id opened);
 
+/// Properties of a new dataset, without times.
+Handle creation_properties();
+/// Chunks are compressed (deflate's level; 0: not), and each carries a checksum by which a damaged one does
+/// not read. `place`: in the file. In a shared one a reader may meet a chunk half written: there they have no
+/// checksum.
+void add_filters(Id properties, Id place, unsigned deflate_level);
+void write_label(Dataset& made, const Label& label);
+/// Path of `name` in the group at `folder`.
+std::string join(const std::string& folder, const std::string& name);
+
 /// Lets a file that is opened with `access` change by whole flushes, with `file`'s journal beside it.
 bool use_commit_driver(hid_t access, const std::string& file);
 

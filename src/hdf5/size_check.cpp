@@ -47,6 +47,44 @@ std::uint64_t check_extent(const std::string& file, const std::string& object, c
   return count;
 }
 
+/// Bytes that can come out of what a dataset stores.
+std::uint64_t find_stored_bytes(Id id, Id creation) {
+  const bool is_filtered = H5Pget_layout(creation) == H5D_CHUNKED && H5Pget_nfilters(creation) > 0;
+  const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(id), find_file_bytes(id));
+  H5Eclear2(H5E_DEFAULT);
+  return multiply_bounded(stored, is_filtered ? kMaxExpansion : 1);
+}
+
+using Name = ssize_t (*)(hid_t, size_t, char*, size_t);
+
+std::string read_name(Name read, Id creation, std::size_t place) {
+  const ssize_t length = read(creation, place, nullptr, 0);
+  std::string name(static_cast<std::size_t>(std::max<ssize_t>(length, 0)) + 1, '\0');
+  read(creation, place, name.data(), name.size());
+  name.pop_back();
+  return name;
+}
+
+/// Of the dataset that a view shows. Other files are not opened, and a view of views could be one of itself.
+std::uint64_t find_viewed_bytes(const Object& view, Id creation) {
+  std::size_t count = 0;
+  const bool is_one = H5Pget_virtual_count(creation, &count) >= 0 && count == 1 &&
+                      read_name(H5Pget_virtual_filename, creation, 0) == ".";
+  if (!is_one)
+    throw IoError(view.file(), view.path() +
+                                   " is put together from several datasets or from another file's, " +
+                                   "which argil does not read; copy it into one (h5repack)");
+  const std::string source = read_name(H5Pget_virtual_dsetname, creation, 0);
+  const Handle opened = dataset(H5Dopen2(view.id(), source.c_str(), H5P_DEFAULT));
+  H5Eclear2(H5E_DEFAULT);
+  const Handle of_source = property(opened.id() < 0 ? H5I_INVALID_HID : H5Dget_create_plist(opened.id()));
+  if (opened.id() < 0 || H5Pget_layout(of_source.id()) != H5D_CHUNKED)
+    throw IoError(view.file(), view.path() + " shows " + source +
+                                   ", which is not there or is no array of chunks; " +
+                                   "the file is damaged, write it again");
+  return find_stored_bytes(opened.id(), of_source.id());
+}
+
 }  // namespace
 
 Shape internal::read_shape(Id space) {
@@ -61,12 +99,11 @@ std::uint64_t internal::count_stored_values(const Object& dataset) {
   const Id id = dataset.id();
   const Handle type = datatype(H5Dget_type(id));
   const Handle creation = property(H5Dget_create_plist(id));
-  const bool is_filtered = H5Pget_layout(creation.id()) == H5D_CHUNKED && H5Pget_nfilters(creation.id()) > 0;
-  const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(id), find_file_bytes(id));
-  H5Eclear2(H5E_DEFAULT);
+  const std::uint64_t stored = H5Pget_layout(creation.id()) == H5D_VIRTUAL
+                                   ? find_viewed_bytes(dataset, creation.id())
+                                   : find_stored_bytes(id, creation.id());
   const Handle space = dataspace(H5Dget_space(id));
-  return check_extent(dataset.file(), dataset.path(), read_shape(space.id()), H5Tget_size(type.id()),
-                      multiply_bounded(stored, is_filtered ? kMaxExpansion : 1));
+  return check_extent(dataset.file(), dataset.path(), read_shape(space.id()), H5Tget_size(type.id()), stored);
 }
 
 std::uint64_t internal::count_stored_values(const Object& object, const std::string& attribute, Id opened) {

@@ -161,7 +161,7 @@ class Comparison {
  public:
   Comparison(const ResultReader& a, const ResultReader& b, const CompareOptions& options)
       : m_options(options), m_file_a(a.file()), m_file_b(b.file()) {
-    for (const char* path : {"/timing", "/checkpoint"}) m_options.ignore.emplace_back(path);
+    for (const char* path : {"/timing", "/checkpoint", "/packed"}) m_options.ignore.emplace_back(path);
     compare_groups(a.root(), b.root(), std::nullopt);
     std::stable_sort(
         m_report.differences.begin(), m_report.differences.end(),

@@ -24,7 +24,7 @@ struct CompareOptions {
   /// that frame.
   std::vector<Tolerance> tolerances;
   /// Paths that are left out, * as above, with everything in them; of an attribute "/frames/* attribute
-  /// time". /timing and /checkpoint always are.
+  /// time". /timing, /checkpoint and /packed always are.
   std::vector<std::string> ignore;
   std::string file;  ///< that these rules are from, to be named in errors; empty: none
 };
@@ -44,10 +44,10 @@ struct CompareReport {
   bool is_equal() const { return differences.empty(); }
 };
 
-/// Compares everything in two result files except /timing and /checkpoint: names, shapes, types, attributes,
-/// values. NaN equals nothing, not even itself. Without tolerances that is exact twice: every value and every
-/// frame's hash of the whole state, the last frame's being that of the end. Throws IoError or InputError when
-/// a file cannot be used, InputError for a rule that fits nothing in either file.
+/// Compares everything in two result files except /timing, /checkpoint and /packed: names, shapes, types,
+/// attributes, values. NaN equals nothing, not even itself. Without tolerances that is exact twice: every
+/// value and every frame's hash of the whole state, the last frame's being that of the end. Throws IoError or
+/// InputError when a file cannot be used, InputError for a rule that fits nothing in either file.
 CompareReport compare_results(const std::string& file_a, const std::string& file_b,
                               const CompareOptions& options);
 

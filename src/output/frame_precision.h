@@ -4,10 +4,11 @@
 
 namespace argil::output {
 
-/// How much frames keep of fields and of the skin. Positions of the cage are always whole.
+/// How much the frames keep of arrays that are stored compressed, in bits of their largest value.
 enum class FramePrecision : std::uint8_t {
-  single,  ///< arrays that are stored compressed: 24 bits of their largest value
-  whole,   ///< every bit
+  picture,  ///< what a picture or a plot shows: 22 of the cage's positions, 17 of the skin's, 14 of fields
+  single,   ///< 24 of fields and the skin's positions; the cage's positions are whole
+  whole,    ///< every bit
 };
 
 }  // namespace argil::output

@@ -23,8 +23,7 @@ bool has_equal_bits(const std::vector<double>& a, const std::vector<double>& b) 
 
 }  // namespace
 
-void round_to_single(std::vector<double>& values) {
-  constexpr int kBits = 24;          // of a number in single precision
+void round_to_bits(std::vector<double>& values, int bits) {
   constexpr double kLeast = 1e-290;  // below it the step would not be a normal number,
   constexpr double kMost = 1e290;    // above it a sum of steps might not be one
   double largest = 0.0;
@@ -35,8 +34,8 @@ void round_to_single(std::vector<double>& values) {
   if (largest < kLeast || largest > kMost) return;
   int exponent = 0;
   std::frexp(largest, &exponent);  // largest < 2^exponent
-  const double step = std::ldexp(1.0, exponent - kBits);
-  const double steps = std::ldexp(1.0, kBits - exponent);
+  const double step = std::ldexp(1.0, exponent - bits);
+  const double steps = std::ldexp(1.0, bits - exponent);
   for (double& value : values) value = std::nearbyint(value * steps) * step + 0.0;
 }
 
@@ -51,11 +50,13 @@ FrameWriter::FrameWriter(Group frames, std::uint64_t num_frames, FramePrecision 
 }
 
 template <class Array>
-void FrameWriter::put(const Group& group, const char* name, const Array& array, const Shape& shape, Bits bits,
-                      const hdf5::Label& label) {
+void FrameWriter::put(const Group& group, const char* name, const Array& array, const Shape& shape,
+                      const Kept& kept, const hdf5::Label& label) {
   std::vector<double> values(array.data(), array.data() + array.size());
-  if (bits == Bits::as_chosen && m_precision == FramePrecision::single && Group::is_compressed<double>(shape))
-    round_to_single(values);
+  const int bits = m_precision == FramePrecision::picture  ? kept.picture
+                   : m_precision == FramePrecision::single ? kept.single
+                                                           : 0;
+  if (bits > 0 && Group::is_compressed<double>(shape)) round_to_bits(values, bits);
   const auto last = m_last.find(name);
   if (last != m_last.end() && !values.empty() && last->second.shape == shape &&
       has_equal_bits(last->second.values, values))
@@ -72,15 +73,17 @@ void FrameWriter::write(const sim::Frame& frame, int epoch) {
   if (epoch > 0) group.write_attribute(schema::kEpoch, std::int64_t{epoch});
   // In Mandel's notation the Euclidean norm of the six numbers is the tensor's Frobenius norm.
   const Field plastic_norm = frame.plastic_strain.colwise().norm();
+  constexpr int kSingle = 24;
+  constexpr Kept kCage{22, 0}, kSkin{17, kSingle}, kField{14, kSingle};  // README.md: what that comes to
   const auto put_field = [&](const char* name, const Field& field, const hdf5::Label& label) {
-    put(group, name, field, field_shape(field), Bits::as_chosen, label);
+    put(group, name, field, field_shape(field), kField, label);
   };
-  put(group, "position", frame.position, entity_shape(frame.position), Bits::all, schema::kPosition);
+  put(group, "position", frame.position, entity_shape(frame.position), kCage, schema::kPosition);
   put_field("saturation", frame.saturation, schema::kSaturation);
-  put(group, "plastic_strain", frame.plastic_strain, entity_shape(frame.plastic_strain), Bits::as_chosen,
+  put(group, "plastic_strain", frame.plastic_strain, entity_shape(frame.plastic_strain), kField,
       schema::kPlasticStrain);
   put_field("plastic_strain_norm", plastic_norm, schema::kPlasticNorm);
-  put(group, "skin_position", frame.skin_position, entity_shape(frame.skin_position), Bits::as_chosen,
+  put(group, "skin_position", frame.skin_position, entity_shape(frame.skin_position), kSkin,
       schema::kSkinPosition);
   put_field("skin_saturation", frame.skin_saturation, schema::kSkinSaturation);
   put_field("skin_influence", frame.skin_influence, schema::kSkinInfluence);

@@ -19,6 +19,7 @@ class FrameWriter {
   FrameWriter(hdf5::Group frames, std::uint64_t num_frames, FramePrecision precision);
   /// `epoch`: of its cells, 0 for those of the start.
   void write(const sim::Frame& frame, int epoch);
+  FramePrecision precision() const { return m_precision; }
 
  private:
   struct Last {
@@ -26,10 +27,13 @@ class FrameWriter {
     hdf5::Shape shape;
     std::vector<double> values;
   };
-  enum class Bits : std::uint8_t { as_chosen, all };
+  /// Bits that are kept of the largest value; 0: all.
+  struct Kept {
+    int picture, single;
+  };
   template <class Array>
   void put(const hdf5::Group& group, const char* name, const Array& array, const hdf5::Shape& shape,
-           Bits bits, const hdf5::Label& label);
+           const Kept& kept, const hdf5::Label& label);
 
   hdf5::Group m_frames;
   std::uint64_t m_num_frames;
@@ -37,9 +41,9 @@ class FrameWriter {
   std::map<std::string, Last> m_last;  // as stored, by the name in the frame
 };
 
-/// Rounds to multiples of the power of two that leaves the largest value 24 bits, as single precision has;
-/// zeros lose their sign. Where a value is not finite, or the largest is beyond
-/// 1e290 or below 1e-290, nothing changes.
-void round_to_single(std::vector<double>& values);
+/// Rounds to multiples of the power of two that leaves the largest value `bits` bits (single precision has
+/// 24); zeros lose their sign. Where a value is not finite, or the largest is beyond 1e290 or below 1e-290,
+/// nothing changes.
+void round_to_bits(std::vector<double>& values, int bits);
 
 }  // namespace argil::output

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "output/array_shape.h"
 #include "output/frame_writer.h"
+#include "output/pack.h"
 #include "output/table.h"
 
 namespace argil::output {
@@ -431,8 +432,10 @@ void ResultFile::finish(const std::optional<Failure>& failure, bool interrupted)
   // The library closes a file when the last object in it is closed, and reports then what could not be
   // written.
   File file = std::move(m_impl->file);
+  const bool is_to_pack = !failure && !interrupted && m_impl->frames.precision() != FramePrecision::whole;
   m_impl.reset();
   file.close();
+  if (is_to_pack) try_to_pack(file.name());
 }
 
 void write_accuracy(const std::string& result_file, double wanted, double estimated, double cpu_of_passes) {

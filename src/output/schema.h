@@ -178,6 +178,9 @@ inline constexpr hdf5::Label kYoungsModulus{"Pa", "Young's modulus of each tet, 
 inline constexpr std::uint64_t kHapticChunk = 1024;
 inline constexpr std::uint64_t kPhysicsChunk = 256;
 
+/// Group of what frames' arrays are views of, where a run was packed: in order, a distinct one a row.
+inline constexpr const char* kPacked = "packed";
+
 /// Group of an unfinished run's last checkpoint; its arrays are the state's by name, one entity a row.
 inline constexpr const char* kCheckpoint = "checkpoint";
 inline constexpr hdf5::Label kState{"-", "part of the state from which the run is resumed, SI units"};

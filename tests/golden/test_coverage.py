@@ -13,6 +13,7 @@ GOLDEN = Path(__file__).resolve().parent
 ELSEWHERE = {  # point by point in unit tests
     "/preset": {"none"},
     "/body/surface/fit": {"surface", "enclose"},  # what /body/shape/fit does
+    "/output/frame_precision": {"picture"},  # tests/unit/output/test_frame_writer.cpp, test_pack.cpp
     "/body/cells/remesh": {"never"},  # tests/unit/run/test_new_cells.py
     "/body/shape/kind": {"cylinder", "box", "dinosaur", "figure"},
     "/material/effective_medium/scheme": {"dilute_strain", "voigt", "reuss", "hs_lower", "hs_upper"},

@@ -54,6 +54,42 @@ TEST(HostileFile, ADatasetOfMoreThanTheFileHoldsIsRefused) {
                           "/d declares 2^64 or more values");
 }
 
+/// /d, of `count` numbers, shows /`source` of `file` (".": its own); /chunks has a chunk of eight numbers.
+std::string make_view(const std::string& name, const char* file_of_source, const char* source,
+                      hsize_t count) {
+  const hid_t file = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hsize_t eight = 8;
+  const hid_t chunks = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(chunks, 1, &eight);
+  const hid_t small = H5Screate_simple(1, &eight, nullptr);
+  const hid_t stored = H5Dcreate2(file, "chunks", H5T_IEEE_F64LE, small, H5P_DEFAULT, chunks, H5P_DEFAULT);
+  const std::vector<double> values(8, 2.0);
+  H5Dwrite(stored, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  H5Pset_virtual(creation, space, file_of_source, source, space);
+  H5Dclose(H5Dcreate2(file, "d", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+  for (const hid_t list : {chunks, creation}) H5Pclose(list);
+  for (const hid_t each : {small, space}) H5Sclose(each);
+  H5Dclose(stored);
+  H5Fclose(file);
+  return name;
+}
+
+TEST(HostileFile, AViewShowsChunksOfItsOwnFileAndNoMoreThanTheyHold) {
+  const TempFolder folder;
+  const std::string name = folder / "f.h5", other = folder / "other.h5";
+  make_view(other, ".", "/chunks", 8);
+  EXPECT_EQ(read(make_view(name, ".", "/chunks", 8)), std::vector<double>(8, 2.0));
+  ARGIL_EXPECT_THROW_WITH(
+      read(make_view(name, ".", "/chunks", 200000)), IoError,
+      "/d declares 200000 values of 8 bytes, and the file holds at most 64 bytes of them");
+  ARGIL_EXPECT_THROW_WITH(read(make_view(name, other.c_str(), "/chunks", 8)), IoError,
+                          "/d is put together from several datasets or from another file's");
+  ARGIL_EXPECT_THROW_WITH(read(make_view(name, ".", "/d", 8)), IoError, "/d shows /d, which is not there or");
+  ARGIL_EXPECT_THROW_WITH(read(make_view(name, ".", "/none", 8)), IoError, "/d shows /none, which is not");
+}
+
 TEST(HostileFile, RowsThatWereNeverWrittenReadAsZerosWhereTheyAreFew) {
   const TempFolder folder;
   const std::vector<double> values = read(make_declaring(folder / "f.h5", {131072}, 1024));

@@ -45,4 +45,5 @@ def main():
     check_reader(simple.Xdmf3ReaderT(FileName=[file]), "Xdmf3ReaderT", frames)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -113,6 +113,29 @@ TEST(FrameWriter, KeepsEveryBitOfTheCageAndTwentyFourOfLargeFields) {
   }
 }
 
+TEST(FrameWriter, KeepsForAPictureWhatTheFormatSays) {
+  const TempFolder folder;
+  const sim::Frame wanted = make_large_frame(0);
+  ResultFile file(folder / "r.h5", make_large_header(FramePrecision::picture));
+  file.append(wanted);
+  file.finish(std::nullopt);
+  const ResultReader reader(folder / "r.h5");
+  const sim::Frame read = reader.read_frame(reader.read_frame_list().at(0));
+  // Half a step, as above: 2^-22 for the cage, 2^-17 for the skin, 2^-14 for fields. Less would be too dear.
+  const auto expect_bits = [](double error, double largest, int bits) {
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    const double half_step = std::ldexp(0.5, exponent - bits);
+    EXPECT_LE(error, half_step) << bits;
+    EXPECT_GT(error, 0.9 * half_step) << bits;
+  };
+  expect_bits((read.position - wanted.position).cwiseAbs().maxCoeff(), 1.0 / 3.0, 22);
+  expect_bits((read.skin_position - wanted.skin_position).cwiseAbs().maxCoeff(), 1.0 / 3.0, 17);
+  expect_bits((read.saturation - wanted.saturation).cwiseAbs().maxCoeff(), 1.0 / 3.0, 14);
+  expect_bits((read.plastic_strain - wanted.plastic_strain).cwiseAbs().maxCoeff(), 0.1, 14);
+  EXPECT_EQ(read.state_hash, wanted.state_hash);
+}
+
 TEST(FrameWriter, MakesLargeFilesSmallerBySingleThanByDouble) {
   const TempFolder folder;
   const auto find_size = [&](FramePrecision precision) {
@@ -125,20 +148,20 @@ TEST(FrameWriter, MakesLargeFilesSmallerBySingleThanByDouble) {
   EXPECT_LT(find_size(FramePrecision::single) + 150000, find_size(FramePrecision::whole));
 }
 
-TEST(RoundToSingle, KeepsTheLargestAsSinglePrecisionDoesAndRepeatsItself) {
+TEST(RoundToBits, KeepsTheLargestAsSinglePrecisionDoesAndRepeatsItself) {
   std::vector<double> values{0.7, -0.1, 1e-9, -1e-9, 0.0, -0.0, std::ldexp(1.0, -24)};
-  round_to_single(values);
+  round_to_bits(values, 24);
   EXPECT_EQ(values[0], static_cast<double>(0.7F));
   EXPECT_NEAR(values[1], -0.1, std::ldexp(1.0, -25));
   EXPECT_EQ(values[2], 0.0);
   EXPECT_FALSE(std::signbit(values[3]) || std::signbit(values[5]));
   EXPECT_EQ(values[6], std::ldexp(1.0, -24));
   std::vector<double> again = values;
-  round_to_single(again);
+  round_to_bits(again, 24);
   EXPECT_EQ(again, values);
 }
 
-TEST(RoundToSingle, LeavesWhatItCannotRound) {
+TEST(RoundToBits, LeavesWhatItCannotRound) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& values : {std::vector<double>{0.1, infinity},
                                             {0.1, -infinity},
@@ -147,11 +170,11 @@ TEST(RoundToSingle, LeavesWhatItCannotRound) {
                                             {0.0, 0.0},
                                             {}}) {
     std::vector<double> same = values;
-    round_to_single(same);
+    round_to_bits(same, 24);
     EXPECT_EQ(same, values);
   }
   std::vector<double> with_nan{0.1, std::numeric_limits<double>::quiet_NaN()};
-  round_to_single(with_nan);
+  round_to_bits(with_nan, 24);
   EXPECT_EQ(with_nan[0], 0.1);
 }
 
