@@ -70,12 +70,8 @@ void ForceErrorEstimate::keep_solution(const ContactLoad& load, const NodalForce
   m_state.solved_power += m_solid.prediction.tau * find_stiffness_power(v);
 }
 
-<<<<<<< HEAD
-/// v·K v [W/s], K of the step's matrix: elastic, but for tets at their yield that flow on as they did.
-=======
 /// v·K (v − v₀) [W/s], v₀ where the step's last solve began, K of its matrix: elastic, but for tets at their
-/// yield, which flow on as they did.
->>>>>>> 576d040cb305a4020b0db06dc9feebe69fc0ae5d
+/// yield that flow on as they did.
 double ForceErrorEstimate::find_stiffness_power(const Points& v) const {
   const solid::Elements& elements = m_solid.model.elements;
   const solid::ElasticArrays elastic = m_solid.elastic.arrays();
@@ -99,14 +95,9 @@ double ForceErrorEstimate::find_stiffness_power(const Points& v) const {
       strain << of_tet[0], of_tet[1], of_tet[2], kSqrt2 * of_tet[3], kSqrt2 * of_tet[4], kSqrt2 * of_tet[5];
       strain.head<3>().array() -= strain.head<3>().mean();
       const double norm = strain.norm();
-<<<<<<< HEAD
       if (norm > 0.0 && norm >= solid::kAtYield * m_solid.materials.yield()(p) &&
           m_solid.system.unloads[static_cast<std::size_t>(p)] == 0)
-        power -= 2.0 * e.mu * std::pow(strain.dot(rate) / norm, 2);
-=======
-      if (norm > 0.0 && norm >= kAtYield * m_solid.materials.yield()(p))
         power -= 2.0 * e.mu * (strain.dot(rate) / norm) * (strain.dot(change) / norm);
->>>>>>> 576d040cb305a4020b0db06dc9feebe69fc0ae5d
     }
     return m_solid.materials.weight()(p) * power;
   };

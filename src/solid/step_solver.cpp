@@ -108,15 +108,11 @@ StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loa
     set_iterate(body, region.part(), 1.0);
     solved = settle_contacts(body, region.part(), loads.contacts);
   }
-<<<<<<< HEAD
   solved = solved && !find_unloading(body, region.part());
-  if (!solved) set_iterate(body, region.part(), 0.0);  // the same step anew
-=======
   if (!solved)
     set_iterate(body, region.part(), 0.0);  // the same step anew
   else
     solved = !begin_follow_up(body, region, loads, tick);
->>>>>>> 576d040cb305a4020b0db06dc9feebe69fc0ae5d
   return StepStatus::ok();
 }
 
