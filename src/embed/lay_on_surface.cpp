@@ -13,6 +13,7 @@ namespace argil::embed {
 namespace {
 
 constexpr int kSweeps = 6;
+constexpr int kSweepsOut = 2;
 constexpr double kLeastShape = 0.25;
 constexpr double kClose = 0.02;  // of an edge: nearer to the surface a vertex stays
 constexpr int kHalvings = 3;     // of a way that tets do not bear
@@ -74,6 +75,59 @@ class Mover {
   mesh::TetMesh& m_body;
 };
 
+/// How far the surface lies outside the facets around each vertex, along their normal: Σ gap N a over Σ N a
+/// of the points of a rule of degree 2 on each. Where the surface is not that of a facet's side, nothing
+/// counts.
+class Gaps {
+ public:
+  Gaps(const mesh::TriangleMesh& surface, const TriangleTree& tree, const Triangles& boundary,
+       const Points& x)
+      : m_gap(Field::Zero(x.cols())), m_area(m_gap), m_edge(m_gap), m_normal(Points::Zero(3, x.cols())) {
+    for (const auto& corners : boundary.colwise()) {
+      const Vec3 a = x.col(corners(0)), b = x.col(corners(1)), c = x.col(corners(2));
+      const Vec3 doubled = Vec3(b - a).cross(Vec3(c - a));
+      const double longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
+      for (const int v : corners) {
+        m_normal.col(v) += doubled;
+        m_edge(v) = std::max(m_edge(v), longest);
+      }
+      for (int k = 0; k < 3; ++k) {
+        Vec3 weights = Vec3::Constant(1.0 / 6.0);
+        weights(k) = 2.0 / 3.0;
+        const Vec3 point = weights(0) * a + weights(1) * b + weights(2) * c;
+        const double gap = find_gap(surface, tree, point, doubled.normalized(), longest);
+        for (Eigen::Index i = 0; i < 3; ++i) {
+          m_gap(corners(i)) += gap * weights(i) * doubled.norm();
+          m_area(corners(i)) += weights(i) * doubled.norm();
+        }
+      }
+    }
+  }
+  Vec3 find_way(int v) const {
+    constexpr double kMost = 0.2;  // of an edge
+    if (!(m_area(v) > 0.0)) return Vec3::Zero();
+    const double most = kMost * m_edge(v);
+    return std::clamp(m_gap(v) / m_area(v), -most, most) * m_normal.col(v).normalized();
+  }
+
+ private:
+  static double find_gap(const mesh::TriangleMesh& surface, const TriangleTree& tree, const Vec3& point,
+                         const Vec3& normal, double edge) {
+    constexpr double kSameSide = 0.3;  // cosine
+    const TriangleTree::Nearest nearest = tree.find_nearest(point, edge);
+    if (nearest.triangle < 0) return 0.0;
+    const auto corners = surface.triangles.col(nearest.triangle);
+    const Vec3 a = surface.vertices.col(corners(0));
+    const Vec3 there =
+        Vec3(surface.vertices.col(corners(1)) - a).cross(Vec3(surface.vertices.col(corners(2)) - a));
+    return there.normalized().dot(normal) > kSameSide ? (nearest.point - point).dot(normal) : 0.0;
+  }
+
+  Field m_gap, m_area;  // [m³], [m²]
+  Field m_edge;         // longest [m]
+  Points m_normal;
+};
+
 }  // namespace
 
 void lay_on_surface(const mesh::TriangleMesh& surface, const mesh::Topology& topology, mesh::TetMesh& body) {
@@ -93,6 +147,13 @@ void lay_on_surface(const mesh::TriangleMesh& surface, const mesh::Topology& top
       const TriangleTree::Nearest nearest = tree.find_nearest(x, std::numeric_limits<double>::infinity());
       if (nearest.distance > kClose * edge) mover.move(v, nearest.point, false);
     }
+  // Facets whose corners lie on a round part cut it off: half of what they miss comes to lie on either side.
+  for (int sweep = 0; sweep < kSweepsOut; ++sweep) {
+    const Gaps gaps(surface, tree, topology.boundary, body.vertices);
+    for (int v = 0; v < body.num_vertices(); ++v)
+      if (is_outside[static_cast<std::size_t>(v)] != 0)
+        mover.move(v, body.vertices.col(v) + gaps.find_way(v), false);
+  }
 }
 
 }  // namespace argil::embed

@@ -45,10 +45,11 @@ TEST(LayOnSurface, ABallThatIsTooLargeComesToLieOnTheSphere) {
   const double worst = find_worst(ball);
   ASSERT_GT(find_farthest(ball, topology, sphere), 4e-3);
   lay_on_surface(sphere, topology, ball);
-  EXPECT_LT(find_farthest(ball, topology, sphere), 2e-4);
+  // Of facets of edge h vertices lie outside by about h²/12R, so that their middles lie as far inside.
+  EXPECT_LT(find_farthest(ball, topology, sphere), 5e-4);
   EXPECT_GE(find_worst(ball), std::min(worst, 0.25));
   EXPECT_NEAR(compute_skin_volume({ball.vertices, topology.boundary}), std::numbers::pi / 6.0 * 1e-3,
-              0.03 * std::numbers::pi / 6.0 * 1e-3);
+              0.003 * std::numbers::pi / 6.0 * 1e-3);
 }
 
 TEST(LayOnSurface, APlateThinnerThanACellIsNoThickerThanItIs) {

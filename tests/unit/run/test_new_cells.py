@@ -163,7 +163,6 @@ class NewCellsOfAHorn(NewCells):
     """The top of a ball is drawn up by 0.6 radii of it, and let go."""
     BALL, WAY = 0.02, 0.006  # [m]
     JUMP = 1.0  # its neck is a cell wide; four times its strength is borne by the cells that it began with
-    VOLUME = 6e-3  # drawn by its strength, clay swells: √3 c_u/3 of a modulus of 0.83 MPa is a hundredth where it is drawn
 
     @classmethod
     def write(cls, folder):
@@ -198,7 +197,7 @@ class NewCellsOfAHorn(NewCells):
 
 class NewCellsOfTenNodes(NewCells):
     ELEMENT, NEAR = "p2", 0.0024
-    JUMP = 0.05
+    JUMP = 0.08
 
 
 if __name__ == "__main__":
