@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/nearest.h"
 #include "solid/response.h"
 
 namespace argil::sim {
@@ -46,6 +47,14 @@ void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::P
 
 /// A quarter of the debt a step: with more, a force that comes to rest would swing. There the debt of a step
 /// is its change, so that of what is off, z² − z + β = 0 remains from step to step.
+void ForceBetweenSteps::go_on_from(const ForceBetweenSteps& before, const Points& x_before, const Points& x) {
+  m_state = before.m_state;
+  for (SurfaceForce& share : m_state.shares)
+    for (int& v : share.vertex)
+      if (v >= 0) v = contact::find_nearest_point(x, x_before.col(v));
+  commit();
+}
+
 void ForceBetweenSteps::repay(bool has_left, LoadCollector& load) {
   constexpr double kPart = 0.25;        // β
   constexpr double kNegligible = 1e-9;  // of what the hand feels

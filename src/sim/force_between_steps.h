@@ -55,8 +55,9 @@ class ForceBetweenSteps {
   /// The hand has felt this for a tick.
   void feel(const Vec3& force);
 
-  /// Of a surface that had these vertices and others.
-  void go_on_from(const ForceBetweenSteps& before) { m_state = m_committed = before.m_state; }
+  /// Of a surface of other vertices, which are at `x` where it was at `x_before`: what is owed goes to the
+  /// nearest of them.
+  void go_on_from(const ForceBetweenSteps& before, const Points& x_before, const Points& x);
   void commit() { m_committed = m_state; }
   void roll_back() { m_state = m_committed; }
   void serialize(Archive& archive);

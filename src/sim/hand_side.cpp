@@ -76,7 +76,7 @@ void HandSide::go_on_from(const HandSide& before, const Points& x) {
   m_grip.go_on_from(before.m_grip, before.m_touched.x_t1(), x, m_state.contact_tool);
   if (m_friction)
     m_friction->go_on_from(*before.m_friction, before.m_touched.x_t0(), before.m_touched.x_t1(), x);
-  if (m_between) m_between->go_on_from(*before.m_between);
+  if (m_between) m_between->go_on_from(*before.m_between, before.m_touched.x_t1(), x);
   m_pressure->stiffness() = m_body.find_surface_stiffness();
   place_surface(x);
   commit();
