@@ -131,6 +131,7 @@ bool ContactSurface::find_moved(const OrderedItems& nodes, const Points& x, std:
 void ContactSurface::add_force(const SurfaceForce& f, NodalForce& force) const {
   for (std::size_t c = 0; c < 3 && f.vertex[c] >= 0; ++c) {
     const Vec3 share = f.weight[c] * f.force;
+    ARGIL_ASSERT(f.vertex[c] < num_vertices(), f.vertex[c]);  // of this surface, not of an earlier one
     const auto i = static_cast<std::size_t>(f.vertex[c]);
     for (auto k = static_cast<std::size_t>(m_begin[i]); k < static_cast<std::size_t>(m_begin[i + 1]); ++k)
       force.add(m_node[k], m_weight[k] * share);

@@ -149,22 +149,6 @@ TEST(NewCells, AreFeltBetweenStepsToo) {
   }
 }
 
-TEST(NewCells, OfFewerVerticesGetWhatIsOwedToTheOldOnes) {
-  // The hand leaves in the first step after: what it felt between steps is given to the vertices that it
-  // touched.
-  Pressed p(make_clay(BetweenFrames::re_evaluate, 4), 16);
-  p.go(-1e-3, 2e-3, 60);
-  ASSERT_GT(p.force().z(), 1.0);
-  Body body = test::make_block_body(6, 6, 3, Vec3(0.04, 0.04, kTop), 0.3);
-  body.epoch = 1;
-  ASSERT_TRUE(p.simulation.renew_cells(std::move(body)));
-  p.go(2e-3, -2e-3, 4);
-  p.go(-2e-3, -2e-3, 40);
-  EXPECT_EQ(p.force().norm(), 0.0);
-  EXPECT_TRUE(p.simulation.body_state().solid.x.allFinite());
-  EXPECT_LT(p.simulation.physics_record().kinetic_energy, 1e-9);
-}
-
 TEST(NewCells, StandWhereTheyAreHeld) {
   Pressed p;
   p.go(-1e-3, 4e-3, 20);  // fast
