@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "contact/nearest.h"
 #include "embed/curved_split.h"
 #include "embed/join_fine.h"
 #include "embed/lay_on_surface.h"
@@ -88,8 +89,7 @@ std::vector<sim::TouchedPlace> move_places(const PresentShape& now, const Points
   const Points& moved = has_skin ? skin : now.x;
   std::vector<sim::TouchedPlace> places = body.touched_places;
   for (sim::TouchedPlace& place : places) {
-    Eigen::Index nearest = 0;
-    (rest.colwise() - place.position).colwise().squaredNorm().minCoeff(&nearest);
+    const int nearest = contact::find_nearest_point(rest, place.position);
     place.position += moved.col(nearest) - rest.col(nearest);
   }
   return places;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/mandel.h"
-#include "solid/hencky_lanes.h"
+#include "solid/unloading.h"
 
 namespace argil::sim {
 namespace {
@@ -74,7 +74,6 @@ void ForceErrorEstimate::keep_solution(const ContactLoad& load, const NodalForce
 /// yield that flow on as they did.
 double ForceErrorEstimate::find_stiffness_power(const Points& v) const {
   const solid::Elements& elements = m_solid.model.elements;
-  const solid::ElasticArrays elastic = m_solid.elastic.arrays();
   const auto find_rate = [&](const Points& speed, int p) {
     const Mat3 H = elements.nodes_per_tet == 4
                        ? solid::find_gradient<4>(elements, m_solid.materials.gradient(), speed, p)
@@ -88,16 +87,9 @@ double ForceErrorEstimate::find_stiffness_power(const Points& v) const {
     const Vec6 change = m_solid.newton.is_follow_up ? Vec6(rate - find_rate(m_solid.system.v_base, p)) : rate;
     const solid::Elasticity e = m_solid.materials.elasticity(tet);
     double power = rate.dot(solid::compute_stress(e, change));
-    if (m_solid.model.params.flows_in_solve && elastic.strain &&
-        elastic.is_known[static_cast<std::size_t>(p / kLanes)] != 0) {
-      const double* of_tet = elastic.strain + 6 * p;
-      Vec6 strain;
-      strain << of_tet[0], of_tet[1], of_tet[2], kSqrt2 * of_tet[3], kSqrt2 * of_tet[4], kSqrt2 * of_tet[5];
-      strain.head<3>().array() -= strain.head<3>().mean();
-      const double norm = strain.norm();
-      if (norm > 0.0 && norm >= solid::kAtYield * m_solid.materials.yield()(p) &&
-          m_solid.system.unloads[static_cast<std::size_t>(p)] == 0)
-        power -= 2.0 * e.mu * (strain.dot(rate) / norm) * (strain.dot(change) / norm);
+    if (m_solid.model.params.flows_in_solve && m_solid.system.unloads[static_cast<std::size_t>(p)] == 0) {
+      const Vec6 n = solid::find_flow_direction(m_solid, p);
+      power -= 2.0 * e.mu * n.dot(rate) * n.dot(change);
     }
     return m_solid.materials.weight()(p) * power;
   };

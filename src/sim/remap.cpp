@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/mandel.h"
+#include "contact/nearest.h"
 #include "embed/tet_locator.h"
 #include "mesh/curved.h"
 #include "mesh/topology.h"
@@ -99,11 +100,7 @@ Field take_means(const Origins& origins, const Field& from) {
 /// The new nodes that are nearest to old ones.
 std::vector<int> find_nearest_nodes(const Points& x, const std::vector<int>& old_nodes, const Points& old_x) {
   std::vector<int> nodes;
-  for (const int n : old_nodes) {
-    Eigen::Index nearest = 0;
-    (x.colwise() - old_x.col(n)).colwise().squaredNorm().minCoeff(&nearest);
-    nodes.push_back(static_cast<int>(nearest));
-  }
+  for (const int n : old_nodes) nodes.push_back(contact::find_nearest_point(x, old_x.col(n)));
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;

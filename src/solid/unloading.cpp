@@ -18,15 +18,9 @@ bool has_flowing_tangents(const Body& body) {
 }
 
 /// n : dε over the yield, of a point at it; 0 below.
-double find_loading(const Body& body, const ElasticArrays& elastic, const Points& v, Eigen::Index p) {
-  const double* of_point = elastic.strain + 6 * p;
-  Vec6 n;
-  n << of_point[0], of_point[1], of_point[2], kSqrt2 * of_point[3], kSqrt2 * of_point[4],
-      kSqrt2 * of_point[5];
-  n.head<3>().array() -= n.head<3>().mean();
-  const double yield = body.materials.yield()(p);
-  const double norm = n.norm();
-  if (!(norm > 0.0 && norm >= kAtYield * yield)) return 0.0;
+double find_loading(const Body& body, const Points& v, Eigen::Index p) {
+  const Vec6 n = find_flow_direction(body, p);
+  if (n.isZero(0.0)) return 0.0;
   const Elements& elements = body.model.elements;
   const auto point = static_cast<int>(p);
   const Mat3 H = elements.nodes_per_tet == 4
@@ -34,7 +28,7 @@ double find_loading(const Body& body, const ElasticArrays& elastic, const Points
                      : find_gradient<10>(elements, body.materials.gradient(), v, point);
   const Mat3 stretch = Mat3::Identity() + from_mandel(body.kinematics.strain().col(p));
   const Mat3 rate = body.kinematics.rotation().middleCols<3>(3 * p).transpose() * H * stretch.inverse();
-  return body.prediction.tau * n.dot(to_mandel(0.5 * (rate + rate.transpose()))) / (norm * yield);
+  return body.prediction.tau * n.dot(to_mandel(0.5 * (rate + rate.transpose()))) / body.materials.yield()(p);
 }
 
 /// Calls mark(loading, unloads) of each point, which says whether it has changed the latter. Returns how many
@@ -47,7 +41,7 @@ double mark_points(Body& body, const Part& part, Mark mark) {
   const auto mark_point = [&](std::ptrdiff_t p) {
     if (elastic.is_known[p / kLanes] == 0) return false;
     char& unloads = body.system.unloads[static_cast<std::size_t>(p)];
-    if (!mark(find_loading(body, elastic, body.trial.v, p), unloads)) return false;
+    if (!mark(find_loading(body, body.trial.v, p), unloads)) return false;
     body.system.is_tet_changed[static_cast<std::size_t>(p / Q)] = 1;
     return true;
   };
@@ -59,6 +53,19 @@ double mark_points(Body& body, const Part& part, Mark mark) {
 }
 
 }  // namespace
+
+Vec6 find_flow_direction(const Body& body, Eigen::Index point) {
+  const ElasticArrays elastic = body.elastic.arrays();
+  if (!elastic.strain || elastic.is_known[point / kLanes] == 0) return Vec6::Zero();
+  const double* of_point = elastic.strain + 6 * point;
+  Vec6 n;
+  n << of_point[0], of_point[1], of_point[2], kSqrt2 * of_point[3], kSqrt2 * of_point[4],
+      kSqrt2 * of_point[5];
+  n.head<3>().array() -= n.head<3>().mean();
+  const double norm = n.norm();
+  if (!(norm > 0.0 && norm >= kAtYield * body.materials.yield()(point))) return Vec6::Zero();
+  return n / norm;
+}
 
 void begin_unloading(Body& body, const Part& part) {
   body.system.unloading_rounds = 0;

@@ -10,6 +10,10 @@ namespace argil::solid {
 /// step's start, by the speed of the last one. Elastic strains must be known.
 void begin_unloading(Body& body, const Part& part);
 
+/// Of a point at its yield, dev ε_e over its norm, Mandel, in the frame of R; zero of others, and where its
+/// elastic strain is not known.
+Vec6 find_flow_direction(const Body& body, Eigen::Index point);
+
 /// By a solution. True where it takes points back that were to flow: the same step is to be solved anew.
 /// Those that were not to flow stay elastic for this step.
 bool find_unloading(Body& body, const Part& part);
