@@ -178,6 +178,7 @@ void PressureContact::press_face(Face& face, double spacing, Contacts& out) {
   if (is_rigid(face)) spacing /= kFinerOnRigid;
   if (face.size <= spacing && m_yielding == Yielding::yes) {
     face.cover = face.whole;
+    face.by_corners = 1.0;
     return press_corners(face, 1.0);
   }
   const double levels = std::clamp(std::log2(face.size / spacing), 0.0, static_cast<double>(m_most_levels));
@@ -187,12 +188,14 @@ void PressureContact::press_face(Face& face, double spacing, Contacts& out) {
   const double passage = m_yielding == Yielding::yes ? 1.0 : 0.4;
   const double share = std::clamp((levels - level - 0.5) / passage + 0.5, 0.0, 1.0);
   face.cover = {};
+  face.by_corners = 0.0;
   for (int i = 0; i < 2; ++i) {
     const double part = i == 0 ? 1.0 - share : share;
     if (!(part > 0.0)) continue;
     Cover cover;
     if (level + i == 0 && m_yielding == Yielding::yes) {
       cover = face.whole;
+      face.by_corners = part;
       press_corners(face, part);
     } else {
       cover = press_pieces(face, kWhole, level + i, part, out);
@@ -220,12 +223,15 @@ Patch PressureContact::find_patch() const {
   constexpr double kUncovered = 1e-6;  // weight of a face none of whose corners is near
   double area = 0.0;
   double modulus = 0.0;
+  double cell = 0.0;
   for (const Face& face : m_faces) {
     const double weight = face.whole.facing_area + kUncovered * face.area;
     area += weight;
     modulus += weight * m_stiffness.modulus(face.number);
+    if (m_stiffness.cell.size() > 0) cell += weight * m_stiffness.cell(face.number);
   }
-  return {m_patch_radius, area > 0.0 ? modulus / area : 0.0};
+  if (!(area > 0.0)) return {m_patch_radius};
+  return {m_patch_radius, modulus / area, cell / area};
 }
 
 /// κ [Pa/m] of a tool under which the body keeps its shape. Hertz: a ball that is d deep in a half-space is

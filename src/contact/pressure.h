@@ -18,6 +18,7 @@ struct SurfaceStiffness {
   Field per_area;  ///< κ [Pa/m] of a tool that the body yields to
   Field modulus;   ///< E/(1 − ν²) [Pa] of the body under it, for a tool that it does not yield to
   std::vector<char> is_rigid = {};  ///< its corners cannot give way; empty: none of them is such
+  Field cell = {};                  ///< edge of a regular tet as large as that under it [m]; empty: not known
 };
 
 /// The same of one triangle.
@@ -31,6 +32,7 @@ struct StiffnessOfTriangle {
 struct Patch {
   double radius = 0.0;   ///< of a disc as large [m]
   double modulus = 0.0;  ///< E* [Pa] of the body under it
+  double cell = 0.0;     ///< edge of its cells there [m]; 0: not known
 };
 
 /// How the body answers the tool.
@@ -67,6 +69,9 @@ class PressureContact {
 
   /// Of the last contacts.
   Patch find_patch() const;
+  /// Of the last contacts, which press with this force [N] in all: how much deeper the tool is below flat
+  /// faces that press with their corners than below these, its mean by the force [m].
+  double find_sag(double force);
 
   /// Of a body whose surface is in the same place: how the tool came through it.
   void go_on_from(const PressureContact& before) { m_passages = before.m_passages; }
@@ -159,6 +164,7 @@ class PressureContact {
     Vec3 normal = Vec3::Zero();
     Cover whole;  // unsplit
     Cover cover;
+    double by_corners = 0.0;  // share of it that presses with its corners
     Vec3 at(const Vec3& weight) const { return weight(0) * x[0] + weight(1) * x[1] + weight(2) * x[2]; }
   };
 

@@ -282,4 +282,34 @@ double PressureContact::find_patch_radius() {
   return 2.0 * spacing;  // smaller than can be told: as small as a piece
 }
 
+/// Three places within a face, whose mean is exact for what grows with the square of the way: a ball's depth
+/// below a flat face is less at its corners than between them. A face that is not pressed as a whole does not
+/// tell: a rim may cross it.
+double PressureContact::find_sag(double force) {
+  if (m_passage || m_places.empty() || !(force > 0.0)) return 0.0;
+  const Place& end = m_places.back();
+  double sum = 0.0;
+  for (const Face& face : m_faces) {
+    if (!(face.by_corners > 0.0)) continue;
+    double at_corners = 0.0, between = 0.0, facing = 0.0;
+    bool presses = true;
+    for (const Vec3& corner : face.x) {
+      const double depth = -find_distance(corner, end, kAnywhere).distance;
+      presses = presses && depth > 0.0;
+      at_corners += depth;
+    }
+    if (!presses) continue;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      Vec3 weight = Vec3::Constant(1.0 / 6.0);
+      weight(k) = 2.0 / 3.0;
+      const ToolDistance found = find_distance(face.at(weight), end, kAnywhere);
+      between -= found.distance;
+      facing += facing_share(found.outward, face.normal) / 3.0;
+    }
+    const double of_face = face.by_corners * face.area / 3.0 * stiffness_of(face) * at_corners * facing;
+    sum += of_face * (between - at_corners) / 3.0;
+  }
+  return sum / force;
+}
+
 }  // namespace argil::contact

@@ -17,6 +17,7 @@
 #include "scenario/build.h"
 #include "scenario/cell_sizes.h"
 #include "scenario/scenario_text.h"
+#include "sim/usual_error.h"
 
 namespace argil::run {
 namespace {
@@ -138,7 +139,7 @@ class Planner {
   /// What is far from the tool is made finer with the rest.
   RunOptions with_cells(double near, double cells) const {
     constexpr double kEnough = 1.66;  // cells along the radius of contact, for as few tets as there can be
-    return with_tets(near, std::max(1.0, std::pow(cells / kEnough, scenario::kContactOrder)) * m_fewest);
+    return with_tets(near, std::max(1.0, std::pow(cells / kEnough, sim::kContactOrder)) * m_fewest);
   }
   RunEnd run_where_nothing_is_touched() {
     RunOptions options = with_cells(0.0, 1.0);
@@ -262,7 +263,7 @@ double compare_forces(const std::vector<sim::HapticRecord>& a, const std::vector
 
 double estimate_error(const AccuracyPass& coarse, const AccuracyPass& fine, double floor) {
   return compare_forces(coarse.haptic, fine.haptic, floor) /
-         std::pow(fine.cells / coarse.cells, scenario::kContactOrder);
+         std::pow(fine.cells / coarse.cells, sim::kContactOrder);
 }
 
 double choose_cells(const std::vector<AccuracyPass>& passes, double wanted) {
@@ -270,12 +271,12 @@ double choose_cells(const std::vector<AccuracyPass>& passes, double wanted) {
   constexpr double kFewest = 0.75;             // on fewer, the error says nothing of that on more
   constexpr double kLeast = 1.3, kMost = 2.0;  // times those of the pass before
   const double by_experience = std::max(
-      kFewest * kRefinement, std::pow(scenario::find_usual_error(solid::ElementKind::p2, 1.0) / wanted,
-                                      1.0 / scenario::kContactOrder));
+      kFewest * kRefinement,
+      std::pow(sim::find_usual_error(solid::ElementKind::p2, 1.0) / wanted, 1.0 / sim::kContactOrder));
   if (passes.empty()) return by_experience / kRefinement;
   if (passes.size() == 1) return by_experience;
   const AccuracyPass& last = passes.back();
-  const double more = std::pow(last.error / (kMargin * wanted), 1.0 / scenario::kContactOrder);
+  const double more = std::pow(last.error / (kMargin * wanted), 1.0 / sim::kContactOrder);
   return last.cells * std::clamp(more, kLeast, kMost);
 }
 

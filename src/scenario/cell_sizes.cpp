@@ -12,6 +12,7 @@
 #include "mesh/order.h"
 #include "mesh/topology.h"
 #include "scenario/true_surface.h"
+#include "sim/usual_error.h"
 
 namespace argil::scenario {
 namespace {
@@ -261,12 +262,6 @@ std::string propose_smaller_cells(const Scenario& s, double radius) {
 
 }  // namespace
 
-double find_usual_error(solid::ElementKind element, double cells) {
-  constexpr double kOfLinearTets = 0.5, kOfQuadraticTets = 0.03;  // on one cell
-  const double scale = element == solid::ElementKind::p2 ? kOfQuadraticTets : kOfLinearTets;
-  return scale * (cells < 1.0 ? 1.0 / cells : std::pow(cells, -kContactOrder));
-}
-
 double find_contact_radius(const Scenario& s, const device::Trace& trace,
                            const mesh::TriangleMesh& tool_surface, const sim::Body& body) {
   return find_largest_radius(find_places(s, trace, tool_surface, make_touched_tree(s, body)));
@@ -289,7 +284,7 @@ std::string describe_contact_cells(const Scenario& s, const device::Trace& trace
     radius = place.radius;
   }
   if (!(radius > 0.0)) return "";
-  const double error = find_usual_error(s.params.solid.element, fewest);
+  const double error = sim::find_usual_error(s.params.solid.element, fewest);
   std::ostringstream text;
   text.precision(2);
   text << "cells: " << fewest << " along the radius of contact, " << 1e3 * radius

@@ -58,8 +58,9 @@ LoadCollector::LoadCollector(const Params& params, const ContactSurface& surface
       m_elements(elements),
       m_share(params.detects_once_a_step() ? 1.0 : 1.0 / params.rates.physics_period_ticks) {}
 
-void LoadCollector::begin_detection(double way_over_patch) {
+void LoadCollector::begin_detection(double way_over_patch, const PatchResolution& resolution) {
   m_load.way_over_patch = way_over_patch;
+  m_load.resolution = resolution;
   m_load.patch.is_pressed = false;
   m_load.patch.centre.setZero();
   m_load.patch.weight = 0.0;

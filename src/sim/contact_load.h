@@ -33,6 +33,12 @@ struct ContactPatch {
   bool is_touched = false;     ///< some detection of the step found a force on the body
 };
 
+/// How finely the body is made where a tool presses on it.
+struct PatchResolution {
+  double cells = 0.0;  ///< along the radius of what it touches; 0: not known
+  double sag = 0.0;    ///< PressureContact::find_sag [m]
+};
+
 /// What the hand hands to the body for one step: the contacts of its ticks since the last one, each by its
 /// share of the step. Ticks only append to it, so that a tick that fails is cut off again.
 struct ContactLoad {
@@ -41,6 +47,7 @@ struct ContactLoad {
   int num_ticks = 0;            ///< since the last one
   int detections = 1;           ///< whose mean the body gets
   double way_over_patch = 0.0;  ///< the tool's in the last detection, over the radius of what it presses on
+  PatchResolution resolution;   ///< of what it presses on, where the error is estimated
   double scale = 1.0;           ///< by which the sum of `forces` has yet to be multiplied for that
   device::ToolMode mode = device::ToolMode::push;
   std::vector<int> touched_tet;      ///< by a tool that wets or dries in the tick that hands over
@@ -80,7 +87,7 @@ class LoadCollector {
   const ContactLoad& load() const { return m_load; }
 
   /// Contacts of another detection follow. `way_over_patch`: of the tool in it.
-  void begin_detection(double way_over_patch);
+  void begin_detection(double way_over_patch, const PatchResolution& resolution);
   /// Adds a contact's force on the body, by its share of the step.
   void add_force(const contact::Contact& contact, const Vec3& force);
   /// How a contact's force changes as the body moves on. `force`: on the body, by its share of the step; `x`:

@@ -67,6 +67,7 @@ class ForceErrorEstimate {
     double force = 0.0;  // [N]
     double depth = 0.0;  // of the tool below the surface, its mean by the force [m]
   };
+  double find_unresolved(double cells) const;
   Pressing find_pressing(const ContactLoad& load) const;
   void find_reach(const Points& x);
 

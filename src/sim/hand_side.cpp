@@ -232,7 +232,7 @@ void HandSide::find_contacts(int ticks) {
                              m_contacts, m_touched.find_motion(), m_state.clock.seconds(ticks));
   m_state.num_contacts = static_cast<int>(m_contacts.contacts.size());
   m_touched.advance();
-  m_collector.begin_detection(is_new && m_pressure ? find_way_over_patch() : 0.0);
+  m_collector.begin_detection(is_new && m_pressure ? find_way_over_patch() : 0.0, find_resolution());
   m_state.contact_tool = m_state.tool;
   m_state.force_age = 0;
   m_state.has_felt_anew = true;

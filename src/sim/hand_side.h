@@ -104,6 +104,7 @@ class HandSide {
   void feel_between_steps();
   void meet_surface();
   double find_way_over_patch() const;
+  PatchResolution find_resolution();
   void gather_pressure();
   // compliant_contact.cpp
   StepStatus find_compliant_force();

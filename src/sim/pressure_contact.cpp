@@ -44,6 +44,19 @@ double HandSide::find_way_over_patch() const {
   return radius > 0.0 ? (m_state.tool.position - m_state.contact_tool.position).norm() / radius : 0.0;
 }
 
+/// Of a patch that gives way. Faces of ten-node tets bend with the tool, and have no sag.
+PatchResolution HandSide::find_resolution() {
+  if (!m_params.estimates_error || !m_pressure || keeps_shape() || m_grip.holds()) return {};
+  const contact::Patch patch = m_pressure->find_patch();
+  PatchResolution found;
+  if (patch.cell > 0.0) found.cells = patch.radius / patch.cell;
+  if (m_params.solid.element == solid::ElementKind::p2) return found;
+  double force = 0.0;
+  for (const contact::Contact& c : m_contacts.contacts) force += c.end_force;
+  found.sag = m_pressure->find_sag(force);
+  return found;
+}
+
 /// The body is told of one detection a step; until it answers, the hand feels the last answer.
 void HandSide::find_pressure_force(bool begins_step) {
   if (!begins_step) return;

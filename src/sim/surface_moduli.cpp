@@ -15,17 +15,21 @@ SurfaceModuli::SurfaceModuli(const ContactSurface& surface, const solid::Body& s
   std::sort(m_above.begin(), m_above.end());
 }
 
+/// Edge of a regular tet of its volume [m].
+double SurfaceModuli::find_cell(int tet) const {
+  const int points = m_solid.model.elements.points_per_tet;
+  double volume = 0.0;
+  for (int p = 0; p < points; ++p) volume += m_solid.materials.weight()(tet * points + p);
+  return std::cbrt(6.0 * std::numbers::sqrt2 * volume);
+}
+
 contact::StiffnessOfTriangle SurfaceModuli::find(int triangle, int tet) const {
   const solid::Elements& elements = m_solid.model.elements;
   const double nodes_per_edge = elements.nodes_per_tet == 4 ? 1.0 : 2.0;
   const solid::TetMaterial material = m_solid.materials.of(tet);
   const double lambda = material.lambda, mu = material.mu;
   const double modulus = 4.0 * mu * (lambda + mu) / (lambda + 2.0 * mu);
-  double volume = 0.0;
-  for (int p = 0; p < elements.points_per_tet; ++p)
-    volume += m_solid.materials.weight()(tet * elements.points_per_tet + p);
-  const double cell = std::cbrt(6.0 * std::numbers::sqrt2 * volume) / nodes_per_edge;
-  const double chosen = contact::kChosenStiffness * modulus / cell;
+  const double chosen = contact::kChosenStiffness * modulus * nodes_per_edge / find_cell(tet);
   return {triangle, m_params.pressure_stiffness > 0.0 ? m_params.pressure_stiffness : chosen, modulus};
 }
 
@@ -42,11 +46,12 @@ bool SurfaceModuli::is_held(int triangle) const {
 contact::SurfaceStiffness SurfaceModuli::find_all() const {
   const Eigen::Index count = m_surface.triangles().cols();
   contact::SurfaceStiffness all{Field(count), Field(count),
-                                std::vector<char>(static_cast<std::size_t>(count))};
+                                std::vector<char>(static_cast<std::size_t>(count)), Field(count)};
   for (const auto& [tet, triangle] : m_above) {
     const contact::StiffnessOfTriangle found = find(triangle, tet);
     all.per_area(triangle) = found.per_area;
     all.modulus(triangle) = found.modulus;
+    all.cell(triangle) = find_cell(tet);
     all.is_rigid[static_cast<std::size_t>(triangle)] = is_held(triangle) ? 1 : 0;
   }
   return all;

@@ -26,6 +26,7 @@ class SurfaceModuli {
   void find_above(std::span<const int> tets, std::vector<contact::StiffnessOfTriangle>& out) const;
 
  private:
+  double find_cell(int tet) const;
   contact::StiffnessOfTriangle find(int triangle, int tet) const;
   bool is_held(int triangle) const;
 

@@ -287,5 +287,29 @@ TEST(Pressure, MeasuresThePatchWithoutJumps) {
   }
 }
 
+/// A ball's depth d − r²/2R below a flat triangle of the edges a, b, c is more between the corners than at
+/// these by (a² + b² + c²)/24R, its mean over the triangle: h²/6R of halved squares of the side h. Triangles
+/// that are not pressed as a whole bear what is missing of it. A flat face has none.
+TEST(Pressure, SagsBetweenTheCornersOfSmallFaces) {
+  constexpr double kDepth = 0.001;
+  for (const int n : {80, 120}) {
+    const mesh::TriangleMesh plane = make_flat_slab(n);
+    const double side = (plane.vertices.row(0).maxCoeff() - plane.vertices.row(0).minCoeff()) / n;
+    const double sag = side * side / (6.0 * kRadius);
+    const auto find = [&](ToolSolid tool, const Pose& pose) {
+      PressureContact pressure = make_contact(plane, std::move(tool));
+      Contacts contacts;
+      pressure.find_contacts(plane.vertices, pose, pose, Yielding::yes, contacts);
+      double force = 0.0;
+      for (const Contact& c : contacts.contacts) force += c.end_force;
+      EXPECT_GT(force, 0.0);
+      return pressure.find_sag(force);
+    };
+    const double found = find(ToolSolid(kBall), Pose{{0.0011, 0.0023, kRadius - kDepth}});
+    EXPECT_LT(found, 1.02 * sag) << n;
+    EXPECT_GT(found, 0.85 * sag) << n;
+  }
+}
+
 }  // namespace
 }  // namespace argil::contact

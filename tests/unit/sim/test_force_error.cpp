@@ -82,12 +82,12 @@ TEST(RecoveredError, IsNothingOfAUniformStrain) {
 }
 
 // A ball on a block eight times as wide as the patch is; its closed form is a little below Hertz's for a half
-// space, and cells two and four along the patch's radius are too stiff by far more than that.
+// space, and cells of 0.5 to 2.4 along the patch's radius are too stiff by far more than that.
 TEST(ForceError, OfABallIsWithinAFactorOfTwoOfWhatHertzSays) {
   const double exact =
       4.0 / 3.0 * kModulus / (1.0 - kPoisson * kPoisson) * std::sqrt(kRadius) * std::pow(kDepth, 1.5);
   double coarser = 1.0;
-  for (const int cells : {10, 20}) {
+  for (const int cells : {5, 10, 20}) {
     Simulation simulation = make_simulation(make_params(), cells);
     const HapticRecord last = press(simulation, kDepth, kTicks).back();
     const double error = last.force.norm() - exact;
@@ -133,7 +133,7 @@ TEST(ForceError, OfAForceThatIsHeldIsItsGrowthMeanwhile) {
   }
 }
 
-TEST(ForceError, OfTheSolverGrowsWithItsToleranceAndBoundsWhatItDoes) {
+TEST(ForceError, OfTheSolverGrowsWithItsToleranceAndIsOfTheSizeOfWhatItDoes) {
   Params params = make_params();
   Simulation exact = make_simulation(params, 10);
   params.solid.solver.tolerance = 0.05;
@@ -146,8 +146,8 @@ TEST(ForceError, OfTheSolverGrowsWithItsToleranceAndBoundsWhatItDoes) {
     estimated += std::pow(of_loose[i].error.solver, 2);
     of_exact_estimated += std::pow(of_exact[i].error.solver, 2);
   }
-  EXPECT_GT(estimated, squares);
-  EXPECT_LT(estimated, 400.0 * squares);
+  EXPECT_GT(estimated, squares / 9.0);
+  EXPECT_LT(estimated, 9.0 * squares);
   EXPECT_LT(of_exact_estimated, 1e-4 * estimated);
 }
 
