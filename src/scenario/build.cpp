@@ -134,8 +134,9 @@ void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
       if (body.skin.num_triangles() > 0) {
         make_cage(s, num_tets, s.file, scene);
       } else {
-        body.mesh =
-            from_scenario(s, "/body/shape", [&] { return shapes::make_shape_mesh(s.body.shape, num_tets); });
+        const auto count = num_tets == s.body.target_tets ? shapes::Count::wanted : shapes::Count::nearest;
+        body.mesh = from_scenario(s, "/body/shape",
+                                  [&] { return shapes::make_shape_mesh(s.body.shape, num_tets, count); });
       }
       if (s.body.sliver < 1.0)
         from_scenario(s, "/body/shape/sliver", [&] { mesh::flatten_tet(body.mesh, s.body.sliver); });

@@ -22,8 +22,14 @@ struct Shape {
 /// Signed distance-like function of a shape, z up, feet or bottom at z = 0, centred in x and y.
 ImplicitSurface make_implicit_shape(const Shape& shape);
 
+/// How near the number of tets has to come to the one that is asked for.
+enum class Count {
+  wanted,   ///< within 15 %
+  nearest,  ///< as near as the shape allows: where cells are halved afterwards
+};
+
 /// Tetrahedral body of a shape with about `target_tets` tets. Box and cylinder have sharp edges.
-mesh::TetMesh make_shape_mesh(const Shape& shape, int target_tets);
+mesh::TetMesh make_shape_mesh(const Shape& shape, int target_tets, Count count = Count::wanted);
 
 /// The shape's surface, for meshes of it that are halved; none where its faces are flat.
 mesh::BoundaryPoint make_boundary_point(const Shape& shape);

@@ -157,6 +157,19 @@ TEST_F(GradedCells, AreEvenWhereFewTetsAreWanted) {
   EXPECT_TRUE(find_note(scene, "cells: even, as 300 tets leave none to halve"));
 }
 
+/// The first cells, which are a sixth of those that are wanted here, need not be had to the number.
+TEST_F(GradedCells, OfASlenderBlockBeginWithTheNearestNumberThatItCanHave) {
+  const std::vector<std::string> block = {"/body/shape/kind=box", "/body/shape/slenderness=5"};
+  const auto with = [&](const std::string& setting) {
+    std::vector<std::string> all = block;
+    all.push_back(setting);
+    return all;
+  };
+  EXPECT_THROW(build(with("/body/shape/target_tets=300")), InputError);
+  const scenario::Scene scene = build(with("/body/shape/target_tets=1000"));
+  EXPECT_NEAR(scene.body.mesh.num_tets(), 1000, 100);
+}
+
 TEST_F(GradedCells, AreRefusedWhereTheyAreTooMany) {
   try {
     build({"/body/cells/kind=graded", "/body/cells/near_tool_m=1e-6"});
