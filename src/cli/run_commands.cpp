@@ -20,6 +20,7 @@
 #include "run/files.h"
 #include "run/new_scenario.h"
 #include "run/place.h"
+#include "run/plan.h"
 #include "run/ready_run.h"
 #include "run/run.h"
 #include "run/start.h"
@@ -39,6 +40,7 @@ struct Options {
   live::LiveOptions live;
   run::ExportOptions exported;
   run::PlaceOptions placed;
+  run::PlanOptions planned;
   run::NewOptions made;
   std::string at = "nearest", from;
   bool reference = false;
@@ -139,36 +141,43 @@ int validate(const run::RunOptions& options) {
 
 void add_run_commands(CLI::App& app, int& code) {
   const auto o = std::make_shared<Options>();
-  const auto add_scenario = [o](CLI::App* command) {
-    command->add_option("SCENARIO", o->run.scenario, "scenario (JSON)")->required();
-    command
-        ->add_option("--set", o->run.settings,
-                     "/json/pointer=value, put in the scenario's place; may be repeated")
-        ->allow_extra_args(false);
+  const auto add_patches = [o](CLI::App* command) {
     command
         ->add_option(
             "--patch", o->run.patches,
             "JSON file with keys of a scenario, put in the place of its own before --set; may be repeated")
         ->allow_extra_args(false);
+  };
+  const auto add_scenario = [o, add_patches](CLI::App* command) {
+    command->add_option("SCENARIO", o->run.scenario, "scenario (JSON)")->required();
+    command
+        ->add_option("--set", o->run.settings,
+                     "/json/pointer=value, put in the scenario's place; may be repeated")
+        ->allow_extra_args(false);
+    add_patches(command);
     command->add_option("--trace", o->run.trace, "recorded motion in place of the scenario's");
   };
   const auto add_strict = [o](CLI::App* command) {
     command->add_flag("--strict", o->run.strict, "a step that cannot be made ends the run (exit code 3)");
+  };
+  const auto add_accuracy = [o](CLI::App* command) {
+    command
+        ->add_option_function<double>(
+            "--accuracy",
+            [o](double wanted) {
+              std::ostringstream text;
+              text << "/fidelity/accuracy=" << wanted;
+              o->run.settings.push_back(text.str());
+            },
+            "wanted error of the force at the hand, e.g. 0.02: cells are chosen for it (/fidelity/accuracy)")
+        ->check(finite_number(false));
   };
   CLI::App* run = app.add_subcommand("run", "run a scenario and write its result");
   add_scenario(run);
   run->add_option("-o,--output", o->run.output, "result file (default: the scenario's name with .h5)");
   run->add_option("--threads", o->run.threads, "threads; results do not depend on them")
       ->check(CLI::Range(1, run::kMostThreads));
-  run->add_option_function<double>(
-         "--accuracy",
-         [o](double wanted) {
-           std::ostringstream text;
-           text << "/fidelity/accuracy=" << wanted;
-           o->run.settings.push_back(text.str());
-         },
-         "wanted error of the force at the hand, e.g. 0.02: cells are chosen for it (/fidelity/accuracy)")
-      ->check(finite_number(false));
+  add_accuracy(run);
   run->add_flag("--resume", o->run.resume, "go on from the result's last checkpoint, if there is one");
   run->add_flag("--dry-run", o->run.dry_run, "check and build everything, write nothing");
   add_strict(run);
@@ -179,6 +188,7 @@ void add_run_commands(CLI::App& app, int& code) {
   live->add_option("SCENARIO", o->run.scenario, "scenario (JSON)")->required();
   live->add_option("--device", o->live.device, "argil devices lists them")->required();
   live->add_option("--set", o->run.settings, "as with run")->allow_extra_args(false);
+  add_patches(live);
   live->add_option("-o,--output", o->run.output, "result file, which argil run --trace replays");
   live->add_option("--duration", o->live.duration, "seconds (default: a simulated hand's trace; else Ctrl-C)")
       ->check(finite_number(false));
@@ -221,6 +231,19 @@ void add_run_commands(CLI::App& app, int& code) {
       ->check(finite_number(false));
   placing->add_option("-o,--output", o->placed.output, "patch for argil run --patch (default: printed)");
   placing->callback([o, &code] { code = place(*o); });
+
+  CLI::App* planning = app.add_subcommand(
+      "plan", "choose element, cells and step by a recorded motion, for a live session or a sweep");
+  add_scenario(planning);
+  add_accuracy(planning);
+  planning->add_option("--threads", o->run.threads, "threads; what is chosen does not depend on them")
+      ->check(CLI::Range(1, run::kMostThreads));
+  planning->add_option("-o,--output", o->planned.output, "patch for --patch (default: printed)");
+  planning->add_flag("-q,--quiet", o->run.quiet, "print errors only");
+  planning->callback([o, &code] {
+    o->planned.run = o->run;
+    code = run::plan(o->planned);
+  });
 
   CLI::App* making = app.add_subcommand("new", "write a short scenario of a mesh and a recorded motion");
   making->add_option("MESH", o->made.mesh, "surface (OBJ, STL, PLY) or tetrahedral mesh")->required();

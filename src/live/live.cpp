@@ -231,7 +231,7 @@ int run_live(const LiveOptions& options) {
   const scenario::Scenario s = run::load(run_options);
   if (s.accuracy > 0.0)
     throw InputError(s.file, "/fidelity/accuracy", "is given, but cells are chosen by a motion that is known",
-                     "run a recorded one with it, and give the session that run's element and cells");
+                     "argil plan makes a patch of it by a recorded one; give the session that with --patch");
   require_live(s);
   if (options.device == "simulated" && s.trace.file.empty())
     throw InputError(s.file, "/trace/file", "is missing: it is what a simulated hand means to do",

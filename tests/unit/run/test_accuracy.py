@@ -100,6 +100,23 @@ class Accuracy(unittest.TestCase):
         self.assertIn("complete already", subprocess.run(
             [ARGIL, "run", self.scene, "-o", stopped, "--accuracy", "0.05", "--resume"], capture_output=True, text=True, check=True).stdout)
 
+    def test_can_be_planned_for_a_session(self):
+        patch = self.folder / "plan.json"
+        plan = [ARGIL, "plan", self.scene, "--accuracy", "0.05", "-o", patch]
+        subprocess.run(plan, capture_output=True, cwd=self.folder, check=True)
+        self.assertEqual(list(self.folder.glob("*.plan.h5*")), [])
+        planned, session = self.folder / "planned.h5", self.folder / "session.h5"
+        run(self.scene, planned, "-q", "--patch", patch)
+        self.assertTrue(np.array_equal(read_force(planned), read_force(self.result)))
+        subprocess.run([ARGIL, "live", self.scene, "--patch", patch, "--device", "simulated", "-q", "-o", session], check=True)
+        run(self.scene, self.folder / "again.h5", "-q", "--patch", patch, "--trace", session)
+        self.assertTrue(np.array_equal(read_force(self.folder / "again.h5"), read_force(session)))
+        missing = [*plan, "--set", "/trace/device_to_world/translation_m=[0,0,1]"]
+        for command, said in ((missing, "does not touch"), ([ARGIL, "plan", self.scene], "is not given")):
+            refused = subprocess.run(command, capture_output=True, text=True, cwd=self.folder, check=False)
+            self.assertEqual(refused.returncode, 2, refused.stderr)
+            self.assertIn(said, refused.stderr)
+
     def test_takes_clay_that_hardly_changes_its_volume(self):
         with tempfile.TemporaryDirectory() as folder:
             scene = write_scene(Path(folder), poissons_ratio=0.49)
