@@ -322,10 +322,14 @@ void complete_body(const Scenario& s, const Halvings& halvings, Scene& scene, Fa
   faults.check([&] { check_medium(s, scene); });
   faults.check([&] { check_diffusion(s, body); });
   const bool is_held = faults.check([&] { fix_and_load(s, halvings, scene); });
-  if (s.mode == Mode::dynamic)
-    faults.check([&] { check_skin(s, body.skin); });
-  else if (is_held)
+  if (s.mode == Mode::dynamic) faults.check([&] { check_skin(s, body.skin); });
+  if (!is_held) return;
+  if (s.mode == Mode::equilibrium) {
     faults.check([&] { check_equilibrium_supports(s, body); });
+  } else {
+    scene.free_motion = describe_free_motion(s, body);
+    add_note(scene.free_motion, scene);
+  }
 }
 
 /// Of the body with the cells that no motion has graded: messages name its vertices, which stay.

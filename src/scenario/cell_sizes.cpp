@@ -19,7 +19,9 @@ namespace {
 
 constexpr double kStep = 0.002;         // of a ball between two looks, over its radius
 constexpr double kPlaceSpacing = 0.25;  // of touched places, over their radius
-constexpr double kGrowth = 2.4;         // of the size in h₀, per distance in contact radii
+constexpr double kReach = 1.5;          // of the small cells, over the radius of a touched place
+constexpr double kBestPower = 1.2;      // of the distance, for the least error of linear tets
+constexpr double kGrowth = 2.4;         // of the size, per distance in contact radii, where it is linear
 constexpr double kSteepest = 0.8;       // of the size per distance: steeper, halving makes no fewer tets
 constexpr double kCellsPerRadius = 2.0;
 constexpr double kPlainGrowth = 0.3;  // of the size per distance, where no radius of contact is known
@@ -86,11 +88,18 @@ std::vector<sim::TouchedPlace> find_touched_places(const Scenario& s, const devi
 
 double CellSizes::find(const Vec3& x) const {
   double distance = std::numeric_limits<double>::infinity();
-  for (const sim::TouchedPlace& place : places)
-    distance = std::min(distance, (x - place.position).norm() - reach * place.radius);
-  double size = near + growth * std::max(0.0, distance);
+  double radii = std::numeric_limits<double>::infinity();  // of contact
+  for (const sim::TouchedPlace& place : places) {
+    const double d = std::max(0.0, (x - place.position).norm() - share * kReach * place.radius);
+    distance = std::min(distance, d);
+    radii = std::min(radii, d / (share * place.radius));
+  }
+  const bool is_linear = growth > 0.0;
+  double size = near + (is_linear ? growth : kSteepest) * distance;
+  if (!is_linear) size = std::min(size, near * std::pow(1.0 + radii, kBestPower));
+  const double beside = is_linear ? growth : kPlainGrowth;
   for (const CellRegion& region : regions)
-    size = std::min(size, region.size + growth * std::max(0.0, (x - region.centre).norm() - region.radius));
+    size = std::min(size, region.size + beside * std::max(0.0, (x - region.centre).norm() - region.radius));
   return size;
 }
 
@@ -119,20 +128,25 @@ struct Search {
   }
 };
 
-/// `target_tets` 0: no number is wanted. Completes the sizes.
-mesh::BisectedMesh halve(const Whole& whole, CellSizes& sizes, int target_tets) {
+bool flows(const material::Plasticity& law) {
+  return law.enabled && (law.form == material::FlowForm::j2 || law.creep_per_s > 0.0);
+}
+
+/// `target_tets` 0: no number is wanted. `is_elastic`: the best sizes are known. Completes the sizes.
+mesh::BisectedMesh halve(const Whole& whole, CellSizes& sizes, int target_tets, bool is_elastic) {
   if (sizes.places.empty()) {
     if (!(sizes.growth > 0.0)) sizes.growth = kPlainGrowth;
     return bisect(whole, sizes, kMostTets);
   }
   const double radius = find_largest_radius(sizes.places);
-  const auto with_near = [radius, &sizes](double near) {
+  const auto with_near = [&](double near) {
     CellSizes with = sizes;
     with.near = near;
-    if (!(with.growth > 0.0)) with.growth = std::min(kSteepest, kGrowth * near / radius);
+    if (!(with.growth > 0.0) && (!is_elastic || target_tets == 0))
+      with.growth = std::min(kSteepest, kGrowth * near / radius);
     return with;
   };
-  if (sizes.near > 0.0 || target_tets == 0) {
+  if (target_tets == 0) {
     sizes = with_near(sizes.near > 0.0 ? sizes.near : radius / kCellsPerRadius);
     return bisect(whole, sizes, kMostTets);
   }
@@ -146,11 +160,11 @@ mesh::BisectedMesh halve(const Whole& whole, CellSizes& sizes, int target_tets) 
   }
   // Of a regular mesh many tets are halved at one size, all those around a place: then less of it.
   double small = 0.0;
-  double large = kReach;
+  double large = 1.0;
   for (int i = 0; i < Search::kTries && search.error > Search::kCloseEnough; ++i) {
     CellSizes with = with_near(low);
-    with.reach = 0.5 * (small + large);
-    (search.look_at(whole, with) ? large : small) = with.reach;
+    with.share = 0.5 * (small + large);
+    (search.look_at(whole, with) ? large : small) = with.share;
   }
   sizes = search.sizes;
   return std::move(search.best);
@@ -316,7 +330,8 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
   Whole whole{body.mesh, {}};
   const TrueSurface surface(s.body, body.skin);
   whole.boundary_point = bent_level ? surface.make_edge_point(*bent_level) : surface.make_vertex_point();
-  mesh::BisectedMesh bisected = halve(whole, sizes, has_target ? s.body.target_tets : 0);
+  mesh::BisectedMesh bisected =
+      halve(whole, sizes, has_target ? s.body.target_tets : 0, !flows(s.params.plasticity));
   if (bisected.mesh.num_tets() > kMostTets)
     throw InputError(s.file, "/body/cells", "asks for cells that make more than 5 million tets",
                      "give a larger near_tool_m or size_m, or a larger growth");

@@ -20,15 +20,13 @@ std::vector<sim::TouchedPlace> find_touched_places(const Scenario& s, const devi
                                                    const contact::ToolSolid& tool,
                                                    const embed::TriangleTree& surface);
 
-inline constexpr double kReach = 1.5;
-
 /// Cells that are small where the tool comes and grow away from there.
 struct CellSizes {
   double near = 0.0;    ///< where the tool comes [m]
-  double growth = 0.0;  ///< per distance from them [–]
+  double growth = 0.0;  ///< per distance from them [–]; 0: as its power 6/5, in radii of contact
   std::vector<sim::TouchedPlace> places;
   std::vector<CellRegion> regions;
-  double reach = kReach;  ///< of the small cells, over the radius of a touched place
+  double share = 1.0;  ///< by which all lengths of a place are smaller
   /// Wanted at x [m].
   double find(const Vec3& x) const;
 };
@@ -59,11 +57,12 @@ struct Halvings {
 /// are given, and says so in `notes`. What the scenario leaves open of the sizes is chosen so that a body
 /// that argil makes gets about as many tets as wanted; in a mesh file's, so that two cells lie along the
 /// largest radius of a touched place. Where stresses fall as 1/r², sizes that grow as r^{6/5} make the error
-/// of linear tets least; here they are h₀ up to 1.5 a from the middle of a patch of radius a, and then grow
-/// by 2.4 h₀/a of the distance, at most 0.8. Clay that flows wants them to grow so fast; elastic clay hardly
-/// minds (results/clay, results/contact). None, and the reason in `notes`, where neither motion nor regions
-/// say where, or no tets are left to halve. `bent_level` [m]: the edges of the boundary are to bend with the
-/// surface moved out by so much; none: they stay straight.
+/// of linear tets least for their number: in elastic clay they are h₀ (1 + d/a)^{6/5} at a distance d from
+/// the ball of 1.5 a round a patch of radius a. Clay that flows wants more of the cells below the tool
+/// (results/clay): there, in a mesh file and where h₀ is given they are h₀ + 2.4 d h₀/a, with a slope of 0.8
+/// at most. None, and the reason in `notes`, where neither motion nor regions say where, or no tets are left
+/// to halve. `bent_level` [m]: the edges of the boundary are to bend with the surface moved out by so much;
+/// none: they stay straight.
 std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,

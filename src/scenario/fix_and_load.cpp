@@ -137,13 +137,30 @@ void fix_and_load(const Scenario& s, const Halvings& halvings, Scene& scene) {
   faults.throw_all();
 }
 
-void check_equilibrium_supports(const Scenario& s, const sim::Body& body) {
+namespace {
+
+std::string find_free_motion(const Scenario& s, const sim::Body& body) {
   const solid::Elements elements = solid::make_elements(body.mesh, body.topology, s.params.solid.element);
-  const std::string motion =
-      solid::find_rigid_motion(elements, body.topology, solid::find_constraints(elements, body.supports));
+  return solid::find_rigid_motion(elements, body.topology, solid::find_constraints(elements, body.supports));
+}
+
+}  // namespace
+
+void check_equilibrium_supports(const Scenario& s, const sim::Body& body) {
+  const std::string motion = find_free_motion(s, body);
   if (!motion.empty())
     throw InputError(s.file, "/body/fixed", "does not hold the body: " + motion,
                      "hold at least three vertices of it that are not on a line");
+}
+
+std::string describe_free_motion(const Scenario& s, const sim::Body& body) {
+  if (body.supports.empty()) return "";  // which is a doubt of the scenario
+  const std::string motion = find_free_motion(s, body);
+  if (motion.empty()) return "";
+  return "supports: " + motion +
+         ", held by its mass alone; where that is not meant, hold at least three vertices of it that are not "
+         "on "
+         "a line by /body/fixed";
 }
 
 }  // namespace argil::scenario

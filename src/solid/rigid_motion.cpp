@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 namespace argil::solid {
@@ -110,36 +113,53 @@ std::string print_vector(const Vec3& a) {
   return text.str();
 }
 
-std::string describe_motion(const Part& part, const Eigen::Matrix<double, 6, 1>& mode) {
+std::string describe_motion(const std::string& who, const Part& part,
+                            const Eigen::Matrix<double, 6, 1>& mode) {
   const Vec3 shift = mode.head<3>();
   const Vec3 turn = mode.tail<3>();
-  const std::string who = "the part with node " + std::to_string(part.nodes.front()) + " can ";
-  if (!(turn.norm() > 0.5 * shift.norm())) return who + "shift along " + print_vector(shift.normalized());
+  if (!(turn.norm() > 0.5 * shift.norm()))
+    return who + " can shift along " + print_vector(shift.normalized());
   const Vec3 on_axis = part.centre + part.size * turn.cross(shift) / turn.squaredNorm();
-  return who + "turn about an axis along " + print_vector(turn.normalized()) + " near " +
+  return who + " can turn about an axis along " + print_vector(turn.normalized()) + " near " +
          print_vector(on_axis) + " m";
 }
 
-}  // namespace
+/// Loose parts that share vertices with each other, by the way of others too; each in order of number.
+std::vector<std::vector<int>> find_groups(const std::vector<Part>& parts,
+                                          const std::vector<std::vector<int>>& parts_of_node) {
+  std::vector<std::vector<int>> groups;
+  std::vector<bool> is_done(parts.size(), false);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (is_done[p] || parts[p].is_held) continue;
+    std::vector<int>& group = groups.emplace_back(1, static_cast<int>(p));
+    is_done[p] = true;
+    for (std::size_t i = 0; i < group.size(); ++i)
+      for (const int n : parts[static_cast<std::size_t>(group[i])].nodes)
+        for (const int q : parts_of_node[static_cast<std::size_t>(n)]) {
+          const auto other = static_cast<std::size_t>(q);
+          if (is_done[other] || parts[other].is_held) continue;
+          is_done[other] = true;
+          group.push_back(q);
+        }
+    std::sort(group.begin(), group.end());
+  }
+  return groups;
+}
 
-std::string find_rigid_motion(const Elements& elements, const mesh::Topology& topology,
-                              const Constraints& constraints) {
-  std::vector<Part> parts = find_parts(elements, topology);
-  const auto parts_of_node = find_parts_of_nodes(parts, elements.num_nodes());
-  hold_parts(elements, constraints, parts_of_node, parts);
-  std::vector<int> loose;  // parts
-  std::vector<Eigen::Index> place(parts.size(), -1);
-  for (std::size_t p = 0; p < parts.size(); ++p)
-    if (!parts[p].is_held) {
-      place[p] = 6 * static_cast<Eigen::Index>(loose.size());
-      loose.push_back(static_cast<int>(p));
-    }
-  if (loose.empty()) return {};
-
-  // The loose parts may still hold each other, as the three legs of a tripod do.
-  const auto size = 6 * static_cast<Eigen::Index>(loose.size());
+/// A motion that is left to loose parts, which may hold each other, as the three legs of a tripod do.
+std::string find_motion_of(const std::vector<int>& group, const Elements& elements,
+                           const Constraints& constraints, const std::vector<Part>& parts,
+                           const std::vector<std::vector<int>>& parts_of_node) {
+  std::map<int, Eigen::Index> place;  // of a part's six unknowns
+  std::set<int> nodes;
+  for (const int p : group) {
+    place.emplace(p, 6 * static_cast<Eigen::Index>(place.size()));
+    const Part& part = parts[static_cast<std::size_t>(p)];
+    nodes.insert(part.nodes.begin(), part.nodes.end());
+  }
+  const auto size = 6 * static_cast<Eigen::Index>(group.size());
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
-  for (int n = 0; n < elements.num_nodes(); ++n) {
+  for (const int n : nodes) {
     const Vec3 x = elements.rest.col(n);
     const auto& around = parts_of_node[static_cast<std::size_t>(n)];
     const bool is_held = std::any_of(around.begin(), around.end(),
@@ -147,8 +167,9 @@ std::string find_rigid_motion(const Elements& elements, const mesh::Topology& to
     Eigen::Index first = -1;  // place of the part that the others are joined to
     Rows first_rows;
     for (const int p : around) {
-      const Eigen::Index own = place[static_cast<std::size_t>(p)];
-      if (own < 0) continue;
+      const auto found = place.find(p);
+      if (found == place.end()) continue;
+      const Eigen::Index own = found->second;
       const Part& part = parts[static_cast<std::size_t>(p)];
       sum.block<6, 6>(own, own) += compute_normal_matrix(part, x, constraints.support.col(n), is_held);
       const Rows rows = part.rows(x);
@@ -164,15 +185,35 @@ std::string find_rigid_motion(const Elements& elements, const mesh::Topology& to
     }
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(sum);
-  if (modes.eigenvalues()(0) > kZero * std::max(1.0, modes.eigenvalues()(size - 1))) return {};
+  const double zero = kZero * std::max(1.0, modes.eigenvalues()(size - 1));
+  const auto num_free = (modes.eigenvalues().array() <= zero).count();
+  if (num_free == 0) return {};
   const Eigen::VectorXd mode = modes.eigenvectors().col(0);
   std::size_t mover = 0;
-  for (std::size_t i = 0; i < loose.size(); ++i)
+  for (std::size_t i = 0; i < group.size(); ++i)
     if (mode.segment<6>(6 * static_cast<Eigen::Index>(i)).norm() >
         (1.0 + 1e-6) * mode.segment<6>(6 * static_cast<Eigen::Index>(mover)).norm())
       mover = i;
-  return describe_motion(parts[static_cast<std::size_t>(loose[mover])],
-                         mode.segment<6>(6 * static_cast<Eigen::Index>(mover)));
+  const Part& part = parts[static_cast<std::size_t>(group[mover])];
+  const std::string who =
+      parts.size() == 1 ? "the body" : "the part with node " + std::to_string(part.nodes.front());
+  std::string text = describe_motion(who, part, mode.segment<6>(6 * static_cast<Eigen::Index>(mover)));
+  if (num_free > 1) text += ", one of " + std::to_string(num_free) + " free motions";
+  return text;
+}
+
+}  // namespace
+
+std::string find_rigid_motion(const Elements& elements, const mesh::Topology& topology,
+                              const Constraints& constraints) {
+  std::vector<Part> parts = find_parts(elements, topology);
+  const auto parts_of_node = find_parts_of_nodes(parts, elements.num_nodes());
+  hold_parts(elements, constraints, parts_of_node, parts);
+  for (const std::vector<int>& group : find_groups(parts, parts_of_node))
+    if (std::string motion = find_motion_of(group, elements, constraints, parts, parts_of_node);
+        !motion.empty())
+      return motion;
+  return {};
 }
 
 }  // namespace argil::solid

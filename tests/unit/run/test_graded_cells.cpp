@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
 #include "contact/tool_solid.h"
@@ -104,6 +105,56 @@ TEST_F(GradedCells, AreAsManyAsWanted) {
       if (distance > 0.03) far = std::max(far, find_size(scene.body, t));
     }
     EXPECT_LT(near, 0.3 * far);
+  }
+}
+
+/// The size where the tool comes [m] and the cells along the radius of contact, as the note has them.
+std::pair<double, double> read_note_of_cells(const scenario::Scene& scene) {
+  const std::string* note = find_note(scene, " mm where the tool comes, ");
+  if (!note) return {};
+  const std::size_t size = note->find(", ", note->find("become ")) + 2;
+  return {1e-3 * std::stod(note->substr(size)), std::stod(note->substr(note->find("comes, ") + 7))};
+}
+
+TEST_F(GradedCells, OfElasticClayGrowAsThePowerOfTheDistanceThatMakesTheErrorLeast) {
+  // Strains fall as r^-2 and their gradients as r^-3; the error of linear tets is h² times that squared a
+  // volume, and h^-3 are there. For their number the sum is least where h^5 ~ r^6.
+  const std::vector<std::string> settings = {"/body/cells/kind=graded", "/body/shape/target_tets=8000",
+                                             "/body/shape/kind=box", "/body/shape/size_m=0.04"};
+  std::vector<std::string> elastic = settings;
+  elastic.emplace_back("/material/plasticity/enabled=false");
+  const scenario::Scene scene = build(elastic);
+  const auto [near, cells] = read_note_of_cells(scene);
+  ASSERT_GT(near, 0.0);
+  ASSERT_EQ(scene.body.touched_places.size(), 1U);
+  const sim::TouchedPlace& place = scene.body.touched_places[0];
+  const double a = place.radius;
+  double largest = 0.0, sum = 0.0;
+  int count = 0;
+  for (int t = 0; t < scene.body.mesh.num_tets(); ++t) {
+    const double r = (find_centre(scene.body, t) - place.position).norm();
+    const double ratio = find_size(scene.body, t) / (near * std::pow(1.0 + std::max(0.0, r / a - 1.5), 1.2));
+    largest = std::max(largest, ratio);
+    if (r < 2.0 * a || r > 4.0 * a) continue;
+    sum += ratio;
+    ++count;
+  }
+  EXPECT_LE(largest,
+            1.1);  // the search may make the places smaller by a little; linear sizes are 1.5 times that
+  ASSERT_GT(count, 500);
+  EXPECT_GT(sum / count, 0.7);  // halves have 0.79 to 1 of the size, fewer where a neighbour's edge is longer
+  // Clay that flows has more of them below the tool.
+  EXPECT_GT(read_note_of_cells(build(settings)).second, 1.1 * cells);
+}
+
+TEST_F(GradedCells, AreAsManyAsWantedBelowATinyTip) {
+  // Round a small tip on a regular lattice a change of size halves all the tets around it at once.
+  for (const int target : {2200, 3000, 4000}) {
+    const scenario::Scene scene = build(
+        {"/body/cells/kind=graded", "/body/shape/target_tets=" + std::to_string(target),
+         "/body/shape/kind=box", "/body/shape/size_m=0.2", "/material/plasticity/enabled=false",
+         "/tool/shape/radius_m=0.001", "/trace/device_to_world/translation_m=[-0.001, -0.0007, 0.1568]"});
+    EXPECT_NEAR(scene.body.mesh.num_tets(), target, 0.15 * target);
   }
 }
 
