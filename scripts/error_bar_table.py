@@ -91,8 +91,8 @@ def list_scenes():
               finer=near(0.0006)),
         Scene("slide with friction", block(friction=0.5), slide(0.002, 300), settings=near(0.002, 4000), finer=near(0.0009)),
         Scene("clay", block(strength=1100), press(0.004, 400), finer=near(0.0009), factor=3.0),
-        Scene("demonstration, dry", "demo_dino_dry.json", settings=dry, finer=tets(40000), factor=3.0),
-        Scene("demonstration, wet", "demo_dino_dry.json", settings=wet, finer=tets(40000), factor=3.0),
+        Scene("demonstration, dry", "study_soft_dino.json", settings=dry, finer=tets(40000), factor=3.0),
+        Scene("demonstration, wet", "study_soft_dino.json", settings=wet, finer=tets(40000), factor=3.0),
         Scene("ball, ten nodes", block("even", 1000), press(0.003, 200), settings=("/dynamics/element=p2",),
               finer=("/dynamics/element=p1", "/body/cells/kind=graded", *near(0.0007))),
     ]

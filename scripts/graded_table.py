@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Forces on cells that are small where the tool comes, beside cells of one size: tips of 1 and 3 mm pressed a tenth of their radius into
 an elastic block of 200 mm, over Hertz's closed form; and peaks over their limits: of scenarios/study_light_press.json, and of the first
-press of scenarios/demo_dino_dry.json on elastic clay.
+press of scenarios/study_soft_dino.json on elastic clay.
 
 Usage: graded_table.py ARGIL [-o FILE.csv]      writes results/contact/graded.csv
 """
@@ -84,7 +84,7 @@ def main():
         force, tets = run(argil, folder, press, "/contact/law=pressure", "/body/cells/kind=graded", "/body/cells/growth=0.1",
                           "/body/shape/target_tets=20000")
         add("light press", "graded, growth 0.1", tets, f"{force.max() / LIMIT:.3f}")
-        press = ROOT / "scenarios/demo_dino_dry.json"
+        press = ROOT / "scenarios/study_soft_dino.json"
 
         def peak(cells, number):
             force, tets = run(argil, folder, press, f"/body/cells/kind={cells}", f"/body/shape/target_tets={number}", *DEMONSTRATION)
