@@ -44,7 +44,7 @@ SCENES = {
     "slide": ("study_slide.json", PRESSED),
     "bend": ("study_deep_bend.json", PRESSED),
     "wet press": ("study_wet_press.json", [*PRESSED, "/body/shape/skin_triangles=0", "/contact/surface=cage"]),
-    "dinosaur": ("demo_dino_dry.json", ["/dynamics/model=hencky", *FIRM, "/trace/duration_s=0.9"]),
+    "dinosaur": ("study_soft_dino.json", ["/dynamics/model=hencky", *FIRM, "/trace/duration_s=0.9"]),
     "ball on a block": press({"kind": "box", "size_m": 0.04}, BALL, go_down(0.046, 0.0006)),
     "ball on a ball": press({"kind": "sphere", "size_m": 0.04}, BALL, go_down(0.046, 0.001)),
     "tip on a block": press({"kind": "box", "size_m": 0.03}, {"kind": "sphere", "radius_m": 0.002}, go_down(0.032, 0.0005)),

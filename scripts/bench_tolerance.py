@@ -25,7 +25,7 @@ import provenance
 from argil_plot import COLOURS, DASHES, GREY, MILLIMETRES, plt
 
 ROOT = Path(__file__).resolve().parent.parent
-SCENARIO = ROOT / "scenarios" / "demo_dino_dry.json"
+SCENARIO = ROOT / "scenarios" / "study_soft_dino.json"
 CONVERGED = ["/dynamics/solver/tolerance=1e-10", "/dynamics/solver/kind=pcg_jacobi"]
 TOLERANCES = ("1e-1", "1e-2", "1e-3", "1e-4")
 DEFAULT = "1e-3"

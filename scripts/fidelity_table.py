@@ -48,10 +48,10 @@ SCENES = {
     # The post folds at its foot, all at once: at 1e-3 the solver's own error there is two bounds, that of auto one.
     "bend by 90°": Scene("study_deep_bend", with_trace("post_fold.csv", "/dynamics/solver/tolerance=1e-4")),
     "two-second rest": Scene("study_light_press", with_trace("block_rest.csv")),
-    "dinosaur": Scene("demo_dino_dry", []),
+    "dinosaur": Scene("study_soft_dino", []),
     # Bodies so large that only the region which the hand feels is solved for.
     "slide, fine": Scene("study_slide", ["/body/shape/target_tets=20000", "/contact/friction=0"]),
-    "dinosaur, fine": Scene("demo_dino_dry", ["/body/shape/target_tets=42000"]),
+    "dinosaur, fine": Scene("study_soft_dino", ["/body/shape/target_tets=42000"]),
     "bend by 90°, fine": Scene("study_deep_bend", with_trace("post_fold.csv", "/dynamics/solver/tolerance=1e-4",
                                                               "/body/shape/target_tets=20000"), "region"),
     # Leaving, contacts rattle from tick to tick and enlarge what a step leaves: full at 1e-2 is 5.7 bounds off that at 1e-7.
@@ -59,7 +59,7 @@ SCENES = {
     "slide, fine, with friction": Scene("study_slide", ["/body/shape/target_tets=20000"], "region"),
     "rest with tremor": Scene("study_light_press", with_trace("block_rest_tremor.csv"), "sleep"),
     "slow creep": Scene("study_light_press", with_trace("block_rest.csv", "/material/plasticity/creep_per_s=0.5"), "sleep"),
-    "stabs": Scene("demo_dino_dry", with_trace("poke.csv"), "slack"),
+    "stabs": Scene("study_soft_dino", with_trace("poke.csv"), "slack"),
     "undamped": Scene("study_light_press", ["/dynamics/rayleigh_stiffness_s=0", "/material/clay_kernel/form=off",
                                             "/material/plasticity/enabled=false"], "sleep"),
     # A post bent to 90 degrees and back in 0.3 s, held by the rod all the time, of clay that resists fast strain: the matrix

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """What a step costs on cells that are small where the tool comes, beside cells of one size: the first presses of
-scenarios/demo_dino_dry.json on elastic clay, and scenarios/study_light_press.json; the whole body solved for, and with /fidelity auto
+scenarios/study_soft_dino.json on elastic clay, and scenarios/study_light_press.json; the whole body solved for, and with /fidelity auto
 the region that the hand feels. Times are the processor's, of one thread; that of an iteration is what a finer tolerance costs more.
 
 Usage: graded_steps.py ARGIL [-o FILE.csv]      writes results/contact/graded_steps.csv
@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent
 NUMBERS = (5000, 15000)
 FINER = 1e-5  # tolerance of the solver
 SCENES = {
-    "demonstration": ("demo_dino_dry.json", ["/dynamics/model=hencky", "/material/plasticity/enabled=false", "/material/clay_kernel/form=off",
+    "demonstration": ("study_soft_dino.json", ["/dynamics/model=hencky", "/material/plasticity/enabled=false", "/material/clay_kernel/form=off",
                                              "/trace/duration_s=1.5", "/haptics/physics_period_ticks=5"]),
     "light press": ("study_light_press.json", ["/contact/law=pressure", "/trace/duration_s=0.21", "/haptics/physics_period_ticks=1"]),
 }

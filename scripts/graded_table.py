@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Forces on cells that are small where the tool comes, beside cells of one size: tips of 1 and 3 mm pressed a tenth of their radius, a
 sphere pressed a hundredth of it and a flat punch, into an elastic block of 200 mm, over the closed forms; and peaks over their limits: of
-scenarios/study_light_press.json, and of the first press of scenarios/demo_dino_dry.json on elastic clay and on the clay that it had.
+scenarios/study_light_press.json, and of the first press of scenarios/study_soft_dino.json on elastic clay and on the clay that it had.
 
 Usage: graded_table.py ARGIL [--scenes tips hertz press elastic flow] [-o FILE.csv]      writes results/contact/graded.csv
 """
@@ -114,7 +114,7 @@ def press_lightly(argil, folder, add):
 def press_dinosaur(argil, folder, add):
     for cells, numbers in (("even", (5000, 20000, 80000, 320000)), ("graded", (5000, 10000, 15000, 60000, 240000))):
         for number in numbers:
-            force, tets = run(argil, folder, ROOT / "scenarios/demo_dino_dry.json", f"/body/cells/kind={cells}",
+            force, tets = run(argil, folder, ROOT / "scenarios/study_soft_dino.json", f"/body/cells/kind={cells}",
                               f"/body/shape/target_tets={number}", *DEMONSTRATION)
             add("demonstration", cells, tets, force.max() / DEMONSTRATION_LIMIT)
 
@@ -124,7 +124,7 @@ def press_flowing_dinosaur(argil, folder, add):
     cases = [("graded", number, "p1") for number in (60000, 30000, 15000, 10000, 5000)] + [("graded, ten nodes", 5000, "p2")]
     finest = None
     for cells, number, element in cases:
-        force, tets = run(argil, folder, ROOT / "scenarios/demo_dino_dry.json", "/body/cells/kind=graded", f"/dynamics/element={element}",
+        force, tets = run(argil, folder, ROOT / "scenarios/study_soft_dino.json", "/body/cells/kind=graded", f"/dynamics/element={element}",
                           f"/body/shape/target_tets={number}", *FLOW)
         finest = finest or force.max()
         add("demonstration that flows", cells, tets, force.max() / finest)

@@ -23,7 +23,7 @@ from pathlib import Path
 import h5py
 
 ROOT = Path(__file__).resolve().parent.parent
-SCENARIO = ROOT / "scenarios" / "demo_dino_dry.json"
+SCENARIO = ROOT / "scenarios" / "study_soft_dino.json"
 # Ticks of 1 ms: a physics step, the water's, a picture.
 RATES = {"1000": (1, 10, 40), "333": (3, 12, 42), "71": (14, 14, 42)}
 SESSIONS = [*(f"{rate}:re_evaluate" for rate in RATES), "71:hold"]  # hold: the paper's, at its rate
@@ -133,7 +133,7 @@ def write_readme(file, rows, options):
     us, ms = 1e6, 1e3
     lines = [
         "# How well a live session keeps its times", "",
-        f"The dinosaur of `demo_dino_dry`, {options.seconds:g} s a session, hand at 1 kHz; {os.cpu_count()} processors,",
+        f"The dinosaur of `study_soft_dino`, {options.seconds:g} s a session, hand at 1 kHz; {os.cpu_count()} processors,",
         f"{platform.machine()}, Linux {platform.release()}. Each session is replayed in one thread; \"equal\": `argil compare` finds",
         f"no difference, forces and hashes included. `scripts/live_table.py` writes this. {options.note}".rstrip(),
         f"Real-time priority of the hand's thread and locked memory were granted: {', '.join(sorted({r['granted'] for r in rows}))}."

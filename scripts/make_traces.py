@@ -47,6 +47,8 @@ class Stroke(NamedTuple):
 
 HAUNCH = Place(contact=(-6.0, -30.4, 62.0), normal=(0.0, -1.0, 0.0), slide=(0.35, 0.0, -0.94), tool_radius=8.0)
 
+TIP = HAUNCH._replace(tool_radius=3.0, is_smooth=True)  # firm clay answers a device's grid with jumps of the force
+
 BLOCK = Place(contact=(0.37, 0.21, 30.0), normal=(0.0, 0.0, 1.0), slide=(1.0, 0.0, 0.0), tool_radius=24.0,
               is_smooth=True)
 BELLY = Place(contact=(13.7, 0.0, 125.0), normal=(1.0, 0.0, 0.0), slide=(0.0, 0.0, 1.0), tool_radius=8.0)
@@ -72,6 +74,11 @@ PRESS = [  # three presses, each deeper and held, a slide, and away
     Stroke("push", 0.50, 25.0, 0.0, 0.0),
 ]
 
+TIP_PRESS = [  # the same with a tip in a potter's clay: half as deep, which a desktop device has the force for
+    stroke._replace(height=stroke.height * (0.5 if stroke.height < 0.0 else 1.0), slide=0.375 * stroke.slide)
+    for stroke in PRESS
+]
+
 WIPE = [  # slide, side, height [mm]: inwards round the place that is pressed later. The haunch bulges; each height is
     # 1 mm below the one at which the tool just touches there, so that the hand feels 1 N or 2.
     (0.0, 0.0, -0.22), (5.0, 0.0, -0.37), (10.0, 0.0, -0.54), (8.0, 5.0, -0.93), (4.0, 6.5, -0.71),
@@ -81,10 +88,24 @@ WIPE = [  # slide, side, height [mm]: inwards round the place that is pressed la
     (-4.0, -3.0, -0.84), (0.0, -4.0, -0.59), (4.0, -3.0, -0.56), (0.0, 0.0, -0.22),
 ]
 
+TIP_WIPE = [  # with a tip, 1.2 mm below the height at which it just touches
+    (0.0, 0.0, -1.08), (1.5, 0.0, -1.16), (3.0, 0.0, -1.24), (3.5, 1.5, -1.22), (2.0, 2.5, -1.2), (0.0, 2.5, -1.14),
+    (-2.0, 1.5, -1.04), (-2.5, 0.0, -1.05), (-2.0, -1.5, -1.14), (0.0, -2.5, -1.34), (2.0, -2.5, -1.48),
+    (3.5, -1.5, -1.42), (2.5, 0.0, -1.22), (1.0, 1.0, -1.12), (-1.0, 0.5, -1.04), (-0.5, -1.0, -1.13),
+    (1.0, -1.0, -1.21), (0.0, 0.0, -1.08),
+]
+
 WET = [  # come, wipe with water, stay at the place, and return to START
     Stroke("wet", 0.60, 2.0, 0.0, 0.0),
     *(Stroke("wet", 0.55, height, slide, 0.0, side) for slide, side, height in WIPE),
     Stroke("wet", 1.40, -0.22, 0.0, 0.0),
+    Stroke("wet", 0.60, 25.0, 0.0, 0.0),
+]
+
+TIP_WET = [
+    Stroke("wet", 0.60, 2.0, 0.0, 0.0),
+    *(Stroke("wet", 0.35, height, slide, 0.0, side) for slide, side, height in TIP_WIPE),
+    Stroke("wet", 1.00, -1.08, 0.0, 0.0),
     Stroke("wet", 0.60, 25.0, 0.0, 0.0),
 ]
 
@@ -231,21 +252,46 @@ SLIDE = [  # press and slide, to and fro
 
 DRY = [stroke._replace(mode="dry") for stroke in WET]
 
-SCULPT_WET = [*WET[:1], *WET[17:]]  # the inner rounds of the wiping
-SCULPT_PULL = [  # draw a ridge out above the dent: 2 mm into clay that the water has reached less, and slowly back
-    Stroke("push", 0.40, 6.0, -14.0, 0.0),
-    Stroke("pull", 0.30, -4.0, -14.0, 0.0),
-    Stroke("pull", 0.20, -4.0, -14.0, 0.0),
-    Stroke("pull", 0.60, -1.0, -14.0, 0.0),
-    Stroke("pull", 0.30, 12.0, -14.0, 0.0),
-    Stroke("pull", 0.40, 25.0, 0.0, 0.0),
+def ring(mode, seconds, middle, radius, sides):
+    """Once round a place in a plane of one height [mm]."""
+    turns = (2.0 * math.pi * k / sides for k in range(sides + 1))
+    x, y, z = middle
+    return [(mode, seconds, (x + radius * math.cos(a), y + radius * math.sin(a), z)) for a in turns]
+
+
+SCULPT = [  # mode, seconds, tool's centre [mm]: a ball of 6 mm goes round the dinosaur
+    ("wet", 0.0, (2.0, 0.0, 115.0)),
+    ("wet", 0.50, (2.0, 0.0, 93.2)),  # wet the back
+    *(("wet", 0.35, (x, y, 92.0)) for x, y in ((2.0, 0.0), (5.0, 2.0), (0.0, 3.0), (-2.0, -2.0), (3.0, -3.0),
+                                               (2.0, 0.0))),
+    ("wet", 0.30, (2.0, 0.0, 100.0)),
+    ("push", 0.10, (2.0, 0.0, 94.0)),
+    ("pull", 0.30, (2.0, 0.0, 89.5)),  # and draw a horn out of it
+    ("pull", 1.50, (2.0, 0.0, 108.0)),
+    ("push", 0.40, (2.0, -20.0, 118.0)),
+    ("wet", 0.60, (-6.0, -50.0, 62.0)),
+    ("wet", 0.30, (-6.0, -35.2, 62.0)),  # wet the haunch
+    *(("wet", 0.35, (x, -35.2, z)) for x, z in ((-2.0, 62.0), (-6.0, 65.0), (-10.0, 62.0), (-6.0, 59.0), (-6.0, 62.0))),
+    ("push", 0.20, (-6.0, -38.0, 62.0)),
+    ("push", 1.00, (-6.0, -25.5, 62.0)),  # and press a hole into it
+    ("push", 0.40, (-6.0, -50.0, 62.0)),
+    ("push", 0.50, (-60.0, -45.0, 80.0)),
+    ("push", 0.40, (-88.0, -25.0, 44.0)),
+    ("push", 0.30, (-88.0, 0.0, 44.0)),
+    ("push", 1.50, (-84.0, 0.0, 67.0)),  # bend the tail up from below
+    ("push", 0.40, (-88.0, 0.0, 42.0)),
+    ("push", 0.50, (-60.0, -45.0, 60.0)),
+    ("push", 0.60, (14.0, -30.0, 112.0)),
+    ("dry", 0.40, (14.0, 0.0, 112.0)),
+    *ring("dry", 0.30, (2.0, 0.0, 101.0), 10.0, 8),  # dry the horn
+    ("dry", 0.50, (2.0, 0.0, 125.0)),
 ]
-SCULPT_DRY = [stroke._replace(mode="dry", height=stroke.height - (2.5 if stroke.height < 0.0 else 0.0))
-              for stroke in SCULPT_WET]  # down in the dent
 
 TRACES = {  # file: place, strokes before time zero of the tremor, strokes from there on
     "press_flank.csv": (HAUNCH, [], PRESS),
     "wet_press_flank.csv": (HAUNCH, WET, PRESS),
+    "press_tip.csv": (TIP, [], TIP_PRESS),
+    "wet_press_tip.csv": (TIP, TIP_WET, TIP_PRESS),
     "figure_push_pull.csv": (BELLY, [], PUSH_PULL),
     "poke.csv": (HAUNCH, [], POKE),
     "block_light.csv": (BLOCK, [], LIGHT),
@@ -261,7 +307,6 @@ TRACES = {  # file: place, strokes before time zero of the tremor, strokes from 
     "post_let_go.csv": (POST, [], LET_GO),
     "block_reversal.csv": (BLOCK, [], REVERSAL),
     "block_seep.csv": (BLOCK._replace(tool_radius=8.0), [], SEEP),
-    "sculpt.csv": (HAUNCH, SCULPT_WET, PRESS + SCULPT_PULL + SCULPT_DRY + PRESS),
     "long_session.csv": (HAUNCH, [], WET + PRESS + PULL + DRY + PRESS),
 }
 
@@ -411,6 +456,24 @@ def make_approach():
             f"# units: m\n# sha256: {digest}\n{body}")
 
 
+def make_round(points):
+    """A motion between places in the world, the tool upright; without tremor and grid."""
+    def rows():
+        place, time = points[0][2], 0
+        yield f"{0:.3f}," + ",".join(f"{1e-3 * x:.6f}" for x in place) + f",{points[0][0]}\n"
+        for mode, seconds, there in points[1:]:
+            count = round(seconds * RATE_HZ)
+            for tick in range(1, count + 1):
+                hand = added(place, scaled(added(there, scaled(place, -1.0)), minimum_jerk(tick / count)))
+                time += 1
+                yield (f"{time / RATE_HZ:.3f}," + ",".join(without_minus_zero(f"{1e-3 * x:.6f}") for x in hand) + f",{mode}\n")
+            place = there
+
+    body = "time_s,x_m,y_m,z_m,mode\n" + "".join(rows())
+    digest = hashlib.sha256(body.encode()).hexdigest()
+    return f"# argil-trace: 1\n# device: {SMOOTH}\n# units: m\n# rate_hz: {RATE_HZ}\n# sha256: {digest}\n{body}"
+
+
 def find_difference(file, text):
     """What differs between a file and the text that it should hold; nothing when they are equal."""
     if not file.is_file():
@@ -430,7 +493,7 @@ def main():
     parser.add_argument("--out", type=Path, default=folder, metavar="FOLDER", help="default: traces/")
     options = parser.parse_args()
     num_different = 0
-    texts = {name: make_trace(*motion) for name, motion in TRACES.items()} | {"approach.csv": make_approach()}
+    texts = {name: make_trace(*motion) for name, motion in TRACES.items()} | {"approach.csv": make_approach(), "sculpt.csv": make_round(SCULPT)}
     for name, text in texts.items():
         file = options.out / name
         if options.check:

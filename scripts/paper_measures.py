@@ -7,8 +7,7 @@ Usage: paper_measures.py ARGIL --works DRY.h5 WET.h5 --hands ON.h5 OFF.h5 --dela
 Force on or off: what a hand that yields gives the clay with the force and without; and the work that a hand
 which is put along its trace does against it. Delay: age of the force that the hand feels while it touches, and its lag behind the picture. Realism:
 strength of the clay against its water, beside measured clays, each over its strength at the liquid limit, and what the
-clay has in pascals beside what was measured; the water's axis is the liquidity index, which the law takes for the
-saturation.
+clay has in pascals beside what was measured. Saturation 0 is the water with which clay is modelled, 1 that of the liquid limit.
 """
 import argparse
 import json
@@ -19,7 +18,9 @@ import argil_plot as ap
 from argil_plot import np, plt
 
 SCENARIO = Path(__file__).resolve().parent.parent / "scenarios/demo_dino_wet.json"
-PLASTIC_OVER_LIQUID_LIMIT = 0.5  # of water contents; Cochin clay's law is given in w/w_L, and needs it
+PLASTIC_OVER_LIQUID_LIMIT = 0.5  # of water contents; Cochin clay's law is given in w/w_L, the others' in the liquidity index
+MODELLED = 0.6  # water content over that at the liquid limit, where the saturation is 0
+DAMP_WATER = 0.21  # water of a pottery body when it is modelled, of the damp weight: 19.5 to 22.5 % measured
 
 
 def cochin_strength(water):
@@ -27,12 +28,22 @@ def cochin_strength(water):
     return 10.0 ** (2.720 - 2.585 * water)
 
 
+def share_of(saturation):
+    """Water content over that at the liquid limit."""
+    return MODELLED + (1.0 - MODELLED) * saturation
+
+
+def index_of(share):
+    """Liquidity index."""
+    return (share - PLASTIC_OVER_LIQUID_LIMIT) / (1.0 - PLASTIC_OVER_LIQUID_LIMIT)
+
+
 SOFTER_OR_STIFFER = "clays, at half strength 2 to 0.5 % of strain"
 MEASURED = (  # lowest, highest, of what: for the rows of compare_sizes
-    (cochin_strength(PLASTIC_OVER_LIQUID_LIMIT), 180.0, "Cochin clay; Kayabali & Tufenkci 2010"),
+    (cochin_strength(MODELLED), 2.3 * (180.0 / 2.3) ** (1.0 - index_of(MODELLED)), "Cochin clay; Kayabali & Tufenkci 2010"),
     (cochin_strength(1.0), 2.3, "Cochin clay; Kayabali & Tufenkci 2010"),
     (50.0, 200.0, SOFTER_OR_STIFFER), (50.0, 200.0, SOFTER_OR_STIFFER),
-    (0.5, 3.8, "plastic clay"), (0.5, 3.8, "plastic clay"), (19.5, 22.5, "pottery body when it is modelled"))
+    (0.5, 3.8, "plastic clay"), (0.5, 3.8, "plastic clay"), (0.549, 0.665, "Cochin clay of 20 to 10 kPa"))
 
 
 def touch(file):
@@ -87,7 +98,7 @@ def moduli(argil, scene, saturation):
 
 
 def strength(scene, shear, saturation):
-    """Undrained shear strength [Pa] = yield strain · 2G/√2 of the scene's clay when so wet; dry it is the scene's strength_Pa."""
+    """Undrained shear strength [Pa] = yield strain · 2G/√2 of the scene's clay when so wet; of saturation 0 it is the scene's strength_Pa."""
     material = scene["material"]
     dry_shear = material["youngs_modulus_Pa"] / (2.0 * (1.0 + material["poissons_ratio"]))
     yielding = material["plasticity"]["strength_Pa"] / (np.sqrt(2.0) * dry_shear) * material["moisture"]["saturated_yield_ratio"] ** saturation
@@ -100,19 +111,20 @@ def outside(value, low, high):
 
 
 def compare_sizes(argil):
-    """Rows of what the clay has, at the plastic limit (dry) and the liquid limit (saturated), and what was measured."""
+    """Rows of what the clay has, as it is modelled (saturation 0) and at the liquid limit (1), and what was measured."""
     scene, ends = read_scene(argil), np.array([0.0, 1.0])
     bulk, shear = moduli(argil, scene, ends)
     young, strengths = 9.0 * bulk * shear / (3.0 * bulk + shear), strength(scene, shear, ends)
     one_dimensional = bulk + 4.0 / 3.0 * shear
-    water = scene["water"]["density_kg_per_m3"] * scene["water"]["porosity"]  # [kg/m³] when saturated
-    share = 100.0 * water / (water + scene["material"]["density_kg_per_m3"])
-    values = {"strength at the plastic limit [kPa]": 1e-3 * strengths[0], "strength at the liquid limit [kPa]": 1e-3 * strengths[1],
-              "modulus over strength, plastic limit [–]": young[0] / strengths[0],
+    solid = (1.0 - DAMP_WATER) * scene["material"]["density_kg_per_m3"]  # [kg/m³]
+    modelled = DAMP_WATER / (1.0 - DAMP_WATER)  # water content, of the solid's weight
+    liquid = modelled + scene["water"]["density_kg_per_m3"] * scene["water"]["porosity"] / solid
+    values = {"strength as modelled [kPa]": 1e-3 * strengths[0], "strength at the liquid limit [kPa]": 1e-3 * strengths[1],
+              "modulus over strength, as modelled [–]": young[0] / strengths[0],
               "modulus over strength, liquid limit [–]": young[1] / strengths[1],
-              "one-dimensional modulus, dry [MPa]": 1e-6 * one_dimensional[0],
-              "one-dimensional modulus, saturated [MPa]": 1e-6 * one_dimensional[1],
-              "water when saturated, of the damp weight [%]": share}
+              "one-dimensional modulus, as modelled [MPa]": 1e-6 * one_dimensional[0],
+              "one-dimensional modulus, liquid limit [MPa]": 1e-6 * one_dimensional[1],
+              "water as modelled over that at the liquid limit [–]": modelled / liquid}
     return [{"quantity": name, "argil": float(value), "low": low, "high": high, "source": source,
              "factor": float(outside(value, low, high))}
             for (name, value), (low, high, source) in zip(values.items(), MEASURED)]
@@ -120,20 +132,21 @@ def compare_sizes(argil):
 
 def draw_strength(argil):
     """The figure, and the rms distance of log10 of the strength from each measured clay."""
-    index = np.linspace(0.0, 1.0, 41)
+    saturation = np.linspace(0.0, 1.0, 41)
     scene = read_scene(argil)
-    ours = strength(scene, list(moduli(argil, scene, index))[1], index)
-    share = PLASTIC_OVER_LIQUID_LIMIT + (1.0 - PLASTIC_OVER_LIQUID_LIMIT) * index
-    measured = {"641 tests on 101 soils (Vardanega & Haigh 2014)": 35.0 ** (1.0 - index),
-                "remoulded (Kayabali & Tufenkci 2010)": (180.0 / 2.3) ** (1.0 - index),
-                f"Cochin clay, w_P/w_L = {PLASTIC_OVER_LIQUID_LIMIT:g}": cochin_strength(share) / cochin_strength(1.0)}
+    ours = strength(scene, list(moduli(argil, scene, saturation))[1], saturation)
+    share = share_of(saturation)
+    drier = 1.0 - index_of(share)  # than at the liquid limit
+    measured = {"641 tests on 101 soils (Vardanega & Haigh 2014)": 35.0 ** drier,
+                "remoulded (Kayabali & Tufenkci 2010)": (180.0 / 2.3) ** drier,
+                "Cochin clay": cochin_strength(share) / cochin_strength(1.0)}
     figure, axes = plt.subplots(figsize=(120 * ap.MILLIMETRES, 75 * ap.MILLIMETRES))
-    axes.semilogy(index, ours / ours[-1], color=ap.COLOURS[0], label="argil, the demonstration's clay")
+    axes.semilogy(share, ours / ours[-1], color=ap.COLOURS[0], label="argil, the demonstration's clay")
     distances = {}
     for number, (name, values) in enumerate(measured.items(), start=1):
-        axes.semilogy(index, values, color=ap.COLOURS[number], linestyle=ap.DASHES[number], label=name)
+        axes.semilogy(share, values, color=ap.COLOURS[number], linestyle=ap.DASHES[number], label=name)
         distances[name] = float(np.sqrt(np.mean(np.log10(ours / ours[-1] / values) ** 2)))
-    axes.set_xlabel("water: liquidity index, for argil saturation [–]")
+    axes.set_xlabel("water content over that at the liquid limit [–]")
     axes.set_ylabel("strength over that at the liquid limit [–]")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return figure, distances

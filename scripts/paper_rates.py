@@ -24,8 +24,8 @@ DEPTH = {"push": 2.5, "pull": 0.5, "wet": 0.5, "dry": 0.5}  # [mm]
 
 
 def scenario(body, trace, mode, tets):
-    """demo_dino_dry with another body, fixed at its foot."""
-    scene = json.loads((ROOT / "scenarios/demo_dino_dry.json").read_text())
+    """study_soft_dino with another body, fixed at its foot."""
+    scene = json.loads((ROOT / "scenarios/study_soft_dino.json").read_text())
     scene["about"] = "rate of one kind of step"
     scene["body"] = {"shape": {"kind": body, "size_m": 0.2 if body in ("dinosaur", "figure") else 0.1,
                                "target_tets": tets, "skin_triangles": 20000},

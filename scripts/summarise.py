@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Writes the figures of a run on dry clay beside runs on wet clay: forces, water, and which cause lowers the force.
 
-Usage: summarise.py DRY.h5 WET.h5 [ELASTICITY_ONLY.h5 YIELD_ONLY.h5] [--command WORDS] [-o run.json]
+Usage: summarise.py DRY.h5 WET.h5 [ELASTICITY_ONLY.h5 YIELD_ONLY.h5] [--hands DRY.h5 WET.h5] [--command WORDS] [-o run.json]
 
 The parts are fractions of the dry value: how much lower a force is when both causes act, and when only one does. What
 both lower beyond the sum of the two parts is their interaction: negative where each takes from what the other left.
+Of hands that give way: how deep they come, and with what force.
 """
 import argparse
 import json
@@ -12,9 +13,10 @@ from pathlib import Path
 
 import argil_plot as ap
 from argil_plot import np
+from plot_give import read_way
 from argil.plot.water_figure import read_ledger, rest_volumes
 
-NEAR_TOOL = 0.012  # [m] from the tool's centre: what counts as clay under the tool
+NEAR_TOOL = 0.006  # [m] from the tool's centre: what counts as clay under the tool
 
 
 def read_text(result, name):
@@ -58,6 +60,16 @@ def split(dry, wet, elasticity, yielding):
             "interaction": both - by_elasticity - by_yield}
 
 
+def give(motion, hands):
+    """Greatest depth of the tool [m], and force there is at most, for the same motion and for the same hand."""
+    def of(file):
+        _, force, depth, _ = read_way(file)
+        return {"deepest_m": float(np.nanmax(depth)), "largest_mean_N": float(force.max())}
+
+    return {way: {name: of(file) for name, file in zip(("dry", "wet"), pair)}
+            for way, pair in (("same_motion", motion), ("same_hand", hands))}
+
+
 def rounded(value):
     """Six digits are more than a hand feels; the ledger's error and the hashes stay as they are."""
     if isinstance(value, dict):
@@ -80,6 +92,7 @@ def write(figures, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("files", nargs="+", metavar="RESULT.h5", help="dry, wet, and both single causes or neither")
+    parser.add_argument("--hands", nargs=2, metavar="HAND.h5", help="dry and wet, of a hand that gives way")
     parser.add_argument("--command", default="", help="what made the results, to be written down")
     parser.add_argument("-o", "--output", default="run.json", metavar="FILE.json", help="default: %(default)s")
     options = parser.parse_args()
@@ -91,6 +104,8 @@ def main():
         values = [run[name] for run in runs]
         figures[name.split("_")[0]] = (split(*values) if len(values) == 4
                                        else {"lower_by": 1.0 - values[1] / values[0]})
+    if options.hands:
+        figures["give"] = give(options.files[:2], options.hands)
     write(rounded(figures), Path(options.output))
     print(options.output)
 

@@ -46,8 +46,8 @@ const std::vector<Target>& targets() {
 scenario::Scene build(const Target& target, const std::string& fidelity, int tets, int threads,
                       sim::Params& params) {
   scenario::Scenario s = scenario::load_scenario(
-      ARGIL_SOURCE_DIR "/scenarios/demo_dino_dry.json",
-      {{"/dynamics/solver/tolerance", "1e-3"},  // the default, which the demonstration does not take
+      ARGIL_SOURCE_DIR "/scenarios/study_soft_dino.json",
+      {{"/dynamics/solver/tolerance", "1e-3"},  // the default, which the scenario does not take
        {"/body/shape/kind", '"' + std::string(target.name) + '"'},
        {"/body/shape/size_m", std::to_string(target.size)},
        {"/body/shape/target_tets", std::to_string(tets)},

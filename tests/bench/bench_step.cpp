@@ -53,7 +53,7 @@ struct Press {
       settings.push_back({"/material/poissons_ratio", "0.45"});
     }
     scenario::Scenario s =
-        scenario::load_scenario(ARGIL_SOURCE_DIR "/scenarios/demo_dino_dry.json", settings);
+        scenario::load_scenario(ARGIL_SOURCE_DIR "/scenarios/study_soft_dino.json", settings);
     s.params.threads = threads;
     scenario::Scene scene = scenario::build_scene(s);
     trace = std::move(scene.trace);

@@ -21,7 +21,7 @@ constexpr int kTouches = 60;                         // [ticks]
 /// tick, vertices that were solved for.
 std::pair<std::vector<Vec3>, int> press(const std::string& fidelity) {
   const scenario::Scenario s =
-      scenario::load_scenario(ARGIL_SOURCE_DIR "/scenarios/demo_dino_dry.json",
+      scenario::load_scenario(ARGIL_SOURCE_DIR "/scenarios/study_soft_dino.json",
                               {{"/dynamics/solver/tolerance", "1e-4"},
                                {"/body/shape/kind", "\"sphere\""},
                                {"/body/shape/size_m", "0.1"},

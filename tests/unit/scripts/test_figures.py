@@ -19,6 +19,8 @@ if not MISSING:
     import h5py
     import matplotlib.image
     import numpy as np
+    import paper_sculpt
+    import plot_give
     import render
     import render_shots
     import render_vtk
@@ -126,6 +128,23 @@ class Figures(unittest.TestCase):
                             "water_added_kg": 2e-5 * 199}.items():
             self.assertAlmostEqual(figures[name], value, places=12)
 
+    def test_the_depth_is_that_of_the_balls_lowest_point_below_the_skin_at_rest(self):
+        names = ("ball_dry.h5", "ball_wet.h5")
+        for name, depth in zip(names, (0.002, 0.013)):  # of a ball of 10 mm at the side y = 0: less and more than its radius
+            write_result(self.file(name), 0.9 if name == "ball_wet.h5" else 0.0)
+            with h5py.File(self.file(name), "r+") as result:
+                result["haptic/tool_position"][:] = [0.05, -0.01 + depth, 0.05]
+                result["haptic/num_contacts"] = (np.arange(200) >= 110).astype(int) * (np.arange(200) < 140)
+                result["provenance/scenario"] = json.dumps(
+                    {"tool": {"shape": {"kind": "sphere", "radius_m": 0.01}}, "hand": {"kind": "prescribed", "stiffness_N_per_m": 300.0}})
+            time, force, found, spring = plot_give.read_way(self.file(name))
+            np.testing.assert_allclose(found[(time > 0.0595) & (time < 0.0895)], depth, atol=1e-12)
+            self.assertEqual(np.isnan(found).sum(), len(found) - 3)  # nothing is said where it does not touch
+            self.assertEqual((time[0], spring), (0.0, 0.0))
+        run = self.draw("plot_give.py", *names, *names)
+        self.assertIn("same hand: dry 0.", run.stdout)
+        self.assertIn("2.00 mm; wet", run.stdout)
+
     def test_a_summary_keeps_the_commit_that_first_gave_its_figures(self):
         path = Path(self.file("run.json"))
         figures = {"command": "none", "runs": {"dry": {"peak_N": 2.0, "commit": "first"}}}
@@ -140,6 +159,12 @@ class Figures(unittest.TestCase):
             self.assertAlmostEqual(parts[name], value)
         run = self.draw("summarise.py", "dry.h5", "wet.h5", "dry.h5", "--command", "none")
         self.assertIn("3 files: give dry and wet", run.stderr)
+
+    def test_the_volume_of_a_frame_is_that_of_its_cells(self):
+        with h5py.File(self.file("wet.h5"), "r+") as result:
+            frame = result["frames/000003"]
+            frame["position"][:, 2] = 1.1 * frame["position"][:, 2]
+            self.assertAlmostEqual(paper_sculpt.volume_of(result["mesh"], frame), 1.1e-3, places=15)
 
     def test_mean_saturation_is_weighted_by_volume(self):
         with h5py.File(self.file("wet.h5")) as result:

@@ -82,8 +82,12 @@ class Traces(unittest.TestCase):
         self.assertAlmostEqual((z[59] - z[61]) / 0.002, 15 / 8 * 0.003 / 0.12, delta=1e-4)
 
     def test_the_wet_motion_presses_with_the_samples_of_the_dry_one(self):
-        _, dry = read("press_flank.csv")
-        _, wet = read("wet_press_flank.csv")
+        for name in ("press_flank.csv", "press_tip.csv"):
+            self.check_the_wet_motion(name)
+
+    def check_the_wet_motion(self, name):
+        _, dry = read(name)
+        _, wet = read(f"wet_{name}")
         self.assertEqual([row[1:] for row in wet[-len(dry):]], [row[1:] for row in dry])
         self.assertEqual({row[8] for row in wet[:-len(dry)]}, {"wet"})
         self.assertEqual({row[8] for row in dry}, {"push"})

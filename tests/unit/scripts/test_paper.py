@@ -76,17 +76,17 @@ class StandIns(Folder):
     DEMONSTRATION = """#!/usr/bin/env bash
         [[ "$*" == "-o results/demo" ]] || exit 1
         echo run >>scripts.log; mkdir -p "$2"
-        for name in dry wet wet_elasticity_only wet_yield_only; do echo done >"$2/$name.h5"; done"""
+        for name in dry wet wet_elasticity_only wet_yield_only hand_dry hand_wet; do echo done >"$2/$name.h5"; done"""
 
     def setUp(self):
         super().setUp()
         for name in ("scripts", "build/bin", "scenarios"):
             (self.folder / name).mkdir(parents=True)
         shutil.copy(ROOT / "scripts/reproduce", self.folder / "scripts")
-        for name in ("demo_figure_push_pull", "demo_dino_dry", "demo_dino_wet"):
+        for name in ("demo_figure_push_pull", "demo_dino_dry", "demo_dino_wet", "demo_dino_sculpted", "study_soft_dino"):
             self.write(f"scenarios/{name}.json", "{}")
         self.write("build/bin/argil", self.PROGRAM)
-        for name in ("build", "render.py", "plot_force.py", *(f"paper_{it}.py" for it in ("cages", "rates", "measures", "limits", "runs",
+        for name in ("build", "render.py", "plot_force.py", *(f"paper_{it}.py" for it in ("cages", "rates", "measures", "limits", "runs", "sculpt",
                                                                                          "page"))):
             self.write(f"scripts/{name}", self.SCRIPT)
         self.write("scripts/run", self.DEMONSTRATION)
@@ -128,10 +128,11 @@ class StandIns(Folder):
 
     def test_a_run_of_another_program_scenario_or_command_is_made_anew(self):
         self.reproduce("push_pull", "measures")
-        os.utime(self.folder / "scenarios/demo_dino_dry.json")  # now
+        for name in ("demo_dino_dry", "study_soft_dino"):
+            os.utime(self.folder / f"scenarios/{name}.json")  # now
         time.sleep(0.02)
         _, runs, scripts = self.reproduce("push_pull", "measures")
-        self.assertEqual(len([words for words in runs if "demo_dino_dry" in words]), 4)
+        self.assertEqual(len([words for words in runs if "study_soft_dino" in words]), 4)
         self.assertEqual(len([words for words in runs if "figure" in words and "_m=100" not in words]), 0)
         self.assertIn("run", scripts)
         (self.folder / "build/paper/figure.command").write_text("argil run with other words\n")
@@ -233,14 +234,20 @@ class Measures(Folder):
 
     def test_the_clay_beside_measured_ones_is_as_formulas_have_it(self):
         rows = {row["quantity"]: row for row in paper_measures.compare_sizes(ARGIL)}
-        dry = rows["strength at the plastic limit [kPa]"]
-        self.assertAlmostEqual(dry["argil"], 1.5, places=9)  # of the scenario's clay, dry
-        self.assertAlmostEqual(dry["low"], 10 ** (2.720 - 2.585 / 2))
-        self.assertAlmostEqual(dry["factor"], dry["low"] / dry["argil"])
-        self.assertAlmostEqual(rows["one-dimensional modulus, dry [MPa]"]["argil"], 0.14 * 0.7 / (1.3 * 0.4), places=9)
-        self.assertAlmostEqual(rows["water when saturated, of the damp weight [%]"]["argil"], 100 * 400 / 1900)
-        self.assertEqual(rows["modulus over strength, plastic limit [–]"]["factor"], 1.0)
-        self.assertAlmostEqual(rows["modulus over strength, plastic limit [–]"]["argil"], 1.4e5 / 1500)
+        modelled = rows["strength as modelled [kPa]"]
+        self.assertAlmostEqual(modelled["argil"], 15.0, places=9)  # of the scenario's clay, before it is wetted
+        self.assertAlmostEqual(modelled["low"], 10 ** (2.720 - 2.585 * 0.6))
+        self.assertAlmostEqual(modelled["high"], 180.0 ** 0.8 * 2.3 ** 0.2)
+        self.assertAlmostEqual(rows["one-dimensional modulus, as modelled [MPa]"]["argil"], 1.2 * 0.7 / (1.3 * 0.4), places=9)
+        share = rows["water as modelled over that at the liquid limit [–]"]
+        self.assertAlmostEqual(share["argil"], 0.21 * 1960 / (0.21 * 1960 + 280))
+        self.assertEqual(share["factor"], 1.0)
+        ratio = rows["modulus over strength, as modelled [–]"]
+        self.assertAlmostEqual(ratio["argil"], 1.2e6 / 15e3)
+        self.assertEqual(ratio["factor"], 1.0)
+        liquid = rows["strength at the liquid limit [kPa]"]
+        self.assertAlmostEqual(liquid["low"], 10 ** (2.720 - 2.585))
+        self.assertEqual(liquid["factor"], 1.0)
 
     def test_the_lag_is_between_the_felt_moment_and_the_last_picture(self):
         felt, now = np.array([1, 10, 14, 29]), np.array([1, 10, 20, 29])
