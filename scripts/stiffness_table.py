@@ -1,14 +1,16 @@
 #!/usr/bin/python3
 """How much the contact's stiffness changes what is felt: a ball pressed into an elastic block and out again, by a tool that pushes and by
-one that pulls, with κ as argil chooses it and 1 to 100 times that.
+one that pulls, with κ as argil chooses it and 2 to 100 times that, on four-node tets; on ten-node ones with --elements.
 
-Usage: stiffness_table.py ARGIL [-o FILE.csv] [--tets COUNT]      writes results/contact/stiffness.csv
+Usage: stiffness_table.py ARGIL [-o FILE.csv] [--elements p1 p2]      writes results/contact/stiffness.csv
 
-Columns: κ over the chosen one (0: chosen by itself); force where the ball is deepest; how far the force is off that with the chosen κ, a
-pull's until the ball lets go, at most, over its range. Of a pull besides: force over height by a straight line; how
+Columns: element; κ over the chosen one (0: chosen by itself); force where the ball is deepest; how far the force is off that with the
+chosen κ, a pull's until the ball lets go, at most, over its range; of a push also over the force of that tick, where Hertz's radius is two
+cells and more, and where it is three and more. Of a pull besides: force over height by a straight line; how
 far it is off the line, at most over its range; the largest pull; the height above the block's top at which the ball lets go.
 """
 import argparse
+import itertools
 import tempfile
 from pathlib import Path
 
@@ -25,7 +27,9 @@ STRENGTH = 3e4  # of the grip [Pa]
 DOWN, REST, UP = 150, 100, 1200  # ticks
 HIGH = 0.004  # the end of the way out, above the top [m]
 CHOSEN = 80  # κ is so many times E* over the cell
-TIMES = (1, 3, 10, 30, 100)
+TIMES = (2, 10, 100)
+TETS = {"p1": 8000, "p2": 2000}  # about as many nodes
+CELLS = (2, 3)  # to the radius of contact, from which on a change is looked for
 
 
 def make_motion():
@@ -35,29 +39,28 @@ def make_motion():
     return [(*AT, z) for z in heights]
 
 
-def make_scene(tets, mode, stiffness):
+def make_scene(element, mode, stiffness):
     return {
         "about": "A ball presses on a block and goes out again.",
-        "body": {"shape": {"kind": "box", "size_m": EDGE, "target_tets": tets, "skin_triangles": 0},
+        "body": {"shape": {"kind": "box", "size_m": EDGE, "target_tets": TETS[element], "skin_triangles": 0},
                  "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 1e-6}]},
         "material": {"youngs_modulus_Pa": MODULUS, "poissons_ratio": POISSON, "plasticity": {"enabled": False},
                      "clay_kernel": {"form": "off"}},
         "tool": {"shape": {"kind": "sphere", "radius_m": RADIUS}, "mode": mode},
         "contact": {"law": "pressure", "stiffness_Pa_per_m": stiffness, "grip_strength_Pa": STRENGTH},
-        "dynamics": {"solver": {"tolerance": 1e-6}},
+        "dynamics": {"element": element, "solver": {"tolerance": 1e-6}},
         "haptics": {"physics_period_ticks": 1, "water_period_ticks": 1, "frame_period_ticks": 100, "chatter_limit": 1},
     }
 
 
-def find_chosen(result):
-    """κ [Pa/m] over the cell under the ball, from the block's mesh."""
+def find_cell(result, element):
+    """Under the ball, per node [m], from the block's mesh."""
     with h5py.File(result) as run:
         x, tets = run["mesh/rest_position"][:], run["mesh/tets"][:]
-    corners = x[tets]
+    corners = x[tets[:, :4]]
     volume = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])) / 6
     under = np.linalg.norm(corners.mean(axis=1) - (*AT, x[:, 2].max()), axis=1).argmin()
-    cell = np.cbrt(6 * 2**0.5 * volume[under])
-    return CHOSEN * MODULUS / (1 - POISSON**2) / cell
+    return np.cbrt(6 * 2**0.5 * volume[under]) / (2 if element == "p2" else 1)
 
 
 def measure_pull(force):
@@ -74,25 +77,33 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
     parser.add_argument("argil", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "results/contact/stiffness.csv", metavar="FILE")
-    parser.add_argument("--tets", type=int, default=8000, metavar="COUNT", help="mesh of the block")
+    parser.add_argument("--elements", nargs="+", choices=TETS, default=["p1"])
     options = parser.parse_args()
     rows = []
     places = make_motion()
+    depth = EDGE + RADIUS - np.array(places)[1:, 2]
+    radius = np.sqrt(RADIUS * np.maximum(0, depth))  # Hertz's
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for mode in ("push", "pull"):
+        for element, mode in itertools.product(options.elements, ("push", "pull")):
             for times in (0, *TIMES):
-                stiffness = times * chosen if times else 0
-                force = run_along(options.argil, folder, places, make_scene(options.tets, mode, stiffness))[:, 2]
+                stiffness = times * CHOSEN * MODULUS / (1 - POISSON**2) / cell if times else 0
+                force = run_along(options.argil, folder, places, make_scene(element, mode, stiffness))[:, 2]
                 if times == 0:
-                    first, chosen = force, find_chosen(folder / "run.h5")
+                    first, cell = force, find_cell(folder / "run.h5", element)
                 last, pull = measure_pull(force) if mode == "pull" else (len(force), [""] * 4)
                 if mode == "pull":
                     last = min(last, measure_pull(first)[0])
                 off = np.abs(force - first)[:last] / np.ptp(first[:last])
-                rows.append([mode, times, f"{force[DOWN + REST - 1]:.4f}", f"{off.max():.4f}", *pull])
+                wide = [""] * len(CELLS)
+                if mode == "push":
+                    counts = [(radius >= cells * cell) & (first > 0) for cells in CELLS]
+                    wide = [f"{np.abs(force[at] / first[at] - 1).max():.4f}" for at in counts]
+                rows.append([element, mode, times, f"{cell / 1e-3:.3f}", f"{force[DOWN + REST - 1]:.4f}", f"{off.max():.4f}",
+                             *wide, *pull])
                 print(*rows[-1], flush=True)
-    write_table(options.output, ["mode", "times_chosen", "deepest_N", "largest_change_over_range", "slope_N_per_m", "off_line",
+    write_table(options.output, ["element", "mode", "times_chosen", "cell_mm", "deepest_N", "largest_change_over_range",
+                                 *(f"from_{cells}_cells_over_force" for cells in CELLS), "slope_N_per_m", "off_line",
                                  "largest_pull_N", "lets_go_mm"], rows)
 
 

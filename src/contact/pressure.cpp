@@ -17,13 +17,6 @@ constexpr double kFinerOnRigid = 2.0;  // points along a line, over those where 
 constexpr int kMostHalvings = 4;       // of pieces on which the way out of the tool turns,
 constexpr double kTurned = 0.9;        // whose cosine to that at the middle is less
 
-/// Of a point that the tool does not touch: may the body come to the tool there in a step?
-template <class Depth>
-bool is_near(const Depth& depth, double margin) {
-  constexpr double kMargins = 2.0;
-  return depth.end > -kMargins * margin;
-}
-
 /// The largest |b − a| of the numbers at both.
 ARGIL_EVERY_PROCESSOR double find_largest_change(const double* a, const double* b, std::ptrdiff_t count) {
   constexpr int kChains = 4;
@@ -64,6 +57,10 @@ PressureContact::PressureContact(const Triangles& surface, int num_vertices, Too
   m_faces.reserve(m_candidates.capacity());
   for (std::vector<double>& of_axis : m_balls.centre) of_axis.reserve(m_candidates.capacity() + kLanes);
   m_balls.radius.reserve(m_candidates.capacity() + kLanes);
+  m_is_candidate.resize(m_candidates.capacity() / 64 + 1);
+  m_candidate_corners.reserve(m_candidates.capacity());
+  m_vertices.number.reserve(m_corner_of_vertex.size());
+  m_vertices.placed.reserve(4 * m_corner_of_vertex.size());
   m_corners.reserve(m_corner_of_vertex.size());
   m_nearness.reserve(m_corner_of_vertex.size());
 }
@@ -85,7 +82,7 @@ void PressureContact::add_contact(const std::array<int, 3>& vertex, int triangle
                                   const PointDepth& depth, double stiffness, const Vec3& point,
                                   Contacts& out) const {
   const bool touches = depth.mean > 0.0 || depth.begin > 0.0;
-  if (!(stiffness > 0.0) || (!touches && !(finds_near() && is_near(depth, m_margin)))) return;
+  if (!(stiffness > 0.0) || (!touches && !(finds_near() && is_near(depth)))) return;
   Contact& c = (touches ? out.contacts : out.near).emplace_back();
   c.vertex = vertex;
   c.weight = {weight(0), weight(1), weight(2)};
@@ -101,7 +98,7 @@ void PressureContact::add_contact(const std::array<int, 3>& vertex, int triangle
   c.point = point;
 }
 
-void PressureContact::press_corners(const Face& face, double share) {
+void PressureContact::press_corners(const PlacedFace& face, double share) {
   for (std::size_t k = 0; k < 3; ++k) {
     const int vertex = m_surface(static_cast<Eigen::Index>(k), face.number);
     int& place = m_corner_of_vertex[static_cast<std::size_t>(vertex)];
@@ -111,7 +108,7 @@ void PressureContact::press_corners(const Face& face, double share) {
     }
     Corner& corner = m_corners[static_cast<std::size_t>(place)];
     const PointDepth& depth = corner.depth;
-    if (!(depth.mean > 0.0 || depth.begin > 0.0 || is_near(depth, m_margin))) continue;
+    if (!(depth.mean > 0.0 || depth.begin > 0.0 || is_near(depth))) continue;
     const double area = share * face.area / 3.0 * facing_share(corner.depth.outward, face.normal);
     corner.stiffness += area * stiffness_of(face);
   }
@@ -119,7 +116,7 @@ void PressureContact::press_corners(const Face& face, double share) {
 
 /// Does the way out of the tool change its direction on a piece that it covers? From one side of a sharp tip
 /// to the other it jumps, where the tip is deepest.
-bool PressureContact::turns(const Face& face, const Piece& piece) {
+bool PressureContact::turns(const PlacedFace& face, const Piece& piece) {
   const Vec3 centre = face.at(find_centre(piece));
   const LeastDistance middle = find_least_distance(centre, kAnywhere);
   double reach = 0.0;
@@ -133,7 +130,7 @@ bool PressureContact::turns(const Face& face, const Piece& piece) {
 
 /// Each piece of `level` presses with its centre; on rigid faces those that the tool's edges cross are split
 /// on.
-PressureContact::Cover PressureContact::press_pieces(const Face& face, const Piece& piece, int level,
+PressureContact::Cover PressureContact::press_pieces(const PlacedFace& face, const Piece& piece, int level,
                                                      double share, Contacts& out) {
   const Vec3 centre = find_centre(piece);
   const Vec3 x = face.at(centre);
@@ -174,13 +171,15 @@ bool PressureContact::is_rigid(const Face& face) const {
 /// With pieces of about the size `spacing`: between two numbers of halvings, a mean of both, so that the
 /// force has no jump as the patch grows. Where the body yields, faces that small press with their corners: as
 /// nodes do that a tool moves. Where no node can give way, nothing evens out what the points miss.
-void PressureContact::press_face(Face& face, double spacing, Contacts& out) {
+void PressureContact::press_face(Face& face, double spacing, const Points& x, Contacts& out) {
   if (is_rigid(face)) spacing /= kFinerOnRigid;
   if (face.size <= spacing && m_yielding == Yielding::yes) {
     face.cover = face.whole;
     face.by_corners = 1.0;
-    return press_corners(face, 1.0);
+    if (face.has_near_corner) press_corners(place_face(face, x), 1.0);
+    return;
   }
+  const PlacedFace placed = place_face(face, x);
   const double levels = std::clamp(std::log2(face.size / spacing), 0.0, static_cast<double>(m_most_levels));
   const int level = static_cast<int>(levels);
   // In which part of a halving one number of them gives way to the next: where the body yields, the force
@@ -196,9 +195,9 @@ void PressureContact::press_face(Face& face, double spacing, Contacts& out) {
     if (level + i == 0 && m_yielding == Yielding::yes) {
       cover = face.whole;
       face.by_corners = part;
-      press_corners(face, part);
+      press_corners(placed, part);
     } else {
-      cover = press_pieces(face, kWhole, level + i, part, out);
+      cover = press_pieces(placed, kWhole, level + i, part, out);
     }
     cover.area *= part;
     cover.facing_area *= part;
@@ -305,10 +304,10 @@ void PressureContact::press(const Points& x, const Pose& pose_t0, const Pose& po
   // Of clay that yields, the force is the clay's, and the points only share it out; where it keeps its shape
   // they are all that counts.
   const double points_per_radius = yielding == Yielding::yes ? 3.0 : 4.0;
-  m_patch_radius = find_patch_radius();
+  m_patch_radius = find_patch_radius(x);
   const double radius = m_patch_radius > 0.0 ? m_patch_radius : std::sqrt(m_tool.radius() * m_margin);
   if (radius == 0.0) return;
-  for (Face& face : m_faces) press_face(face, radius / points_per_radius, contacts);
+  for (Face& face : m_faces) press_face(face, radius / points_per_radius, x, contacts);
   press_all_corners(x, contacts);
   for (const Face& face : m_faces) {
     if (!contacts.with_touched || !(face.cover.area > 0.0)) continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -69,9 +70,9 @@ class PressureContact {
 
   /// Of the last contacts.
   Patch find_patch() const;
-  /// Of the last contacts, which press with this force [N] in all: how much deeper the tool is below flat
-  /// faces that press with their corners than below these, its mean by the force [m].
-  double find_sag(double force);
+  /// Of the last contacts, with a surface at x, which press with this force [N] in all: how much deeper the
+  /// tool is below flat faces that press with their corners than below these, its mean by the force [m].
+  double find_sag(const Points& x, double force);
 
   /// Of a body whose surface is in the same place: how the tool came through it.
   void go_on_from(const PressureContact& before) { m_passages = before.m_passages; }
@@ -96,7 +97,10 @@ class PressureContact {
   void find_unpressed(const Points& x, const Pose& pose, Contacts& contacts);
 
  private:
-  static constexpr int kMostPlaces = 17;  // on the tool's way
+  static constexpr int kMostPlaces = 17;      // on the tool's way
+  static constexpr double kWidestBand = 0.3;  // of the side of a face; see find_band()
+  static constexpr double kFull = 0.25;       // cosine beyond which all of a face counts; see facing_share()
+  static constexpr double kMargins = 2.0;     // how far points still are near the tool, over m_margin
   static constexpr double kAnywhere = std::numeric_limits<double>::infinity();
   using Piece = std::array<Vec3, 3>;  // barycentric corners of a piece of a triangle
   inline static const Piece kWhole = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
@@ -151,6 +155,11 @@ class PressureContact {
     int vertex = -1;
     Nearness nearness;
   };
+  /// Vertices of m_candidates.
+  struct CandidateVertices {
+    std::vector<int> number;
+    std::vector<double> placed;  ///< of each: x, y, z and how far it is from a ball along its way [m]
+  };
   struct Corner {  // of triangles that press with their corners
     int vertex = -1;
     PointDepth depth;
@@ -158,13 +167,16 @@ class PressureContact {
   };
   struct Face {
     int number = -1;
-    std::array<Vec3, 3> x;  // [m]
+    bool has_near_corner = true;  // false: none of its corners presses
     double area = 0.0;
     double size = 0.0;  // edge of a regular triangle of this area, or half the longest edge [m]
-    Vec3 normal = Vec3::Zero();
-    Cover whole;  // unsplit
+    Cover whole;        // unsplit
     Cover cover;
     double by_corners = 0.0;  // share of it that presses with its corners
+  };
+  struct PlacedFace : Face {
+    std::array<Vec3, 3> x;  // [m]
+    Vec3 normal = Vec3::Zero();
     Vec3 at(const Vec3& weight) const { return weight(0) * x[0] + weight(1) * x[1] + weight(2) * x[2]; }
   };
 
@@ -173,24 +185,32 @@ class PressureContact {
   // pressure_cover.cpp
   void find_faces(const Points& x);
   void find_candidates(const mesh::Box& query, const BoundingTree::Reach& reach, const Points& x);
+  void sort_candidates();
   void keep_balls(const Points& x);
   void find_reached(const Vec3& centre, double radius);
   static double find_nearing(double motion);
-  bool find_face(const mesh::Box& query, const Points& x, Face& face);
+  void number_vertices();
+  bool find_face(const mesh::Box& query, const Points& x, PlacedFace& face);
+  PlacedFace place_face(const Face& face, const Points& x) const;
   Nearness find_vertex_nearness(int vertex, const Vec3& x);
   bool has_band() const { return m_yielding == Yielding::yes && !m_passage; }
   static PlacedPiece place_piece(const std::array<Vec3, 3>& x, const Vec3& centre);
   template <class FindCorner>
-  Cover cover_piece(const Face& face, const PlacedPiece& piece, double area, const LeastDistance& found,
+  Cover cover_piece(const PlacedFace& face, const PlacedPiece& piece, double area, const LeastDistance& found,
                     double band, FindCorner find_corner);
-  double find_patch_radius();
+  double find_patch_radius(const Points& x);
   void limit_levels(int pass);
   double find_band(const Face& face, int level) const;
   double find_band_of_side(double side) const;
-  Cover measure_cover(const Face& face, const Piece& piece, int level, double band = 0.0);
-  Cover measure_cover(const Face& face, int level) {
-    return level == 0 ? face.whole : measure_cover(face, kWhole, level, find_band(face, level));
+  Cover measure_cover(const PlacedFace& face, const Piece& piece, int level, double band = 0.0);
+  Cover measure_cover(const Face& face, int level, const Points& x) {
+    return level == 0 ? face.whole
+                      : measure_cover(place_face(face, x), kWhole, level, find_band(face, level));
   }
+  // pressure_lanes.cpp
+  bool goes_in_lanes() const { return m_tool.is_ball() && has_band() && m_places.size() <= 2; }
+  void find_ball_faces(const mesh::Box& query, const Points& x);
+  void measure_vertices(const Points& x);
   // pressure_depth.cpp
   void place_tool(const Pose& pose_t0, const Pose& pose_t1);
   ToolDistance find_distance(const Vec3& p, const Place& place, double far = kAnywhere);
@@ -210,15 +230,17 @@ class PressureContact {
   double find_held_facing(const Vec3& p, const Vec3& normal, const Place& place);
   // pressure.cpp
   bool is_rigid(const Face& face) const;
-  bool turns(const Face& face, const Piece& piece);
-  void press_face(Face& face, double spacing, Contacts& out);
-  void press_corners(const Face& face, double share);
-  Cover press_pieces(const Face& face, const Piece& piece, int level, double share, Contacts& out);
+  bool turns(const PlacedFace& face, const Piece& piece);
+  void press_face(Face& face, double spacing, const Points& x, Contacts& out);
+  void press_corners(const PlacedFace& face, double share);
+  Cover press_pieces(const PlacedFace& face, const Piece& piece, int level, double share, Contacts& out);
   void add_contact(const std::array<int, 3>& vertex, int triangle, const Vec3& weight,
                    const PointDepth& depth, double stiffness, const Vec3& point, Contacts& out) const;
   void press_all_corners(const Points& x, Contacts& out);
   double stiffness_of(const Face& face) const;
   bool finds_near() const { return m_is_solved_for && m_yielding == Yielding::yes && !m_passage; }
+  /// Of a point that the tool does not touch: may the body come to the tool there in a step?
+  bool is_near(const PointDepth& depth) const { return depth.end > -kMargins * m_margin; }
   double find_held_stiffness(bool will_yield) const;
   void hold_shape(bool will_yield, Contacts& out) const;
   static double facing_share(const Vec3& outward, const Vec3& normal);
@@ -229,10 +251,13 @@ class PressureContact {
   bool m_is_solved_for;
   PenaltyKind m_penalty;
   std::optional<BoundingTree> m_tree;
-  double m_motion = 0.0;          // of the body before the present call, along any axis [m]
-  std::vector<int> m_candidates;  // triangles that may be near the tool for some calls, by number
-  std::optional<Ahead> m_ahead;   // none: they have to be found anew
+  double m_motion = 0.0;                      // of the body before the present call, along any axis [m]
+  std::vector<int> m_candidates;              // triangles that may be near the tool for some calls, by number
+  std::optional<Ahead> m_ahead;               // none: they have to be found anew
+  std::vector<std::uint64_t> m_is_candidate;  // a bit of each triangle, while they are put in order
   CandidateBalls m_balls;
+  CandidateVertices m_vertices;
+  std::vector<std::array<int, 3>> m_candidate_corners;  // places in m_vertices, for each candidate
   Passage m_passages;
   // Of the present call.
   std::vector<Place> m_places;                 // along the tool's way, the end last
@@ -246,7 +271,7 @@ class PressureContact {
   std::size_t m_num_measured = 0;  // pieces, in the present pass over all faces
   double m_margin = 0.0;           // how far from the tool points are near it [m]
   double m_patch_radius = 0.0;     // [m]; 0: nothing is touched
-  std::vector<int> m_reached;      // of m_candidates, those that may be near it
+  std::vector<int> m_reached;      // places in m_candidates of those that may be near it
   std::vector<Face> m_faces;       // near the tool's way, by number
   std::vector<Corner> m_corners;
   std::vector<int> m_corner_of_vertex;     // place in m_corners; −1: none

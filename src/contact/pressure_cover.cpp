@@ -1,6 +1,7 @@
 // Which of the body's triangles the tool is near, and how much of each it covers.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +16,6 @@ constexpr double kLeastRadius = 0.25;   // of that of the covered area
 constexpr double kFarthestNear = 0.25;  // of the tool's radius
 constexpr int kMostLevels = 14;         // of splitting a triangle in four
 constexpr double kMostPieces = 2.6e5;   // of all triangles near the tool
-constexpr double kWidestBand = 0.3;     // of the side
 // From the ball that holds what the tool sweeps, a face is near whose middle is as far as its corners and its
 // band, over the sum of the sides of its box: a corner is at most 2/3 of the longest edge away, a band is
 // kWidestBand of twice that.
@@ -49,10 +49,11 @@ void PressureContact::find_faces(const Points& x) {
   find_candidates(query, {centre, radius, kPerSide}, x);
   m_faces.clear();
   find_reached(centre, radius);
-  for (const int number : m_reached) {
-    Face& face = m_faces.emplace_back();
-    face.number = number;
-    if (!find_face(query, x, face)) m_faces.pop_back();
+  if (goes_in_lanes()) return find_ball_faces(query, x);
+  for (const int place : m_reached) {
+    PlacedFace face;
+    face.number = m_candidates[static_cast<std::size_t>(place)];
+    if (find_face(query, x, face)) m_faces.push_back(face);
   }
   for (const VertexNearness& known : m_nearness)
     m_place_of_vertex[static_cast<std::size_t>(known.vertex)] = -1;
@@ -69,11 +70,14 @@ double PressureContact::find_nearing(double motion) {
 /// ahead: for queries that are larger, which hold the next ones as long as tool and body have hardly moved.
 void PressureContact::find_candidates(const mesh::Box& query, const BoundingTree::Reach& reach,
                                       const Points& x) {
+  // What has moved so far that too many count as reached [of the tool's radius].
+  constexpr double kStale = 0.02;
   if (m_ahead) {
     const double needed = (reach.centre - m_ahead->reach.centre).norm() + reach.radius;
     const bool holds = (m_ahead->box.low.array() <= query.low.array()).all() &&
                        (m_ahead->box.high.array() >= query.high.array()).all() &&
                        needed <= m_ahead->reach.radius;
+    if (holds && m_balls.motion > kStale * m_tool.radius()) keep_balls(x);
     if (holds) return;
   }
   constexpr double kCalls = 8.0;     // for so many, if they go on like this,
@@ -82,8 +86,39 @@ void PressureContact::find_candidates(const mesh::Box& query, const BoundingTree
   m_ahead = {query.grown(ahead), {reach.centre, reach.radius + ahead, reach.per_side}};
   m_candidates.clear();
   m_tree->find_overlaps(m_ahead->box, m_ahead->reach, x, m_candidates);
-  std::sort(m_candidates.begin(), m_candidates.end());
+  sort_candidates();
   keep_balls(x);
+  number_vertices();
+}
+
+/// By number, each once as they are.
+void PressureContact::sort_candidates() {
+  constexpr std::size_t kBits = 64;
+  for (const int number : m_candidates)
+    m_is_candidate[static_cast<std::size_t>(number) / kBits] |= std::uint64_t{1}
+                                                                << (static_cast<unsigned>(number) % kBits);
+  m_candidates.clear();
+  for (std::size_t word = 0; word < m_is_candidate.size(); ++word)
+    for (std::uint64_t& bits = m_is_candidate[word]; bits != 0; bits &= bits - 1)
+      m_candidates.push_back(static_cast<int>(kBits * word) + std::countr_zero(bits));
+}
+
+void PressureContact::number_vertices() {
+  m_vertices.number.clear();
+  m_candidate_corners.clear();
+  for (const int number : m_candidates) {
+    std::array<int, 3>& corners = m_candidate_corners.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int vertex = m_surface(static_cast<Eigen::Index>(k), number);
+      int& place = m_place_of_vertex[static_cast<std::size_t>(vertex)];
+      if (place < 0) {
+        place = static_cast<int>(m_vertices.number.size());
+        m_vertices.number.push_back(vertex);
+      }
+      corners[k] = place;
+    }
+  }
+  for (const int vertex : m_vertices.number) m_place_of_vertex[static_cast<std::size_t>(vertex)] = -1;
 }
 
 void PressureContact::keep_balls(const Points& x) {
@@ -127,12 +162,12 @@ ARGIL_EVERY_PROCESSOR void PressureContact::find_reached(const Vec3& centre, dou
     const Lanes is_far = x * x + y * y + z * z < most * most ? Lanes{} : Lanes{} + 1.0;
     const std::size_t count = std::min<std::size_t>(kLanes, m_candidates.size() - begin);
     for (std::size_t k = 0; k < count; ++k)
-      if (m_passage || is_far[k] == 0.0) m_reached.push_back(m_candidates[begin + k]);
+      if (m_passage || is_far[k] == 0.0) m_reached.push_back(static_cast<int>(begin + k));
   }
 }
 
 /// Measures a face. False where the tool is not near it.
-bool PressureContact::find_face(const mesh::Box& query, const Points& x, Face& face) {
+bool PressureContact::find_face(const mesh::Box& query, const Points& x, PlacedFace& face) {
   const Eigen::Vector3i vertex = m_surface.col(face.number);
   for (Eigen::Index k = 0; k < 3; ++k) face.x[static_cast<std::size_t>(k)] = x.col(vertex(k));
   const PlacedPiece whole = place_piece(face.x, face.at(kMiddle));
@@ -160,6 +195,15 @@ bool PressureContact::find_face(const mesh::Box& query, const Points& x, Face& f
     });
   const bool is_within_margin = m_margin > 0.0 && found.distance < whole.reach + m_margin;
   return face.whole.area > 0.0 || face.whole.may_touch || is_within_margin;
+}
+
+PressureContact::PlacedFace PressureContact::place_face(const Face& face, const Points& x) const {
+  PlacedFace placed{face, {}, {}};
+  for (std::size_t k = 0; k < 3; ++k)
+    placed.x[k] = x.col(m_surface(static_cast<Eigen::Index>(k), face.number));
+  const Vec3 normal = (placed.x[1] - placed.x[0]).cross(placed.x[2] - placed.x[0]);
+  placed.normal = normal / (2.0 * face.area);
+  return placed;
 }
 
 /// The same for all faces of a vertex.
@@ -200,7 +244,7 @@ double PressureContact::find_band_of_side(double side) const {
 /// Of a piece of a triangle, the distance taken as linear on its pieces of `level`. As the distance changes
 /// by no more than the point moves, a piece whose centre is farther than its corners is wholly on one side.
 /// With a `band`, of a face whose corners count by how near they are.
-PressureContact::Cover PressureContact::measure_cover(const Face& face, const Piece& piece, int level,
+PressureContact::Cover PressureContact::measure_cover(const PlacedFace& face, const Piece& piece, int level,
                                                       double band) {
   ++m_num_measured;
   const PlacedPiece placed =
@@ -219,8 +263,8 @@ PressureContact::Cover PressureContact::measure_cover(const Face& face, const Pi
 
 /// Of a piece of this area whose middle is `found` from the tool, and corner k find_corner(k).
 template <class FindCorner>
-PressureContact::Cover PressureContact::cover_piece(const Face& face, const PlacedPiece& piece, double area,
-                                                    const LeastDistance& found, double band,
+PressureContact::Cover PressureContact::cover_piece(const PlacedFace& face, const PlacedPiece& piece,
+                                                    double area, const LeastDistance& found, double band,
                                                     FindCorner find_corner) {
   Nearness deepest{found.distance, found.place};
   const Vec3* at = &piece.centre;
@@ -254,7 +298,7 @@ void PressureContact::limit_levels(int pass) {
 
 /// Radius of a disc as large as the patch, 0 where nothing is touched [m]: the one that is found with pieces
 /// of just that size. Between two halvings of the pieces it is interpolated, so that it has no jump.
-double PressureContact::find_patch_radius() {
+double PressureContact::find_patch_radius(const Points& x) {
   double spacing = 0.0;
   for (const Face& face : m_faces) spacing = std::max(spacing, face.size);
   double coarser = 0.0;  // the radius with pieces twice as large
@@ -264,7 +308,7 @@ double PressureContact::find_patch_radius() {
     m_num_measured = m_faces.size();
     for (const Face& face : m_faces) {
       const double levels = face.size > spacing ? std::ceil(std::log2(face.size / spacing) - 1e-9) : 0.0;
-      patch += measure_cover(face, static_cast<int>(levels));
+      patch += measure_cover(face, static_cast<int>(levels), x);
     }
     limit_levels(pass);
     if (patch.facing_area == 0.0 && !patch.may_touch) return 0.0;
@@ -285,12 +329,13 @@ double PressureContact::find_patch_radius() {
 /// Three places within a face, whose mean is exact for what grows with the square of the way: a ball's depth
 /// below a flat face is less at its corners than between them. A face that is not pressed as a whole does not
 /// tell: a rim may cross it.
-double PressureContact::find_sag(double force) {
+double PressureContact::find_sag(const Points& x, double force) {
   if (m_passage || m_places.empty() || !(force > 0.0)) return 0.0;
   const Place& end = m_places.back();
   double sum = 0.0;
-  for (const Face& face : m_faces) {
-    if (!(face.by_corners > 0.0)) continue;
+  for (const Face& each : m_faces) {
+    if (!(each.by_corners > 0.0) || !each.has_near_corner) continue;
+    const PlacedFace face = place_face(each, x);
     double at_corners = 0.0, between = 0.0, facing = 0.0;
     bool presses = true;
     for (const Vec3& corner : face.x) {

@@ -286,7 +286,6 @@ PressureContact::PointDepth PressureContact::find_passage_depth(const Vec3& p) {
 /// 1 for a surface that faces the way out of the tool, 0 for one that looks along it; in between by degrees
 /// near the right angle.
 double PressureContact::facing_share(const Vec3& outward, const Vec3& normal) {
-  constexpr double kFull = 0.25;  // cosine beyond which all of it counts
   return std::clamp(-outward.dot(normal) / kFull, 0.0, 1.0);
 }
 

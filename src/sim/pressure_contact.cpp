@@ -53,7 +53,7 @@ PatchResolution HandSide::find_resolution() {
   if (m_params.solid.element == solid::ElementKind::p2) return found;
   double force = 0.0;
   for (const contact::Contact& c : m_contacts.contacts) force += c.end_force;
-  found.sag = m_pressure->find_sag(force);
+  found.sag = m_pressure->find_sag(m_touched.x_t0(), force);
   return found;
 }
 

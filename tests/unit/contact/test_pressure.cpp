@@ -303,7 +303,7 @@ TEST(Pressure, SagsBetweenTheCornersOfSmallFaces) {
       double force = 0.0;
       for (const Contact& c : contacts.contacts) force += c.end_force;
       EXPECT_GT(force, 0.0);
-      return pressure.find_sag(force);
+      return pressure.find_sag(plane.vertices, force);
     };
     const double found = find(ToolSolid(kBall), Pose{{0.0011, 0.0023, kRadius - kDepth}});
     EXPECT_LT(found, 1.02 * sag) << n;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -278,6 +279,53 @@ TEST(Pressure, FacesThatAreFoundAheadAreAllThatTheToolMeets) {
     pose = to;
   }
   EXPECT_GT(most, 20U);
+}
+
+/// A ball measures eight faces at a time, any other tool one: a capsule of next to no length presses the same
+/// points, at rest, on a short way and on a long one.
+TEST(Pressure, OfABallIsThatOfACapsuleOfNoLength) {
+  constexpr double kSame = 1e-7;  // of the largest: lengths of 1e-13 m in depths of 1e-5 m and more
+  Rng rng(5);
+  mesh::TriangleMesh slab = make_flat_slab(60, 0.05);
+  const double top = slab.vertices.row(2).maxCoeff();
+  for (Eigen::Index v = 0; v < slab.vertices.cols(); ++v)
+    if (slab.vertices(2, v) == top) slab.vertices(2, v) += rng.uniform(-2e-4, 2e-4);
+  const Eigen::Index count = slab.triangles.cols();
+  const auto make = [&](double length) {
+    return PressureContact(slab.triangles, slab.num_vertices(),
+                           ToolSolid(RoundTool{kRadius, length, kRadius, false}),
+                           {Field::Constant(count, kStiffness), Field::Constant(count, kModulus)}, true);
+  };
+  std::size_t most = 0, most_near = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const double way = std::array{0.0, 2e-5, 1e-3, 0.6 * kRadius, 1.5 * kRadius}[trial % 5];
+    const double angle = rng.uniform(0.0, 6.28);
+    const Pose to{{rng.uniform(-0.01, 0.01), rng.uniform(-0.01, 0.01), kRadius - rng.uniform(-3e-4, 2e-3)}};
+    const Pose from{to.position + way * Vec3(std::cos(angle), std::sin(angle), 0.1)};
+    Contacts found[2];
+    Patch patch[2];
+    for (int k = 0; k < 2; ++k) {
+      PressureContact pressure = make(k == 0 ? 0.0 : 1e-13);
+      pressure.find_contacts(slab.vertices, from, to, Yielding::yes, found[k]);
+      patch[k] = pressure.find_patch();
+    }
+    EXPECT_NEAR(patch[0].radius, patch[1].radius, kSame * kRadius) << trial;
+    EXPECT_NEAR(patch[0].modulus, patch[1].modulus, kSame * kModulus) << trial;
+    const double largest = kSame * std::max(1e-3, found[1].force_on_tool.norm());
+    for (const auto list : {&Contacts::contacts, &Contacts::near}) {
+      ASSERT_EQ((found[0].*list).size(), (found[1].*list).size()) << trial;
+      for (std::size_t i = 0; i < (found[0].*list).size(); ++i) {
+        const Contact &ball = (found[0].*list)[i], &capsule = (found[1].*list)[i];
+        ASSERT_EQ(ball.vertex, capsule.vertex) << trial;
+        EXPECT_LT((ball.force - capsule.force).norm(), largest) << trial;
+        EXPECT_NEAR(ball.stiffness, capsule.stiffness, kSame * capsule.stiffness) << trial;
+      }
+    }
+    most = std::max(most, found[0].contacts.size());
+    most_near = std::max(most_near, found[0].near.size());
+  }
+  EXPECT_GT(most, 50U);
+  EXPECT_GT(most_near, 20U);
 }
 
 }  // namespace
