@@ -16,7 +16,7 @@ from table_file import write_table
 
 ROOT = Path(__file__).resolve().parent.parent
 NUMBERS = (5000, 15000)
-FINER = 1e-5  # tolerance of the solver
+FINER = 1e-4  # tolerance of the solver, which keeps to diagonal blocks
 SCENES = {
     "demonstration": ("study_soft_dino.json", ["/dynamics/model=hencky", "/material/plasticity/enabled=false", "/material/clay_kernel/form=off",
                                              "/trace/duration_s=1.5", "/haptics/physics_period_ticks=5"]),
@@ -39,7 +39,8 @@ def run(argil, folder, name, settings):
 def measure(argil, folder, scene, cells, number, fidelity):
     """Tets, nodes solved for, iterations a step, milliseconds an iteration and a step."""
     name, settings = SCENES[scene]
-    settings = [*settings, *FIDELITIES[fidelity], f"/body/cells/kind={cells}", f"/body/shape/target_tets={number}"]
+    settings = [*settings, *FIDELITIES[fidelity], f"/body/cells/kind={cells}", f"/body/shape/target_tets={number}",
+                "/dynamics/solver/kind=pcg_jacobi"]
     tets, nodes, iterations, seconds = run(argil, folder, name, settings)
     more = run(argil, folder, name, [*settings, f"/dynamics/solver/tolerance={FINER}"])
     one = (more[3] - seconds) / (more[2].sum() - iterations.sum())
