@@ -135,13 +135,22 @@ def dry_wet():
                 for name, run in runs.items()]
         words += table(["run", "peak [N]", "impulse [N s]", "peak, to dry", "impulse, to dry"], rows)
     return (words
-            + run_words("dry", """The hand is put along its trace and does not yield, so both are pressed nearly as far, and
-                what differs is the force, not the depth. Dry, the dent is {deepest_dent_m} deep under the tool and
-                {dent_left_m} at the end, with {bump_left_m} squeezed up beside it.""")
-            + run_words("wet", """Wet, it is {deepest_dent_m} and then {dent_left_m}, **shallower**, with
-                {bump_left_m} beside it.""")
+            + run_words("dry", """In these four the hand is put along its trace, as in the paper's figure: what differs is the force, not
+                the depth. Dry, the dent is {deepest_dent_m} deep under the tool and {dent_left_m} at the end, with {bump_left_m}
+                squeezed up beside it.""")
+            + run_words("wet", """Wet, it is {deepest_dent_m} and then {dent_left_m}, with {bump_left_m} beside it.""")
+            + hand_words(demo)
             + locking_words(runs)
             + pictures(("locking_force.png", "wet and drained; undrained in an element that locks and in one that does not")))
+
+
+def hand_words(demo):
+    if "give" not in demo:
+        return ""
+    dry, wet = (demo["give"]["same_hand"][name] for name in ("dry", "wet"))
+    return prose(f"""A hand that means to make the same motion, 0.15 kg on a spring of 500 N/m, gives way: it comes
+                {1e3 * dry["deepest_m"]:.2f} mm deep with {dry["largest_mean_N"]:.2f} N where the clay is dry, and
+                {1e3 * wet["deepest_m"]:.2f} mm with {wet["largest_mean_N"]:.2f} N where it is wet.""")
 
 
 def locking_words(runs):
@@ -170,13 +179,18 @@ def sculpted():
         return words + "*Not made yet: sculpted_volume.json*\n\n"
     moved = {name: f"{1e3 * value:.1f} mm" for name, value in found["moved_m"].items()}
     force = found["largest_force_N"]
-    return words + prose(f"""In {found["seconds"]:.1f} s the horn moved by {moved["horn"]}, the bottom of the hole by {moved["hole"]} and the tail's end by
-                {moved["tail"]}. The body got new cells {found["new_cells"]} times, {found["tets_last"]} at last for {found["tets_first"]}; its
-                volume never changed by more than {100 * found["largest_volume_change"]:.2f} %. The tool gave {1e6 * found["water_given_kg"]:.0f} mg
-                of water and took {1e6 * found["water_taken_kg"]:.0f} mg back. The largest forces are {force["pull"]:.1f} N in the pull and
-                {force["push"]:.0f} N in the push, more than a desktop device renders: it is the work of a thumb. They are too large besides,
-                for new cells are of one size near the tool and coarse for it. `scripts/reproduce sculpted` leaves a page to turn and
-                replay it, build/paper/sculpted.html.""")
+    cells = found["cells_over_skin"]
+    return words + prose(f"""In {found["seconds"]:.1f} s the horn moved by {moved["horn"]}, the bottom of the hole by
+                {moved["hole"]} and the tail's end by {moved["tail"]}. The body got new cells {found["new_cells"]} times,
+                {found["tets_last"]} at last for {found["tets_first"]}. The skin's volume was never off by more than
+                {100 * found["largest_volume_change"]:.2f} %, and is by {100 * found["volume_change"]:.2f} % at the end. The tool gave
+                {1e6 * found["water_given_kg"]:.0f} mg of water and took {1e6 * found["water_taken_kg"]:.0f} mg back.
+                `scripts/reproduce sculpted` leaves a page to turn and replay it, build/paper/sculpted.html.""") + prose(f"""
+                **Chosen after looking**: the places and the depths. The horn has a crown, for the ball that drew it sat there. The
+                largest forces are {force["pull"]:.1f} N in the pull and {force["push"]:.0f} N in the push: a thumb's, more than a
+                desktop device renders, and too large besides, as the cells are too few for a ball of 6 mm. The cells enclose
+                {100 * (cells["first"] - 1.0):.1f} % more than the skin at the start and {100 * (cells["last"] - 1.0):.1f} % more at
+                the end: new cells lie on the skin, where the first ones were too coarse to.""")
 
 
 def still_changes(rows):

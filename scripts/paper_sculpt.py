@@ -4,7 +4,8 @@
 Usage: paper_sculpt.py RESULT.h5 [-o STEM]     → STEM.json, STEM.png, STEM.pdf
 
 The places are those of traces/sculpt.csv on the dinosaur of 200 mm. A place has moved as far as the vertex of the skin there
-that moved most between the first and the last frame. The volume is that of the cells.
+that moved most between the first and the last frame. The volume is that within the skin; that of the cells is given beside it,
+for those at the start do not enclose what the skin does.
 """
 import argparse
 import json
@@ -25,23 +26,33 @@ def volume_of(cells, frame):
     return float(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a).sum() / 6.0)
 
 
+def volume_within(points, triangles):
+    """Of a closed surface whose triangles look outward [m³]."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    return float(np.einsum("ij,ij->", np.cross(a, b), c) / 6.0)
+
+
 def measure(result):
-    """Times [s] and volumes [m³] of the frames, and the figures of the session."""
+    """Times [s] and the skin's volumes [m³] of the frames, and the figures of the session."""
     frames = ap.frames_of(result)
     rest = render_shots.rest_points(result, True)
     moved = np.linalg.norm(frames[-1]["skin_position"][:] - frames[0]["skin_position"][:], axis=1)
     times = np.array([frame.attrs["time"] for frame in frames])
-    volumes = np.array([volume_of(ap.cells_of(result, frame), frame) for frame in frames])
+    cells = np.array([volume_of(ap.cells_of(result, frame), frame) for frame in frames])
+    triangles = result["mesh/skin_triangles"][:]
+    volumes = np.array([volume_within(frame["skin_position"][:], triangles) for frame in frames])
     force, mode = ap.force_norm(result), result["haptic/mode"][:]
     figures = {
         "moved_m": {name: float(moved[np.linalg.norm(rest - place, axis=1) < reach].max())
                     for name, (place, reach) in PLACES.items()},
         "volume_change": float(volumes[-1] / volumes[0] - 1.0),
         "largest_volume_change": float(np.abs(volumes / volumes[0] - 1.0).max()),
+        "cells_over_skin": {"first": float(cells[0] / volumes[0]), "last": float(cells[-1] / volumes[-1])},
         "new_cells": len(result.get("epochs", {})), "tets_first": len(result["mesh/tets"]),
         "tets_last": len(ap.cells_of(result, frames[-1])["tets"]),
         "largest_force_N": {name: float(force[mode == number].max(initial=0.0)) for number, name in enumerate(ap.MODES)},
-        "water_given_kg": float(result["physics/water_added"][-1]), "water_taken_kg": float(result["physics/water_removed"][-1]),
+        "water_given_kg": float(result["physics/water_added"][-1]),
+        "water_taken_kg": float(result["physics/water_removed"][-1]),
         "seconds": float(result["haptic/time"][-1]), "outcome": str(np.char.decode(np.bytes_(result.attrs["outcome"])))}
     return times, volumes, figures
 
@@ -64,7 +75,7 @@ def draw(result, times, volumes):
                            va="top", fontsize=8, color=ap.GREY)
     above.set_ylabel("force at the hand [N]\nmean over 0.05 s")
     above.set_ylim(bottom=0.0)
-    below.set_ylabel("change of volume [%]")
+    below.set_ylabel("change of the\nskin's volume [%]")
     below.set_xlabel("time [s]")
     below.margins(x=0)
     return figure

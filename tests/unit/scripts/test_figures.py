@@ -160,11 +160,13 @@ class Figures(unittest.TestCase):
         run = self.draw("summarise.py", "dry.h5", "wet.h5", "dry.h5", "--command", "none")
         self.assertIn("3 files: give dry and wet", run.stderr)
 
-    def test_the_volume_of_a_frame_is_that_of_its_cells(self):
+    def test_the_volume_of_a_frame_is_that_of_its_cells_and_within_its_surface(self):
         with h5py.File(self.file("wet.h5"), "r+") as result:
             frame = result["frames/000003"]
             frame["position"][:, 2] = 1.1 * frame["position"][:, 2]
             self.assertAlmostEqual(paper_sculpt.volume_of(result["mesh"], frame), 1.1e-3, places=15)
+            surface = result["mesh/surface_triangles"][:]
+            self.assertAlmostEqual(paper_sculpt.volume_within(frame["position"][:], surface), 1.1e-3, places=15)
 
     def test_mean_saturation_is_weighted_by_volume(self):
         with h5py.File(self.file("wet.h5")) as result:
