@@ -149,11 +149,9 @@ struct Off {
   }
 };
 
-Off find_off(const sim::Body& body) {
+Off find_off(const Points& x, const Triangles& faces, const mesh::TriangleMesh& touched) {
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-  const Points& x = body.mesh.vertices;
-  const Triangles& faces = body.topology.boundary;
-  const embed::TriangleTree surface(body.touched), boundary({x, faces});
+  const embed::TriangleTree surface(touched), boundary({x, faces});
   Field edge = Field::Zero(x.cols());
   for (const auto& v : faces.colwise())
     for (Eigen::Index k = 0; k < 3; ++k)
@@ -161,7 +159,7 @@ Off find_off(const sim::Body& body) {
   Off off;
   for (Eigen::Index v = 0; v < x.cols(); ++v)
     if (edge(v) > 0.0) off.add(surface.find_nearest(x.col(v), kAnywhere).distance, edge(v));
-  for (const auto& p : body.touched.vertices.colwise()) {
+  for (const auto& p : touched.vertices.colwise()) {
     const embed::TriangleTree::Nearest found = boundary.find_nearest(p, kAnywhere);
     off.add(found.distance, edge(faces(0, found.triangle)));
   }
@@ -221,9 +219,13 @@ sim::Body make_cells(const Scenario& s, const Scenario& of_surface, const Presen
   const embed::CageOptions options{first_tets, embed::Fit::surface, is_torn, kMostCubes * first_tets};
   body.mesh = embed::make_cage(body.touched, options, s.file).mesh;
   if (is_graded) {
-    std::swap(body.skin, body.touched);  // that the cells follow
+    std::swap(body.skin, body.touched);   // that the cells follow
+    constexpr double kLeastHalved = 1.5;  // tets, over those that the surface needs
+    Scenario graded = of_surface;
+    graded.body.target_tets =
+        std::max(of_surface.body.target_tets, static_cast<int>(kLeastHalved * body.mesh.num_tets()));
     std::vector<std::string> notes;
-    grade_cells(of_surface, {}, {}, &places, body, notes);
+    grade_cells(graded, {}, {}, &places, body, notes);
     std::swap(body.skin, body.touched);
     body.touched_places = places;
   }
@@ -250,24 +252,26 @@ sim::Body make_cells(const Scenario& s, const Scenario& of_surface, const Presen
 
 }  // namespace
 
-/// Of those that follow the surface the ones with the fewest tets; else those that come nearest to it.
+/// Of those that follow the surface, or do so as well as the present ones, the ones with the fewest tets;
+/// else those that come nearest to it. A finer lattice leaves fewer tets for where the tool is.
 NewCells make_new_cells(const Scenario& s, const PresentShape& now) {
   constexpr double kMostTets = 1.5;  // of those wanted, where thin parts need them
-  constexpr double kFollows = 0.4;   // of an edge, off at most
+  constexpr double kFollows = 0.4;   // of an edge, off at most, or as now
   const Scenario of_surface = make_scenario_of_surface(s, now.body);
   const int wanted = of_surface.body.target_tets;
   const bool is_graded = !now.body.touched_places.empty() || !s.body.cells.regions.empty();
   int tets = is_graded ? count_first_tets(of_surface.body) : wanted;
+  const double follows = std::max(kFollows, find_off(now.x, now.body.topology.boundary, now.touched).edges);
   std::optional<sim::Body> nearest;
   double farthest = std::numeric_limits<double>::infinity();
   for (bool is_last = false; !is_last; tets *= 2) {
     is_last = 2.0 * tets > kMostTets * wanted;
     try {
       sim::Body body = make_cells(s, of_surface, now, tets, false);
-      const Off off = find_off(body);
+      const Off off = find_off(body.mesh.vertices, body.topology.boundary, body.touched);
       if (off.farthest < farthest) nearest = std::move(body);
       farthest = std::min(farthest, off.farthest);
-      if (off.edges < kFollows) break;
+      if (off.edges < follows) break;
     } catch (const InputError&) {
       if (is_last && !nearest) return {make_cells(s, of_surface, now, tets, true), true};
     }

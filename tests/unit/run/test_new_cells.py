@@ -200,6 +200,43 @@ class NewCellsOfTenNodes(NewCells):
     JUMP = 0.08
 
 
+class UnderATip(unittest.TestCase):
+    """A tip of 3 mm ploughs through the flank of a dinosaur of 200 mm, whose toes no cells of some millimetres follow."""
+
+    @staticmethod
+    def write(folder):
+        t = np.arange(0, 0.4, 0.001)
+        y = np.interp(t, [0, 0.2], [-0.034, -0.0305])
+        x = np.interp(t, [0.2, 0.4], [-0.006, -0.001])
+        np.savetxt(folder / "plough.csv", np.c_[t, x, y, np.full_like(t, 0.062)], delimiter=",", header="t,x,y,z", comments="")
+        (folder / "plough.json").write_text(json.dumps({
+            "about": "a tip that ploughs",
+            "body": {"shape": {"kind": "dinosaur", "size_m": 0.2, "target_tets": 4000, "skin_triangles": 6000},
+                     "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 0.006},
+                               {"kind": "half_space", "normal": [0, -1, 0], "offset_m": -0.01}]},
+            "material": {"youngs_modulus_Pa": 1.2e6, "poissons_ratio": 0.3, "plasticity": {"strength_Pa": 15e3}},
+            "tool": {"shape": {"kind": "sphere", "radius_m": RADIUS}},
+            "haptics": {"frame_period_ticks": 20, "physics_period_ticks": 2}, "trace": {"file": "plough.csv"}}))
+        return folder / "plough.json"
+
+    def test_are_as_small_and_as_strong_as_the_old_ones(self):
+        with tempfile.TemporaryDirectory() as name:
+            run(self.write(Path(name)), Path(name) / "plough.h5", "-q")
+            with h5py.File(Path(name) / "plough.h5") as result:
+                force = np.linalg.norm(result["haptic/force"][:], axis=1)
+                changed = [int(epoch.attrs["tick"]) for epoch in result["epochs"].values()]
+                sizes = ([], [])
+                for frame in result["frames"].values():
+                    tick = int(frame.attrs["tick"])
+                    if tick < 200:
+                        continue
+                    x, tets = frame["position"][:], cells_of(result, frame)["tets"][:]
+                    away = np.linalg.norm(x[tets].mean(axis=1) - result["haptic/tool_position"][tick - 1], axis=1)
+                    sizes[tick >= changed[0]].append(np.cbrt(np.median(compute_volumes(x, tets)[away < 0.0055])))
+        self.assertLess(max(sizes[1]), 1.3 * max(sizes[0]))
+        self.assertLess(force[changed[0]:].max(), 1.1 * force[200:changed[0]].max())
+
+
 if __name__ == "__main__":
     ARGIL = str(Path(sys.argv.pop(1)).resolve())
     unittest.main()
