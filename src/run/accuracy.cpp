@@ -72,10 +72,7 @@ class Planner {
     m_options.settings.insert(m_options.settings.end(), {"/dynamics/element=p2", "/body/cells/kind=graded"});
     m_fewest = count_fewest(s.body);
     m_step_lengths = find_step_lengths(s);
-    m_target = s.body.kind == scenario::BodyKind::shape ? "/body/shape/target_tets="
-               : s.body.kind == scenario::BodyKind::surface && s.body.cage_file.empty()
-                   ? "/body/surface/target_tets="
-                   : "";
+    m_target = find_target_pointer(s.body);
   }
 
   RunEnd run() {
@@ -133,7 +130,8 @@ class Planner {
     if (m_step_ticks > 0)
       options.settings.push_back("/haptics/physics_period_ticks=" + std::to_string(m_step_ticks));
     if (!m_target.empty())
-      options.settings.push_back(m_target + std::to_string(static_cast<int>(std::min(tets, kMostTets))));
+      options.settings.push_back(m_target + "=" +
+                                 std::to_string(static_cast<int>(std::min(tets, kMostTets))));
     return options;
   }
   /// What is far from the tool is made finer with the rest.
@@ -235,7 +233,7 @@ class Planner {
   RunOptions m_options;
   double m_wanted;
   std::string m_result;
-  std::string m_target;  // key of the number of tets, and "="
+  std::string m_target;  // key of the number of tets
   int m_fewest = 0;
   std::vector<int> m_step_lengths;  // in ticks, that may be tried
   int m_step_ticks = 0;             // 0: as given
@@ -278,6 +276,12 @@ double choose_cells(const std::vector<AccuracyPass>& passes, double wanted) {
   const AccuracyPass& last = passes.back();
   const double more = std::pow(last.error / (kMargin * wanted), 1.0 / sim::kContactOrder);
   return last.cells * std::clamp(more, kLeast, kMost);
+}
+
+std::string find_target_pointer(const scenario::BodySpec& body) {
+  if (body.kind == scenario::BodyKind::shape) return "/body/shape/target_tets";
+  const bool is_made = body.kind == scenario::BodyKind::surface && body.cage_file.empty();
+  return is_made ? "/body/surface/target_tets" : "";
 }
 
 std::vector<int> find_step_lengths(const scenario::Scenario& s) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "run/run.h"
@@ -23,6 +24,9 @@ struct AccuracyPass {
   std::vector<sim::HapticRecord> haptic;
   double error = 0.0;  ///< of the force for its cells, over the force; not known of the first pass
 };
+
+/// Key of the number of tets that a body is made of; empty where a file has them.
+std::string find_target_pointer(const scenario::BodySpec& body);
 
 /// Numbers of ticks that a step can have when two of them are tried: divisors of the periods of frames and
 /// water, increasing. Empty where a step must stay as it is given: that of an explicit integrator is bounded

@@ -40,6 +40,13 @@ void require_no_input(const scenario::Scenario& s, const std::string& output, co
         input.pointer.empty() ? "the scenario" : "a file that the run reads (" + input.pointer + ")", option);
 }
 
+void check_patch_name(const scenario::Scenario& s, const std::vector<std::string>& patches,
+                      const std::string& output) {
+  if (output.empty()) return;
+  require_no_input(s, output);
+  for (const std::string& patch : patches) require_other_file(output, patch, "the patch that is read");
+}
+
 std::string hash_file(const std::string& file) {
   return Sha256().add(read_file(file)).hex_digest();
 }

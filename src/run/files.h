@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scenario/scenario.h"
 
@@ -18,6 +19,10 @@ void require_other_file(const std::string& output, const std::string& input, con
 /// Refuses an output that is a file which the scenario's run reads. Throws InputError.
 void require_no_input(const scenario::Scenario& s, const std::string& output,
                       const std::string& option = "-o");
+
+/// The same of a patch, which must not be one of the patches that are read either. Empty: it is printed.
+void check_patch_name(const scenario::Scenario& s, const std::vector<std::string>& patches,
+                      const std::string& output);
 
 /// SHA-256 of a file's bytes.
 std::string hash_file(const std::string& file);

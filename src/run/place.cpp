@@ -17,11 +17,7 @@ int place(const PlaceOptions& options) {
       (options.touch.from && !(options.touch.from->norm() > 0.0)))
     throw InputError("--at", "", "and --from go together: a place and the direction that the tool comes from",
                      "write for instance --at 0,0,0.05 --from 0,0,1");
-  if (!options.output.empty()) {
-    require_no_input(s, options.output);
-    for (const std::string& patch : options.run.patches)
-      require_other_file(options.output, patch, "the patch that is read", "-o");
-  }
+  check_patch_name(s, options.run.patches, options.output);
   Placing placing(options.touch, std::move(s));
   placing.print_start();
   placing.find();

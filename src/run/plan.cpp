@@ -26,7 +26,7 @@ struct ShortLived {
 };
 
 template <class Number>
-scenario::Setting set_number(const char* pointer, Number number) {
+scenario::Setting set_number(const std::string& pointer, Number number) {
   std::ostringstream text;
   text.precision(17);
   text << number;
@@ -41,10 +41,8 @@ std::vector<scenario::Setting> read_choice(const scenario::Scenario& s) {
       set_number("/body/cells/near_tool_m", s.body.cells.near_tool),
       set_number("/haptics/physics_period_ticks", s.params.rates.physics_period_ticks),
       set_number("/fidelity/accuracy", 0)};
-  const bool has_shape = s.body.kind == scenario::BodyKind::shape;
-  if (has_shape || (s.body.kind == scenario::BodyKind::surface && s.body.cage_file.empty()))
-    choice.push_back(
-        set_number(has_shape ? "/body/shape/target_tets" : "/body/surface/target_tets", s.body.target_tets));
+  if (const std::string target = find_target_pointer(s.body); !target.empty())
+    choice.push_back(set_number(target, s.body.target_tets));
   return choice;
 }
 
@@ -54,11 +52,7 @@ int plan(const PlanOptions& options) {
   const scenario::Scenario s = load(options.run);
   if (!(s.accuracy > 0.0))
     throw InputError(s.file, "/fidelity/accuracy", "is not given", "say --accuracy 0.02, for instance");
-  if (!options.output.empty()) {
-    require_no_input(s, options.output);
-    for (const std::string& patch : options.run.patches)
-      require_other_file(options.output, patch, "the patch that is read", "-o");
-  }
+  check_patch_name(s, options.run.patches, options.output);
   const ShortLived result{std::filesystem::path(s.file).stem().string() + ".plan.h5"};
   RunOptions run_options = options.run;
   run_options.output = result.name;
