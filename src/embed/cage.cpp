@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "embed/bent_edges.h"
 #include "embed/embedding.h"
+#include "embed/lay_on_surface.h"
 #include "embed/mesh_parts.h"
 #include "embed/skin_shape.h"
 #include "embed/tet_locator.h"
@@ -84,18 +85,17 @@ double compute_fitted(const TriangleTree& tree, const Vec3& x, double cell_size,
   return is_inside ? -tree.find_nearest(x, kBand * cell_size).distance : distance;
 }
 
-// The body's boundary, moved out by `level` [m].
+// The body's boundary.
 shapes::ImplicitSurface make_implicit(const TriangleTree& tree, const Points& vertices, Fit fit, double reach,
-                                      double level, double cell_size) {
+                                      double cell_size) {
   shapes::ImplicitSurface surface;
-  const double margin = reach + std::max(0.0, level);
-  surface.lower = vertices.rowwise().minCoeff() - Vec3::Constant(margin);
-  surface.upper = vertices.rowwise().maxCoeff() + Vec3::Constant(margin);
+  surface.lower = vertices.rowwise().minCoeff() - Vec3::Constant(reach);
+  surface.upper = vertices.rowwise().maxCoeff() + Vec3::Constant(reach);
   const Vec3 lower = surface.lower;
   const Vec3 upper = surface.upper;
   const auto compute = fit == Fit::surface ? compute_fitted : compute_enclosing;
-  surface.value = [&tree, compute, level, cell_size, lower, upper](const Vec3& x) {
-    return compute(tree, x, cell_size, lower, upper) - level;
+  surface.value = [&tree, compute, cell_size, lower, upper](const Vec3& x) {
+    return compute(tree, x, cell_size, lower, upper);
   };
   return surface;
 }
@@ -235,7 +235,7 @@ class CageSearch {
     std::vector<int> bad;
     int num_tets = 0;
     for (int round = 0; round < kRounds; ++round) {
-      mesh::TetMesh mesh = stuff(0.0);
+      mesh::TetMesh mesh = stuff();
       num_tets = mesh.num_tets();
       const double ratio = static_cast<double>(std::max(num_tets, 1)) / m_options.target_tets;
       const double count_error = std::abs(ratio - 1.0);
@@ -259,18 +259,18 @@ class CageSearch {
     if (m_least_error > kLargestCountError) give_up(m_name, m_options, bad.size(), num_tets);
     m_cell_size = m_best_size;
     m_offset = m_best_offset;
-    Cage nearest = finish_body(stuff(0.0));
+    Cage nearest = finish_body(stuff());
     nearest.report.wanted_tets = m_options.target_tets;
     return nearest;
   }
 
  private:
   Cage finish_body(mesh::TetMesh mesh) {
-    double level = 0.0;
-    if (is_fitted()) mesh = fit_volume(std::move(mesh), level);
-    Cage cage = finish(std::move(mesh), m_cell_size, m_surface, m_skin, m_tree);
-    cage.report.level = level;
-    return cage;
+    if (leaves_thin())
+      require_most(mesh);
+    else if (is_fitted())
+      lay(mesh);
+    return finish(std::move(mesh), m_cell_size, m_surface, m_skin, m_tree);
   }
 
   bool is_fitted() const { return m_options.fit == Fit::surface; }
@@ -282,54 +282,42 @@ class CageSearch {
     return find_bad_vertices(m_skin, mesh, is_fitted() ? kMostOutside * m_cell_size : 0.0);
   }
 
-  mesh::TetMesh stuff(double level) {
+  mesh::TetMesh stuff() {
     m_tree.set_radius(m_offset * m_cell_size);
-    const shapes::ImplicitSurface surface = make_implicit(
-        m_tree, m_skin.vertices, m_options.fit, m_offset.maxCoeff() * m_cell_size, level, m_cell_size);
+    const shapes::ImplicitSurface surface =
+        make_implicit(m_tree, m_skin.vertices, m_options.fit, m_offset.maxCoeff() * m_cell_size, m_cell_size);
     require_room(surface, m_cell_size, m_options.most_cubes, m_name);
     mesh::TetMesh mesh = shapes::stuff_isosurface(surface, m_cell_size);
     return leaves_thin() ? take_largest_part(mesh) : mesh;
   }
 
-  /// Of the body with the edges that it is to have [m³].
-  double find_volume(double level, mesh::TetMesh& mesh) const {
-    if (m_options.bends_edges)
-      mesh::curve_boundary(
-          [this, level](const Vec3& a, const Vec3& b) { return find_bent_middle(m_tree, level, a, b); },
-          mesh::make_topology(mesh), mesh);
-    return mesh::compute_rest_volumes(mesh).sum();
-  }
-
-  /// Flat facets cut off what is round, and lattices sharp edges: moves the boundary as far as gives the body
-  /// the volume of its surface, if that is closed. `level` [m]: how far.
-  mesh::TetMesh fit_volume(mesh::TetMesh mesh, double& level) {
-    constexpr int kTries = 4;
-    constexpr double kCloseEnough = 1e-3;
-    constexpr double kMostLevel = 0.15;  // in cube edges
-    if (!is_closed(m_surface) || m_offset.maxCoeff() > 0.0) return mesh;
+  void require_most(const mesh::TetMesh& mesh) const {
     const double wanted = compute_skin_volume(m_surface);
-    double error = find_volume(level, mesh) - wanted;
-    if (leaves_thin() && !(std::abs(error) < kMostThin * wanted))
+    const double volume = mesh::compute_volumes(mesh.vertices, mesh.tets).sum();
+    if (is_closed(m_surface) && !(std::abs(volume - wanted) < kMostThin * wanted))
       throw InputError(m_name, "target_tets", "much of the surface is thinner than a cell",
                        "ask for more tets");
-    double slope = 0.0;  // of the volume with the level: first the boundary's area
-    const Triangles boundary = mesh::make_topology(mesh).boundary;
-    for (const auto& t : boundary.colwise())
-      slope += 0.5 * (mesh.vertices.col(t(1)) - mesh.vertices.col(t(0)))
-                         .cross(mesh.vertices.col(t(2)) - mesh.vertices.col(t(0)))
-                         .norm();
-    for (int i = 0; i < kTries && std::abs(error) > kCloseEnough * wanted; ++i) {
-      const double next = level - error / slope;
-      if (!(std::abs(next) < kMostLevel * m_cell_size)) break;
-      mesh::TetMesh moved = stuff(next);
-      const double moved_error = find_volume(next, moved) - wanted;
-      if (!find_bad(moved).empty() || !(std::abs(moved_error) < std::abs(error))) break;
-      slope = std::max(0.5 * slope, (moved_error - error) / (next - level));
-      level = next;
-      error = moved_error;
-      mesh = std::move(moved);
+  }
+
+  /// Sharp edges that the lattice cut off and parts that were thickened come to lie on the surface, as far as
+  /// tets bear it, and the body gets its volume.
+  void lay(mesh::TetMesh& mesh) const {
+    const mesh::Topology topology = mesh::make_topology(mesh);
+    lay_on_surface(m_surface, topology, m_options.bends_edges, mesh);
+    if (is_closed(m_surface)) {
+      const double straight = mesh::compute_volumes(mesh.vertices, mesh.tets).sum();
+      bend(topology, mesh);
+      const double bent = mesh::compute_rest_volumes(mesh).sum();
+      match_volume(compute_skin_volume(m_surface) + straight - bent, topology, mesh);
     }
-    return mesh;
+    bend(topology, mesh);
+  }
+
+  /// Its edges as they are to be, for the volume alone.
+  void bend(const mesh::Topology& topology, mesh::TetMesh& mesh) const {
+    if (m_options.bends_edges)
+      mesh::curve_boundary([this](const Vec3& a, const Vec3& b) { return find_bent_middle(m_tree, a, b); },
+                           topology, mesh);
   }
 
   CageOptions m_options;

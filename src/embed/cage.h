@@ -30,7 +30,6 @@ struct CageReport {
   double max_distance = 0.0;     ///< [m] the largest of these
   double max_skin_distance =
       0.0;                    ///< [m] of the surface's vertices from the boundary: what is lost, or covered
-  double level = 0.0;         ///< [m] by which the boundary was moved out for the body's volume
   double volume_ratio = 0.0;  ///< body over what the surface encloses; 0 where it is not closed
   double min_dihedral_degrees = 0.0;  ///< worst of all tets
   double max_dihedral_degrees = 0.0;

@@ -4,19 +4,24 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <vector>
 
+#include "embed/sharp_edges.h"
+#include "embed/skin_shape.h"
 #include "embed/triangle_tree.h"
 #include "mesh/quality.h"
 
 namespace argil::embed {
 namespace {
 
-constexpr int kSweeps = 6;
+constexpr int kSweeps = 2;        // before vertices go to sharp edges, and after
+constexpr int kTimesOnEdges = 2;  // that they do
 constexpr int kSweepsOut = 2;
-constexpr double kLeastShape = 0.25;
-constexpr double kClose = 0.02;  // of an edge: nearer to the surface a vertex stays
-constexpr int kHalvings = 3;     // of a way that tets do not bear
+constexpr double kLeastShape = 0.25;    // mean ratio
+constexpr double kLeastDegrees = 15.0;  // between faces, and from a straight angle
+constexpr double kClose = 0.02;         // of an edge: nearer to the surface a vertex stays
+constexpr int kHalvings = 3;            // of a way that tets do not bear
 
 class Mover {
  public:
@@ -27,7 +32,7 @@ class Mover {
   void move(int v, const Vec3& place, bool for_shape) {
     const Vec3 before = m_body.vertices.col(v);
     const double worst = find_worst(v);
-    const double least = for_shape ? worst : std::min(worst, kLeastShape);
+    const double least = for_shape ? worst : std::min(worst, 1.0);
     double share = 1.0;
     for (int i = 0; i <= kHalvings; ++i, share *= 0.5) {
       m_body.vertices.col(v) = before + share * (place - before);
@@ -61,12 +66,15 @@ class Mover {
     for (int c = m_topology.vertex_begin[first]; c < m_topology.vertex_begin[first + 1]; ++c)
       use(m_body.tets.col(m_topology.vertex_corners[static_cast<std::size_t>(c)] / 4));
   }
+  /// Of mean ratios and angles over the least wanted.
   double find_worst(int v) const {
-    double worst = 1.0;
+    double worst = std::numeric_limits<double>::infinity();
     each_tet(v, [&](const auto& t) {
       const std::array<Vec3, 4> x = {m_body.vertices.col(t(0)), m_body.vertices.col(t(1)),
                                      m_body.vertices.col(t(2)), m_body.vertices.col(t(3))};
-      worst = std::min(worst, mesh::compute_shape(x));
+      const mesh::DihedralAngles angles = mesh::compute_dihedral_angles(x);
+      worst = std::min({worst, mesh::compute_shape(x) / kLeastShape, angles.smallest_degrees / kLeastDegrees,
+                        (180.0 - angles.largest_degrees) / kLeastDegrees});
     });
     return worst;
   }
@@ -130,29 +138,127 @@ class Gaps {
 
 }  // namespace
 
-void lay_on_surface(const mesh::TriangleMesh& surface, const mesh::Topology& topology, mesh::TetMesh& body) {
+namespace {
+
+/// A vertex on its way to a place.
+struct Way {
+  double distance;  // over the edges there
+  int v;
+  Vec3 place;
+};
+
+void sort_nearest_first(std::vector<Way>& ways) {
+  std::sort(ways.begin(), ways.end(),
+            [](const Way& a, const Way& b) { return std::tie(a.distance, a.v) < std::tie(b.distance, b.v); });
+}
+
+/// Moves vertices of the boundary onto sharp edges of the surface that are near: to each corner the nearest
+/// one, then others, the nearest first. Which of them have come there.
+std::vector<char> lay_on_edges(const mesh::TriangleMesh& surface, const std::vector<char>& is_outside,
+                               const mesh::TetMesh& body, Mover& mover) {
+  constexpr double kNear = 0.8;  // of an edge
+  std::vector<char> is_there(is_outside.size(), 0);
+  const SharpEdges sharp = find_sharp_edges(surface);
+  if (sharp.edges.cols() == 0) return is_there;
+  Triangles lines(3, sharp.edges.cols());
+  lines << sharp.edges, sharp.edges.row(1);
+  const TriangleTree tree({surface.vertices, lines});
+  std::vector<Way> ways;
+  Field edge = Field::Zero(body.num_vertices());
+  for (int v = 0; v < body.num_vertices(); ++v) {
+    if (is_outside[static_cast<std::size_t>(v)] == 0) continue;
+    mover.find_middle(v, edge(v));
+    const TriangleTree::Nearest nearest = tree.find_nearest(body.vertices.col(v), kNear * edge(v));
+    if (nearest.triangle >= 0) ways.push_back({nearest.distance / edge(v), v, nearest.point});
+  }
+  Triangles points(3, static_cast<Eigen::Index>(ways.size()));  // none is larger than its vertex
+  for (std::size_t i = 0; i < ways.size(); ++i)
+    points.col(static_cast<Eigen::Index>(i)).setConstant(ways[i].v);
+  const TriangleTree near({body.vertices, points});
+  std::vector<Way> to_corners;
+  for (const int corner : sharp.corners) {
+    const Vec3 place = surface.vertices.col(corner);
+    const TriangleTree::Nearest nearest = near.find_nearest(place, std::numeric_limits<double>::infinity());
+    if (nearest.triangle < 0) continue;
+    const int v = points(0, nearest.triangle);
+    if (nearest.distance < edge(v)) to_corners.push_back({nearest.distance / edge(v), v, place});
+  }
+  sort_nearest_first(to_corners);
+  sort_nearest_first(ways);
+  to_corners.insert(to_corners.end(), ways.begin(), ways.end());
+  for (const Way& way : to_corners) {
+    char& is_now_there = is_there[static_cast<std::size_t>(way.v)];
+    if (is_now_there != 0) continue;
+    mover.move(way.v, way.place, false);
+    is_now_there = (body.vertices.col(way.v) - way.place).norm() < kClose * edge(way.v) ? 1 : 0;
+  }
+  return is_there;
+}
+
+}  // namespace
+
+void lay_on_surface(const mesh::TriangleMesh& surface, const mesh::Topology& topology, bool bends_edges,
+                    mesh::TetMesh& body) {
   const TriangleTree tree(surface);
   std::vector<char> is_outside(static_cast<std::size_t>(body.num_vertices()), 0);
   for (const int v : topology.boundary.reshaped()) is_outside[static_cast<std::size_t>(v)] = 1;
   Mover mover(topology, body);
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
+  const auto sweep = [&] {
     for (int v = 0; v < body.num_vertices(); ++v) {
-      const Vec3 x = body.vertices.col(v);
       double edge = 0.0;
       const Vec3 middle = mover.find_middle(v, edge);
       if (is_outside[static_cast<std::size_t>(v)] == 0) {
         mover.move(v, middle, true);
         continue;
       }
-      const TriangleTree::Nearest nearest = tree.find_nearest(x, std::numeric_limits<double>::infinity());
+      const TriangleTree::Nearest nearest =
+          tree.find_nearest(body.vertices.col(v), std::numeric_limits<double>::infinity());
       if (nearest.distance > kClose * edge) mover.move(v, nearest.point, false);
     }
+  };
+  std::vector<char> is_sharp;
+  for (int i = 0; i < kTimesOnEdges; ++i) {
+    for (int j = 0; j < kSweeps; ++j) sweep();
+    is_sharp = lay_on_edges(surface, is_outside, body, mover);
+  }
+  for (int j = 0; j < kSweeps; ++j) sweep();
+  if (bends_edges) return;
   // Facets whose corners lie on a round part cut it off: half of what they miss comes to lie on either side.
-  for (int sweep = 0; sweep < kSweepsOut; ++sweep) {
+  for (int i = 0; i < kSweepsOut; ++i) {
     const Gaps gaps(surface, tree, topology.boundary, body.vertices);
     for (int v = 0; v < body.num_vertices(); ++v)
-      if (is_outside[static_cast<std::size_t>(v)] != 0)
+      if (is_outside[static_cast<std::size_t>(v)] != 0 && is_sharp[static_cast<std::size_t>(v)] == 0)
         mover.move(v, body.vertices.col(v) + gaps.find_way(v), false);
+  }
+}
+
+void match_volume(double wanted, const mesh::Topology& topology, mesh::TetMesh& body) {
+  constexpr int kTimes = 3;
+  constexpr double kMost = 0.1;  // of the edges there
+  constexpr double kCloseEnough = 1e-4;
+  const Triangles& boundary = topology.boundary;
+  Mover mover(topology, body);
+  for (int i = 0; i < kTimes; ++i) {
+    const double missing = wanted - compute_skin_volume({body.vertices, boundary});
+    if (!(std::abs(missing) > kCloseEnough * wanted)) return;
+    Points normal = Points::Zero(3, body.num_vertices());
+    Field edge = Field::Zero(body.num_vertices());
+    for (const auto& corners : boundary.colwise()) {
+      const Vec3 a = body.vertices.col(corners(0)), b = body.vertices.col(corners(1)),
+                 c = body.vertices.col(corners(2));
+      const double longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
+      for (const int v : corners) {
+        normal.col(v) += Vec3(b - a).cross(Vec3(c - a)) / 6.0;
+        edge(v) = std::max(edge(v), longest);
+      }
+    }
+    const double gain =
+        normal.colwise().norm() * edge.matrix();  // of the volume, where all move by an edge [m³]
+    const double share = missing / gain;
+    if (!(std::abs(share) < kMost)) return;
+    for (int v = 0; v < body.num_vertices(); ++v)
+      if (edge(v) > 0.0)
+        mover.move(v, body.vertices.col(v) + share * edge(v) * normal.col(v).normalized(), false);
   }
 }
 

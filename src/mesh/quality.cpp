@@ -186,16 +186,17 @@ DihedralAngles compute_dihedral_angles(const std::array<Vec3, 4>& x) {
     const auto corner = [&](std::size_t i) { return x[static_cast<std::size_t>(kOppositeFace[f][i])]; };
     normal[f] = (corner(1) - corner(0)).cross(corner(2) - corner(0));
   }
-  DihedralAngles angles{180.0, 0.0};
+  double smallest = 1.0, largest = -1.0;  // cosine
   for (std::size_t a = 0; a < 4; ++a)
     for (std::size_t b = a + 1; b < 4; ++b) {
-      const bool has_area = normal[a].squaredNorm() > 0.0 && normal[b].squaredNorm() > 0.0;
-      const double angle = std::atan2(normal[a].cross(normal[b]).norm(), -normal[a].dot(normal[b]));
-      const double degrees = angle * 180.0 / std::numbers::pi;
-      angles.smallest_degrees = std::min(angles.smallest_degrees, has_area ? degrees : 0.0);
-      angles.largest_degrees = std::max(angles.largest_degrees, has_area ? degrees : 180.0);
+      const double areas = std::sqrt(normal[a].squaredNorm() * normal[b].squaredNorm());
+      if (!(areas > 0.0)) return {0.0, 180.0};
+      const double cosine = -normal[a].dot(normal[b]) / areas;
+      smallest = std::min(smallest, cosine);
+      largest = std::max(largest, cosine);
     }
-  return angles;
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  return {kDegrees * std::acos(std::min(largest, 1.0)), kDegrees * std::acos(std::max(smallest, -1.0))};
 }
 
 QualityReport compute_quality(const TetMesh& mesh) {

@@ -117,7 +117,6 @@ void make_cage(const Scenario& s, int num_tets, const std::string& name, Scene& 
   options.bends_edges = bends_edges(s);
   embed::Cage cage = embed::make_cage(scene.body.skin, options, name);
   scene.notes.push_back("cage: " + embed::describe(cage.report));
-  scene.surface_level = cage.report.level;
   scene.body.mesh = std::move(cage.mesh);
 }
 
@@ -183,8 +182,7 @@ Halvings make_cells(const Scenario& s, const std::vector<sim::TouchedPlace>* pla
     scene.notes = notes;
     make_mesh(s, static_cast<int>(count), scene);
     std::optional<Halvings> halvings =
-        grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes,
-                    bends_edges(s) ? std::optional(scene.surface_level) : std::nullopt);
+        grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes, bends_edges(s));
     if (!halvings) break;
     if (holds_skin(s, scene.body) || kMore * count > most) return *std::move(halvings);
   }
@@ -315,7 +313,7 @@ void complete_body(const Scenario& s, const Halvings& halvings, Scene& scene, Fa
   mesh::sort_tets(body.mesh);
   take_fields(s, body);
   body.topology = mesh::make_topology(body.mesh);
-  if (bends_edges(s)) bend_edges(s.body, scene.surface_level, body, scene.notes);
+  if (bends_edges(s)) bend_edges(s.body, body, scene.notes);
   const bool has_motion = faults.empty();
   if (body.skin.num_triangles() > 0) faults.check([&] { embed_skin(s, scene); });
   if (has_motion) scene.contact_cells = describe_contact_cells(s, scene.trace, scene.tool, body);

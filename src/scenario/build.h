@@ -18,9 +18,8 @@ struct Scene {
   std::string medium_status;       ///< where eq. 6 stands at every φ and dry modulus that the run can reach
   std::vector<std::string> notes;  ///< for the user: mesh quality, cage report, warnings
   mesh_files::FileVertices file_vertices;  ///< of the body's mesh file
-  double surface_level = 0.0;  ///< [m] by which a fitted body's boundary was moved out for its volume
-  std::string contact_cells;   ///< for the user, of the motion: describe_contact_cells
-  std::string free_motion;     ///< for the user, of a motion: describe_free_motion; in notes, too
+  std::string contact_cells;               ///< for the user, of the motion: describe_contact_cells
+  std::string free_motion;                 ///< for the user, of a motion: describe_free_motion; in notes, too
 };
 
 /// Reads or generates the body, its cage and skin, the tool and the trace. Throws InputError for what cannot

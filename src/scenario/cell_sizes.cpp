@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "base/error.h"
+#include "embed/skin_shape.h"
 #include "embed/triangle_tree.h"
 #include "mesh/order.h"
+#include "mesh/quality.h"
 #include "mesh/topology.h"
 #include "scenario/true_surface.h"
 #include "sim/usual_error.h"
@@ -179,6 +181,18 @@ std::string describe(const CellSizes& sizes, int before, int after) {
   return text.str();
 }
 
+/// How well halved tets follow the skin.
+std::string describe_fit(const sim::Body& body) {
+  const mesh::QualityReport quality = mesh::compute_quality(body.mesh);
+  std::ostringstream text;
+  text.precision(4);
+  if (embed::is_closed(body.skin))
+    text << ", volume " << quality.volume / embed::compute_skin_volume(body.skin) << " of the surface's";
+  text << ", dihedral angles " << quality.min_dihedral_degrees << " to " << quality.max_dihedral_degrees
+       << " degrees";
+  return text.str();
+}
+
 }  // namespace
 
 int count_fewest_tets(const BodySpec& body) {
@@ -314,7 +328,7 @@ std::string describe_contact_cells(const Scenario& s, const device::Trace& trace
 std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
-                                    std::vector<std::string>& notes, std::optional<double> bent_level) {
+                                    std::vector<std::string>& notes, bool bends_edges) {
   CellSizes sizes{s.body.cells.near_tool, s.body.cells.growth, {}, s.body.cells.regions};
   sizes.places =
       touched_places ? *touched_places : find_places(s, trace, tool_surface, make_touched_tree(s, body));
@@ -329,14 +343,16 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
   }
   Whole whole{body.mesh, {}};
   const TrueSurface surface(s.body, body.skin);
-  whole.boundary_point = bent_level ? surface.make_edge_point(*bent_level) : surface.make_vertex_point();
+  whole.boundary_point = bends_edges ? surface.make_edge_point() : surface.make_vertex_point();
   mesh::BisectedMesh bisected =
       halve(whole, sizes, has_target ? s.body.target_tets : 0, !flows(s.params.plasticity));
   if (bisected.mesh.num_tets() > kMostTets)
     throw InputError(s.file, "/body/cells", "asks for cells that make more than 5 million tets",
                      "give a larger near_tool_m or size_m, or a larger growth");
-  notes.push_back(describe(sizes, body.mesh.num_tets(), bisected.mesh.num_tets()));
+  std::string note = describe(sizes, body.mesh.num_tets(), bisected.mesh.num_tets());
   body.mesh = std::move(bisected.mesh);
+  if (body.skin.num_triangles() > 0 && !bends_edges) note += describe_fit(body);
+  notes.push_back(std::move(note));
   body.touched_places = std::move(sizes.places);
   return Halvings{std::move(bisected.halved_edge), mesh::sort_vertices(body.mesh)};
 }

@@ -61,13 +61,12 @@ struct Halvings {
 /// the ball of 1.5 a round a patch of radius a. Clay that flows wants more of the cells below the tool
 /// (results/clay): there, in a mesh file and where h₀ is given they are h₀ + 2.4 d h₀/a, with a slope of 0.8
 /// at most. None, and the reason in `notes`, where neither motion nor regions say where, or no tets are left
-/// to halve. `bent_level` [m]: the edges of the boundary are to bend with the surface moved out by so much;
-/// none: they stay straight.
+/// to halve. `bends_edges`: the edges of the boundary are
+/// to bend with the surface; else they stay straight.
 std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
-                                    std::vector<std::string>& notes,
-                                    std::optional<double> bent_level = std::nullopt);
+                                    std::vector<std::string>& notes, bool bends_edges = false);
 
 /// Of the largest patch that the motion presses on the body at rest [m]; 0: none.
 double find_contact_radius(const Scenario& s, const device::Trace& trace,

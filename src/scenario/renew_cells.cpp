@@ -47,27 +47,6 @@ void lay_on_tool(const PresentShape& now, const Scenario& s, mesh::TriangleMesh&
   }
 }
 
-/// Moves the boundary out or in, everywhere alike, until it encloses as much as `wanted` [m³]. Where that is
-/// more than a cell gives, nothing moves.
-void match_volume(double wanted, const Triangles& boundary, Points& x) {
-  constexpr int kTimes = 2;
-  constexpr double kMost = 0.1;  // of the mean edge of the boundary
-  for (int i = 0; i < kTimes; ++i) {
-    Points normal = Points::Zero(3, x.cols());
-    double area = 0.0, edge = 0.0;
-    for (const auto& v : boundary.colwise()) {
-      const Vec3 n = 0.5 * Vec3(x.col(v(1)) - x.col(v(0))).cross(Vec3(x.col(v(2)) - x.col(v(0))));
-      for (const int corner : v) normal.col(corner) += n;
-      area += n.norm();
-      edge += (x.col(v(1)) - x.col(v(0))).norm() / static_cast<double>(boundary.cols());
-    }
-    const double offset = (wanted - embed::compute_skin_volume({x, boundary})) / area;
-    if (!(std::abs(offset) < kMost * edge)) return;
-    for (Eigen::Index v = 0; v < x.cols(); ++v)
-      if (!normal.col(v).isZero(0.0)) x.col(v) += offset * normal.col(v).normalized();
-  }
-}
-
 /// A body that is that surface, with about as many cells.
 Scenario make_scenario_of_surface(const Scenario& s, const sim::Body& body) {
   Scenario of_surface = s;
@@ -232,11 +211,11 @@ sim::Body make_cells(const Scenario& s, const Scenario& of_surface, const Presen
   mesh::sort_tets(body.mesh);
   body.mesh.numbers.clear();
   body.topology = mesh::make_topology(body.mesh);
-  if (!is_torn) embed::lay_on_surface(body.touched, body.topology, body.mesh);
+  if (!is_torn) embed::lay_on_surface(body.touched, body.topology, false, body.mesh);
   const bool has_own_boundary = skin.size() == 0 && s.params.solid.element != solid::ElementKind::p2;
   const double wanted = has_own_boundary ? embed::compute_skin_volume({now.x, now.body.topology.boundary})
                                          : embed::compute_skin_volume(body.touched);
-  match_volume(wanted, body.topology.boundary, body.mesh.vertices);
+  embed::match_volume(wanted, body.topology, body.mesh);
   mesh::require_usable(mesh::compute_quality(body.mesh), s.file);
   if (is_torn) {
     body.touched = embed::split_where_curved(embed::join_fine({body.mesh.vertices, body.topology.boundary},

@@ -23,8 +23,8 @@ class TrueSurface {
   bool has_any() const { return m_skin || m_of_shape; }
   /// New vertices: nothing where has_any is false. To be used while this lives.
   mesh::BoundaryPoint make_vertex_point() const;
-  /// Nodes on edges, of a body whose boundary was moved out by `level` [m] to have the skin's volume.
-  mesh::BoundaryPoint make_edge_point(double level) const;
+  /// Nodes on edges.
+  mesh::BoundaryPoint make_edge_point() const;
 
  private:
   mesh::BoundaryPoint m_of_shape;
@@ -32,6 +32,6 @@ class TrueSurface {
 };
 
 /// Bends the edges of ten-node tets with the surface, and says how many in `notes`.
-void bend_edges(const BodySpec& spec, double level, sim::Body& body, std::vector<std::string>& notes);
+void bend_edges(const BodySpec& spec, sim::Body& body, std::vector<std::string>& notes);
 
 }  // namespace argil::scenario

@@ -44,7 +44,7 @@ TEST(LayOnSurface, ABallThatIsTooLargeComesToLieOnTheSphere) {
   const mesh::Topology topology = mesh::make_topology(ball);
   const double worst = find_worst(ball);
   ASSERT_GT(find_farthest(ball, topology, sphere), 4e-3);
-  lay_on_surface(sphere, topology, ball);
+  lay_on_surface(sphere, topology, false, ball);
   // Of facets of edge h vertices lie outside by about h²/12R, so that their middles lie as far inside.
   EXPECT_LT(find_farthest(ball, topology, sphere), 5e-4);
   EXPECT_GE(find_worst(ball), std::min(worst, 0.25));
@@ -55,14 +55,40 @@ TEST(LayOnSurface, ABallThatIsTooLargeComesToLieOnTheSphere) {
 TEST(LayOnSurface, APlateThinnerThanACellIsNoThickerThanItIs) {
   const Vec3 size(0.06, 0.06, 0.003);
   const mesh::TriangleMesh plate = test::make_box_skin(20, Vec3(0, 0, 0), size);
-  Cage cage = make_cage(plate, {1500, Fit::surface}, "plate");
+  const Cage cage = make_cage(plate, {1500, Fit::surface}, "plate");
   ASSERT_GT(cage.report.cell_size, 0.003);
-  const mesh::Topology topology = mesh::make_topology(cage.mesh);
-  const double before = find_farthest(cage.mesh, topology, plate);
-  lay_on_surface(plate, topology, cage.mesh);
-  EXPECT_LT(find_farthest(cage.mesh, topology, plate), 0.5 * before);
-  EXPECT_NEAR(compute_skin_volume({cage.mesh.vertices, topology.boundary}), size.prod(), 0.1 * size.prod());
-  EXPECT_GT(mesh::compute_volumes(cage.mesh.vertices, cage.mesh.tets).minCoeff(), 0.0);
+  EXPECT_LT(find_farthest(cage.mesh, mesh::make_topology(cage.mesh), plate), 0.1 * cage.report.cell_size);
+  EXPECT_NEAR(mesh::compute_volumes(cage.mesh.vertices, cage.mesh.tets).sum(), size.prod(),
+              0.02 * size.prod());
+  EXPECT_GT(mesh::compute_quality(cage.mesh).min_dihedral_degrees, 10.0);
+}
+
+TEST(LayOnSurface, SharpEdgesOfATurnedBlockAreKept) {
+  const Vec3 size(0.1, 0.06, 0.04);
+  mesh::TriangleMesh block = test::make_box_skin(12, -0.5 * size, size);
+  block.vertices =
+      (Eigen::AngleAxisd(0.3, Vec3::UnitX()) * Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()))
+          .toRotationMatrix() *
+      block.vertices;
+  const Cage cage = make_cage(block, {10000, Fit::surface}, "block");
+  const double cell = cage.report.cell_size;
+  const TriangleTree boundary({cage.mesh.vertices, mesh::make_topology(cage.mesh).boundary});
+  for (const auto& x : block.vertices.colwise())
+    EXPECT_LT(boundary.find_nearest(x, 1.0).distance, 0.5 * cell);
+  EXPECT_LT(cage.report.median_distance, 0.01 * cell);
+  EXPECT_NEAR(mesh::compute_volumes(cage.mesh.vertices, cage.mesh.tets).sum(), size.prod(),
+              1e-3 * size.prod());
+  EXPECT_GT(mesh::compute_quality(cage.mesh).min_dihedral_degrees, 10.0);
+}
+
+TEST(MatchVolume, ABallThatIsTooSmallGetsTheWantedOne) {
+  mesh::TetMesh ball = shapes::make_shape_mesh({shapes::ShapeKind::sphere, 0.1}, 2000);
+  const mesh::Topology topology = mesh::make_topology(ball);
+  const double wanted = std::numbers::pi / 6.0 * 1e-3;
+  ball.vertices *= 0.99;
+  ASSERT_LT(mesh::compute_volumes(ball.vertices, ball.tets).sum(), 0.98 * wanted);
+  match_volume(wanted, topology, ball);
+  EXPECT_NEAR(mesh::compute_volumes(ball.vertices, ball.tets).sum(), wanted, 2e-4 * wanted);
 }
 
 }  // namespace
