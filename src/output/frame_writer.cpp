@@ -74,7 +74,7 @@ void FrameWriter::write(const sim::Frame& frame, int epoch) {
   // In Mandel's notation the Euclidean norm of the six numbers is the tensor's Frobenius norm.
   const Field plastic_norm = frame.plastic_strain.colwise().norm();
   constexpr int kSingle = 24;
-  constexpr Kept kCage{22, 0}, kSkin{17, kSingle}, kField{14, kSingle};  // README.md: what that comes to
+  constexpr Kept kCage{22, 0}, kSkin{16, kSingle}, kField{12, kSingle};  // README.md: what that comes to
   const auto put_field = [&](const char* name, const Field& field, const hdf5::Label& label) {
     put(group, name, field, field_shape(field), kField, label);
   };

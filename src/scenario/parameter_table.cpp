@@ -280,7 +280,7 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
        {output::FramePrecision::single, "single"},
        {output::FramePrecision::whole, "double"}},
       "What frames keep of large arrays, in bits of their largest value; picture: 22 "
-      "of the cage's positions, 17 of the skin's, 14 of fields, in a seventh of the "
+      "of the cage's positions, 16 of the skin's, 12 of fields, in a tenth of the "
       "room; single: 24 of fields and skin, in a quarter of the room; double: all. "
       "Series, hashes and checkpoints are always whole.");
 }

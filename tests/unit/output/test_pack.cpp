@@ -103,11 +103,11 @@ TEST(Pack, TakesTheRoomOfWhatChangesAndNoneOfTheCheckpoint) {
   write_run(folder / "plain.h5", FramePrecision::picture, true);
   write_run(folder / "packed.h5", FramePrecision::picture, false);
   const auto size = [&](const char* name) { return fs::file_size(folder / name); };
-  // 40 frames with two arrays of 6000 places of 17 and 22 bits each, of which deflate saves little; of the
+  // 40 frames with two arrays of 6000 places of 16 and 22 bits each, of which deflate saves little; of the
   // packed ones three in 16 are new, and one place of a hundred.
-  EXPECT_GT(size("plain.h5"), 800'000U + 40 * 6000 * (17 + 22) / 8);
+  EXPECT_GT(size("plain.h5"), 800'000U + 40 * 6000 * (16 + 22) / 8);
   constexpr std::uintmax_t kMesh = 4 * 4 * kTets + 3 * 8 * kSkin;
-  EXPECT_LT(size("packed.h5"), kMesh + 3 * 6000 * (17 + 22) / 8 + 40 * 10'000U);
+  EXPECT_LT(size("packed.h5"), kMesh + 3 * 6000 * (16 + 22) / 8 + 40 * 10'000U);
 }
 
 TEST(Pack, KeepsWhatFramesShare) {
