@@ -11,6 +11,14 @@ namespace {
 
 constexpr double kWeightTolerance = 1e-10;  // round-off of a weight in a tet of the worst shape we accept
 constexpr double kMaxBoxes = 2e7;
+// Of a tet's extent: a point farther out has a weight below −kBoundsMargin/3, far beyond round-off.
+constexpr double kBoundsMargin = 1e-3;
+
+bool is_within(const std::array<Vec3, 2>& bounds, const Vec3& x) {
+  for (int k = 0; k < 3; ++k)
+    if (x(k) < bounds[0](k) || x(k) > bounds[1](k)) return false;
+  return true;
+}
 
 TetLocator::Place bend_place(const mesh::CurvedTets& curved, const TetLocator::Place& straight,
                              const Vec3& x) {
@@ -38,9 +46,9 @@ TetLocator::TetLocator(const mesh::TetMesh& mesh)
   m_lower = m_vertices.rowwise().minCoeff();
   const Vec3 extent = m_vertices.rowwise().maxCoeff() - m_lower;
   double sum = 0.0;  // of the tets' largest extents
-  std::vector<std::array<Vec3, 2>> bounds(static_cast<std::size_t>(mesh.num_tets()));
+  m_bounds.resize(static_cast<std::size_t>(mesh.num_tets()));
   for (int t = 0; t < mesh.num_tets(); ++t) {
-    auto& [low, high] = bounds[static_cast<std::size_t>(t)];
+    auto& [low, high] = m_bounds[static_cast<std::size_t>(t)];
     low = high = m_vertices.col(m_tets(0, t));
     for (int i = 1; i < 4; ++i) {
       low = low.cwiseMin(m_vertices.col(m_tets(i, t)));
@@ -52,10 +60,10 @@ TetLocator::TetLocator(const mesh::TetMesh& mesh)
   ARGIL_ASSERT(m_box_size > 0.0);
   for (std::size_t axis = 0; axis < 3; ++axis)
     m_counts[axis] = 1 + static_cast<int>(extent(static_cast<Eigen::Index>(axis)) / m_box_size);
-  const auto visit = [this, &bounds](auto&& action) {
-    for (std::size_t t = 0; t < bounds.size(); ++t) {
-      const std::array<int, 3> low = box(bounds[t][0]);
-      const std::array<int, 3> high = box(bounds[t][1]);
+  const auto visit = [this](auto&& action) {
+    for (std::size_t t = 0; t < m_bounds.size(); ++t) {
+      const std::array<int, 3> low = box(m_bounds[t][0]);
+      const std::array<int, 3> high = box(m_bounds[t][1]);
       for (int k = low[2]; k <= high[2]; ++k)
         for (int j = low[1]; j <= high[1]; ++j)
           for (int i = low[0]; i <= high[0]; ++i)
@@ -68,6 +76,11 @@ TetLocator::TetLocator(const mesh::TetMesh& mesh)
   m_list.resize(static_cast<std::size_t>(m_begin.back()));
   std::vector<int> next(m_begin.begin(), m_begin.end() - 1);
   visit([this, &next](std::size_t b, int t) { m_list[static_cast<std::size_t>(next[b]++)] = t; });
+  for (auto& [low, high] : m_bounds) {
+    const Vec3 margin = kBoundsMargin * (high - low);
+    low -= margin;
+    high += margin;
+  }
 }
 
 std::array<int, 3> TetLocator::box(const Vec3& x) const {
@@ -98,6 +111,7 @@ TetLocator::Place TetLocator::find_straight(const Vec3& x) const {
   const std::size_t index = box_index(x);
   for (int i = m_begin[index]; i < m_begin[index + 1]; ++i) {
     const int t = m_list[static_cast<std::size_t>(i)];
+    if (!is_within(m_bounds[static_cast<std::size_t>(t)], x)) continue;  // of small tets a box lists hundreds
     const Vec4 weights = compute_weights(t, x);
     if (weights.minCoeff() >= -kWeightTolerance) return {t, weights};
   }

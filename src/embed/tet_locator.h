@@ -36,6 +36,7 @@ class TetLocator {
 
   Points m_vertices;
   Tets m_tets;
+  std::vector<std::array<Vec3, 2>> m_bounds;  // of each tet, a little wider
   Vec3 m_lower;
   double m_box_size = 1.0;
   std::array<int, 3> m_counts = {1, 1, 1};

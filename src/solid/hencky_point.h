@@ -158,18 +158,27 @@ ARGIL_INLINE void find_logarithms(const Real* x, Real* excess, Real* logarithm, 
   }
 }
 
+/// b − 1, or S − 1 where `plastic` is null: the logarithm of either follows once, for it is long.
+template <class Real>
+ARGIL_INLINE void set_excess(const Real* strain, const Real* plastic, Real* x) {
+  if (plastic)
+    set_left_excess(strain, plastic, x);
+  else
+    for (int k = 0; k < 6; ++k) x[k] = strain[k];
+}
+
 /// `strain`: ε = S − 1. `plastic`: E_p, or null where there is none.
 template <class Real>
 ARGIL_INLINE void find_elastic_stretch(const Real* strain, const Real* plastic,
                                        ElasticStretch<Real>& stretch) {
-  if (plastic) {
-    Real b[6];
-    set_left_excess(strain, plastic, b);
-    find_logarithms(b, stretch.excess, stretch.logarithm, stretch.N);
-    for (int i = 0; i < 3; ++i) stretch.logarithm[i] = 0.5 * stretch.logarithm[i];
-  } else {  // S's own
-    find_logarithms(strain, stretch.excess, stretch.logarithm, stretch.N);
-    for (int i = 0; i < 3; ++i) stretch.excess[i] = stretch.excess[i] * (2.0 + stretch.excess[i]);
+  Real x[6];
+  set_excess(strain, plastic, x);
+  find_logarithms(x, stretch.excess, stretch.logarithm, stretch.N);
+  for (int i = 0; i < 3; ++i) {
+    if (plastic)
+      stretch.logarithm[i] = 0.5 * stretch.logarithm[i];
+    else
+      stretch.excess[i] = stretch.excess[i] * (2.0 + stretch.excess[i]);
   }
   stretch.trace = stretch.logarithm[0] + stretch.logarithm[1] + stretch.logarithm[2];
 }
@@ -220,14 +229,11 @@ ARGIL_INLINE void set_half_logarithm(const Real* x, Real* result) {
 /// ½ ln b, the elastic strain in the frame of R. `plastic`: null where there is none.
 template <class Real>
 ARGIL_INLINE void find_elastic_strain(const Real* strain, const Real* plastic, Real* elastic) {
-  if (plastic) {
-    Real b[6];
-    set_left_excess(strain, plastic, b);
-    set_half_logarithm(b, elastic);
-  } else {  // ln S
-    set_half_logarithm(strain, elastic);
-    for (int k = 0; k < 6; ++k) elastic[k] = 2.0 * elastic[k];
-  }
+  Real x[6];
+  set_excess(strain, plastic, x);
+  set_half_logarithm(x, elastic);
+  if (plastic) return;
+  for (int k = 0; k < 6; ++k) elastic[k] = 2.0 * elastic[k];  // ln S
 }
 
 /// w = μ ½(b_i + b_j)(ln b_i − ln b_j)/(b_i − b_j) − ½(τᵢ + τⱼ), which has no difference of nearly equal

@@ -98,7 +98,7 @@ void hold_parts(const Elements& elements, const Constraints& constraints,
                                          [&](int p) { return parts[static_cast<std::size_t>(p)].is_held; });
         sum += compute_normal_matrix(part, elements.rest.col(n), constraints.support.col(n), is_held);
       }
-      const Eigen::SelfAdjointEigenSolver<Mat6> modes(sum);
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(sum);
       part.is_held = modes.eigenvalues()(0) > kZero * std::max(1.0, modes.eigenvalues()(5));
       has_changed = has_changed || part.is_held;
     }

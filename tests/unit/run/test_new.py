@@ -7,12 +7,9 @@ Usage: test_new.py ARGIL        the program
 import csv
 import json
 import math
-import os
-import re
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 from pathlib import Path
 
@@ -261,43 +258,6 @@ class FirstTry(unittest.TestCase):
             "not_a_motion.csv": ("motion", "refused", ""),
             "cube.msh": ("mesh", "at first try", ""),
             "open.obj": ("mesh", "at first try", "")})
-
-
-class NewUser(unittest.TestCase):
-    """A person with an own OBJ and CSV, both in millimetres, and no script: the five commands of README's first page."""
-
-    COMMANDS = ["argil new gem.obj tap.csv",
-                "argil run gem.json",
-                "argil run gem.json -o wet.h5 --set /body/initial_saturation=1",
-                "plot_force.py gem.h5 wet.h5 --labels dry wet -o force",
-                "argil export wet.h5 --html wet.html"]
-
-    def test_five_commands(self):
-        try:
-            import matplotlib  # noqa: F401
-        except ImportError:
-            self.skipTest("no matplotlib")
-        if not Path(ARGIL).parents[1].joinpath("share/argil/viewer.html").exists():
-            self.skipTest("built without the page")
-        page = (ROOT / "README.md").read_text(encoding="utf-8")
-        self.assertIn("\n".join(self.COMMANDS), page)  # as a reader types them
-        inputs = re.search(r"^cat > gem.obj <<'END'.*?> tap.csv$", page, flags=re.DOTALL | re.MULTILINE)[0]
-        with tempfile.TemporaryDirectory() as folder:
-            environment = os.environ | {"PATH": f"{Path(ARGIL).parent}:{ROOT / 'scripts'}:{os.environ['PATH']}"}
-            start = time.monotonic()
-            for command in (inputs, *self.COMMANDS):
-                done = subprocess.run(["bash", "-euc", command], cwd=folder, env=environment, capture_output=True, text=True)
-                self.assertEqual(done.returncode, 0, f"{command}: {done.stdout}{done.stderr}")
-            print(f"{len(self.COMMANDS)} commands: {time.monotonic() - start:.1f} s", file=sys.stderr)
-            peaks = []
-            for name in ("gem.h5", "wet.h5"):
-                with h5py.File(Path(folder, name)) as file:
-                    peaks.append(np.linalg.norm(file["haptic/force"][:], axis=1).max())
-            # Eq. 6 softens clay whose pores (n = 0.4) are full: E and strength fall alike.
-            self.assertGreater(peaks[0], 1.5 * peaks[1])
-            self.assertGreater(peaks[1], 1e-3)
-            self.assertTrue(Path(folder, "force.png").read_bytes().startswith(b"\x89PNG"))
-            self.assertIn("<canvas", Path(folder, "wet.html").read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":

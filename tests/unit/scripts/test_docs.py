@@ -6,8 +6,9 @@ temporary folder of its own, which sees the project through links; what the comm
 results, scenarios and traces are afterwards as they were. A command that
 takes many minutes is typed in a shorter form, and every such form stands in SHORTENED. A command within the running
 text is held against the program's own help: the program is there and has the options that are named; those of INLINE
-are typed besides, or by the other test that stands there. Exit code 77 (skipped) where a figure cannot be drawn because
-matplotlib or VTK is missing.
+are typed besides, or by the other test that stands there. The five commands of README's first page, for a person with an
+own OBJ and CSV in millimetres, must besides lead to what it promises of them. Exit code 77 (skipped) where a figure
+cannot be drawn because matplotlib or VTK is missing.
 """
 import os
 import re
@@ -35,6 +36,11 @@ INLINE = {  # outside of blocks, as written → as typed, or the test that types
     "npm install --prefix build/peers mujoco-js@0.0.7": None,  # what one figure is made with, 11 MB
     "npm install --omit-lockfile-registry-resolved": None,  # changes the lock of the viewer's packages: by hand
 }
+FIVE_COMMANDS = ["argil new gem.obj tap.csv",
+                 "argil run gem.json",
+                 "argil run gem.json -o wet.h5 --set /body/initial_saturation=1",
+                 "plot_force.py gem.h5 wet.h5 --labels dry wet -o force",
+                 "argil export wet.h5 --html wet.html"]
 COMMAND = re.compile(r"`((?:scripts/|build/bin/argil |argil |cmake |cpack |ctest |npm |man )[^`]+)`")
 
 
@@ -64,6 +70,27 @@ def shortened(block):
     """A line that is one of the long commands, with or without a word about it, in its shorter form."""
     lines = block.splitlines(keepends=True)
     return "".join(SHORTENED.get(line.split("#")[0].strip(), line.rstrip("\n")) + "\n" for line in lines)
+
+
+def read_peak(result):
+    """Largest force at the hand [N]."""
+    import h5py
+    import numpy as np
+    with h5py.File(result) as file:
+        return np.linalg.norm(file["haptic/force"][:], axis=1).max()
+
+
+def find_faults_of_five_commands(tour, has_viewer):
+    """What their results lack."""
+    dry, wet = (read_peak(tour / name) for name in ("gem.h5", "wet.h5"))
+    holds = {
+        "README.md has the five commands": "\n".join(FIVE_COMMANDS) in (ROOT / "README.md").read_text(encoding="utf-8"),
+        # Eq. 6 softens clay whose pores (n = 0.4) are full: E and strength fall alike.
+        f"dry clay pushes back more than half as much again as wet clay: {dry:.3g} N and {wet:.3g} N": dry > 1.5 * wet,
+        f"wet clay pushes back by more than 1 mN: {wet:.3g} N": wet > 1e-3,
+        "force.png is a picture": (tour / "force.png").read_bytes().startswith(b"\x89PNG"),
+        "wet.html has a page": not has_viewer or "<canvas" in (tour / "wet.html").read_text(encoding="utf-8")}
+    return [f"README.md: it does not hold that {claim}" for claim, does in holds.items() if not does]
 
 
 class Newcomer:
@@ -122,6 +149,8 @@ class Newcomer:
             os.symlink(self.build, Path(folder, "build"))
             for block in blocks:
                 self.type(page, shortened(block), folder)
+            if page == Path("README.md"):
+                self.failures += find_faults_of_five_commands(Path(folder, "tour"), self.has_viewer)
             for command in dict.fromkeys(commands):
                 way = INLINE.get(command, ())
                 if isinstance(way, str):
@@ -135,6 +164,7 @@ class Newcomer:
 
 def main(build):
     try:
+        import h5py  # noqa: F401
         import matplotlib  # noqa: F401
         import vtkmodules  # noqa: F401
     except ImportError as missing:
