@@ -18,9 +18,10 @@ bool HandSide::keeps_shape() const {
   return m_pressure ? m_state.yielding == contact::Yielding::no : is_wetting();
 }
 
-/// A pulling tool presses in like a pushing one until the hand turns back; then it holds what it touches.
+/// A pulling tool presses in like a pushing one until the hand turns back; then it holds what it touches. Of
+/// a body that keeps its shape nothing would come along.
 void HandSide::update_grip() {
-  if (m_state.mode != ToolMode::pull) return m_grip.release();
+  if (m_state.mode != ToolMode::pull || keeps_shape()) return m_grip.release();
   m_grip.test(m_state.hand_force, m_state.contact_tool);
   if (m_grip.has_let_go() && m_state.num_contacts == 0) m_grip.release();
   const bool turns_back =

@@ -178,6 +178,24 @@ TEST(Modes, ThatChangeInContactDoNotKick) {
   }
 }
 
+/// Nothing would come along: the hand feels Hertz's force all the way out, which never draws.
+TEST(Modes, APullOfABodyThatKeepsItsShapeGripsNothing) {
+  using device::ToolMode;
+  Params params = make_params();
+  params.water.wetting_flux = 0.0;
+  params.contact.grip_strength = 1e5;
+  Simulation simulation = make_simulation(params, ToolMode::wet);
+  constexpr double kDeep = 2e-3;
+  constexpr int kTicks = 100;
+  lead(simulation, hand_at(kDeep, 0.0, ToolMode::wet), kTicks);
+  const std::vector<Vec3> out = lead(simulation, hand_at(0.0, 0.0, ToolMode::pull), kTicks);
+  const double deepest = 4.0 / 3.0 * kModulus / (1 - 0.09) * std::sqrt(kRadius) * std::pow(kDeep, 1.5);
+  for (int k = 0; k < kTicks; ++k) {
+    const double left = 1.0 - (k + 0.5) / kTicks;  // of the depth, mean over the tick
+    EXPECT_NEAR(out[static_cast<std::size_t>(k)].z(), deepest * std::pow(left, 1.5), 0.1 * deepest) << k;
+  }
+}
+
 TEST(Modes, AWettingToolIsFeltAsElasticClayAndLeavesItsShape) {
   Simulation simulation = make_simulation(make_params(), device::ToolMode::wet);
   const double depth = 1e-3;
