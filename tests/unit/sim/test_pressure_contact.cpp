@@ -242,6 +242,30 @@ TEST(Pull, LetsGoAtItsStrength) {
   EXPECT_LT(lead(simulation, large_hand_at(-2e-3, 0.0, ToolMode::pull), 200).back().norm(), 1e-9);
 }
 
+/// Clay of strength c_u bears no more than 6.05 c_u under a rough punch, so that a patch of at least F/6.05
+/// c_u carries F: at 8 c_u a tool pulls off no sooner than at 1.32 F, were it but a corner that it touches,
+/// by a contact so stiff that it covers next to nothing.
+TEST(Pull, HoldsAtLeastWhatItPressedWith) {
+  using device::ToolMode;
+  constexpr double kStrength = 2e3;
+  constexpr double kAtANode = -0.0012;  // half a millimetre beside it
+  constexpr double kDepth = 2e-4;
+  Params params = make_params();
+  params.plasticity.enabled = true;
+  params.plasticity.form = material::FlowForm::j2;
+  params.plasticity.strength = kStrength;
+  params.contact.grip_strength = 8.0 * kStrength;
+  params.contact.pressure_stiffness = 6e10;  // a hundred times what is chosen
+  Simulation simulation = make_simulation(params, ToolMode::pull);
+  lead(simulation, hand_at(kDepth, kAtANode, ToolMode::pull), 60);
+  const double pressed = lead(simulation, hand_at(kDepth, kAtANode, ToolMode::pull), 30).back().z();
+  ASSERT_GT(pressed, 0.02);
+  double most = 0.0;
+  for (const Vec3& f : lead(simulation, hand_at(-kDepth, kAtANode, ToolMode::pull), 200))
+    most = std::max(most, -f.z());
+  EXPECT_NEAR(most, 8.0 / 6.05 * pressed, 0.05 * pressed);
+}
+
 /// How the force changes with the hand's height, on a patch of two cells. A half-space under a disc of
 /// Hertz's radius would have 2 E* a = 528 N/m; the block is five such radii wide, half as thick and stuck to
 /// the tool.
