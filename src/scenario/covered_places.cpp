@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -12,8 +11,9 @@
 namespace argil::scenario {
 namespace {
 
-constexpr double kStep = 0.02;     // of a tool that covers nothing between two looks, over its thickness
-constexpr double kPart = 0.05;     // of one that does, over the smallest disc
+constexpr double kStep = 0.02;  // of a tool that covers nothing between two looks, over its thickness
+constexpr double kPart = 0.05;  // of one that does, over the largest disc
+constexpr double kMostLooks = 2000.0;
 constexpr double kCovered = 0.75;  // of a disc
 constexpr double kApart = 1.4;     // discs of one moment, over the larger radius
 constexpr double kSame = 0.25;     // places, over the larger radius
@@ -65,15 +65,13 @@ std::vector<sim::TouchedPlace> find_covered_places(std::span<const contact::Pose
   found.with_touched = false;
   std::vector<sim::TouchedPlace> places;
   std::vector<std::size_t> order;
-  double way = std::numeric_limits<double>::infinity();  // since the last look [m]
-  double least = 0.0;                                    // [m]
+  std::vector<double> ways(poses.size(), 0.0);  // up to each pose [m]
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    ways[i] = ways[i - 1] + (poses[i].position - poses[i - 1].position).norm() +
+              reach * poses[i].orientation.angularDistance(poses[i - 1].orientation);
+  double next = 0.0;  // way of the next look [m]
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (i > 0)
-      way += (poses[i].position - poses[i - 1].position).norm() +
-             reach * poses[i].orientation.angularDistance(poses[i - 1].orientation);
-    if (way < least) continue;
-    way = 0.0;
-    least = kStep * thickness;
+    if (ways[i] < next) continue;
     contact.find_unpressed(surface.vertices, poses[i], found);
     const std::vector<double> radii = find_disc_radii(found.contacts);
     order.resize(radii.size());
@@ -89,8 +87,9 @@ std::vector<sim::TouchedPlace> find_covered_places(std::span<const contact::Pose
       if (!(radii[k] > 0.0) || std::any_of(discs.begin(), discs.end(), holds)) continue;
       discs.emplace_back(middle, radii[k]);
       add_place({middle, radii[k] / std::numbers::sqrt2}, places);
-      least = std::min(least, kPart * radii[k]);
     }
+    const double step = discs.empty() ? kStep * thickness : kPart * discs.front().second;
+    next = ways[i] + std::max(step, ways.back() / kMostLooks);
   }
   return places;
 }
