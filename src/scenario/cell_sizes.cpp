@@ -8,11 +8,13 @@
 #include <utility>
 
 #include "base/error.h"
+#include "contact/tool_solid.h"
 #include "embed/skin_shape.h"
 #include "embed/triangle_tree.h"
 #include "mesh/order.h"
 #include "mesh/quality.h"
 #include "mesh/topology.h"
+#include "scenario/covered_places.h"
 #include "scenario/true_surface.h"
 #include "sim/usual_error.h"
 
@@ -60,19 +62,25 @@ mesh::BisectedMesh bisect(const Whole& whole, const CellSizes& sizes, double mos
       static_cast<int>(std::min(most_tets, kMostTets)), whole.boundary_point);
 }
 
-}  // namespace
-
-std::vector<sim::TouchedPlace> find_touched_places(const Scenario& s, const device::Trace& trace,
-                                                   const contact::ToolSolid& tool,
-                                                   const embed::TriangleTree& surface) {
+/// When a run of the scenario is at a sample of its motion.
+bool is_run(const Scenario& s, const device::Trace& trace, std::size_t sample) {
   const double begin = trace.time.front() + s.trace.start;
   const double end = s.trace.duration > 0.0 ? begin + s.trace.duration : trace.time.back();
+  return trace.time[sample] >= begin && trace.time[sample] <= end;
+}
+
+/// Places of a body at rest that a motion takes balls in the tool into, each at the deepest and a quarter of
+/// its radius from the next; in order of time for each of the balls.
+std::vector<sim::TouchedPlace> find_places_of_balls(const Scenario& s, const device::Trace& trace,
+                                                    const contact::ToolSolid& tool,
+                                                    const mesh::TriangleMesh& touched) {
+  const embed::TriangleTree surface(touched);
   std::vector<sim::TouchedPlace> places;
   for (const contact::InnerBall& ball : tool.inner_balls()) {
     const std::size_t first = places.size();
     Vec3 last = Vec3::Constant(std::numeric_limits<double>::infinity());  // looked at
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
-      if (trace.time[i] < begin || trace.time[i] > end) continue;
+      if (!is_run(s, trace, i)) continue;
       const device::DeviceSample& sample = trace.samples[i];
       const Vec3 centre = sample.position + sample.orientation * ball.centre;
       if ((centre - last).norm() < kStep * ball.radius) continue;
@@ -87,6 +95,8 @@ std::vector<sim::TouchedPlace> find_touched_places(const Scenario& s, const devi
   }
   return places;
 }
+
+}  // namespace
 
 double CellSizes::find(const Vec3& x) const {
   double distance = std::numeric_limits<double>::infinity();
@@ -252,18 +262,26 @@ void Halvings::renumber_with_middles(std::vector<int>& nodes) const {
 namespace {
 
 /// The surface that is touched, as it is before any step.
-embed::TriangleTree make_touched_tree(const Scenario& s, const sim::Body& body) {
-  if (body.skin.num_triangles() > 0 && s.params.contact_surface != sim::SurfaceKind::cage)
-    return embed::TriangleTree(body.skin);
-  return embed::TriangleTree({body.mesh.vertices, mesh::make_topology(body.mesh).boundary});
+mesh::TriangleMesh make_touched_surface(const Scenario& s, const sim::Body& body) {
+  if (body.skin.num_triangles() > 0 && s.params.contact_surface != sim::SurfaceKind::cage) return body.skin;
+  return {body.mesh.vertices, mesh::make_topology(body.mesh).boundary};
 }
 
+/// Of the body at rest, that the motion takes the tool into. Round tools are known by balls along their axis;
+/// those in a tool of triangles reach into none of its edges.
 std::vector<sim::TouchedPlace> find_places(const Scenario& s, const device::Trace& trace,
-                                           const mesh::TriangleMesh& tool_surface,
-                                           const embed::TriangleTree& surface) {
+                                           const mesh::TriangleMesh& tool_surface, const sim::Body& body) {
   if (trace.samples.empty()) return {};
-  return find_touched_places(s, trace, contact::make_tool_solid(s.params.contact.round_tool, tool_surface),
-                             surface);
+  contact::ToolSolid tool = contact::make_tool_solid(s.params.contact.round_tool, tool_surface);
+  const mesh::TriangleMesh surface = make_touched_surface(s, body);
+  if (s.params.contact.round_tool) return find_places_of_balls(s, trace, tool, surface);
+  std::vector<contact::Pose> poses;
+  for (std::size_t i = 0; i < trace.samples.size(); ++i)
+    if (is_run(s, trace, i)) poses.push_back({trace.samples[i].position, trace.samples[i].orientation});
+  std::vector<sim::TouchedPlace> places = find_covered_places(poses, std::move(tool), surface);
+  if (!places.empty()) return places;
+  // All of it is in the body.
+  return find_places_of_balls(s, trace, contact::ToolSolid(tool_surface), surface);
 }
 
 /// Mean size of the tets around the vertex that is nearest to x.
@@ -292,15 +310,14 @@ std::string propose_smaller_cells(const Scenario& s, double radius) {
 
 double find_contact_radius(const Scenario& s, const device::Trace& trace,
                            const mesh::TriangleMesh& tool_surface, const sim::Body& body) {
-  return find_largest_radius(find_places(s, trace, tool_surface, make_touched_tree(s, body)));
+  return find_largest_radius(find_places(s, trace, tool_surface, body));
 }
 
 std::string describe_contact_cells(const Scenario& s, const device::Trace& trace,
                                    const mesh::TriangleMesh& tool_surface, const sim::Body& body) {
   constexpr double kEnough = 2.0;
   const std::vector<sim::TouchedPlace> places =
-      body.touched_places.empty() ? find_places(s, trace, tool_surface, make_touched_tree(s, body))
-                                  : body.touched_places;
+      body.touched_places.empty() ? find_places(s, trace, tool_surface, body) : body.touched_places;
   const double largest = find_largest_radius(places);
   double fewest = std::numeric_limits<double>::infinity();
   double radius = 0.0;
@@ -330,8 +347,7 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,
                                     std::vector<std::string>& notes, bool bends_edges) {
   CellSizes sizes{s.body.cells.near_tool, s.body.cells.growth, {}, s.body.cells.regions};
-  sizes.places =
-      touched_places ? *touched_places : find_places(s, trace, tool_surface, make_touched_tree(s, body));
+  sizes.places = touched_places ? *touched_places : find_places(s, trace, tool_surface, body);
   if (sizes.places.empty() && sizes.regions.empty()) {
     notes.emplace_back("cells: even, as the motion does not reach the body at rest");
     return std::nullopt;

@@ -5,20 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "contact/tool_solid.h"
 #include "device/trace.h"
-#include "embed/triangle_tree.h"
 #include "mesh/bisection.h"
 #include "scenario/scenario.h"
 #include "sim/state.h"
 
 namespace argil::scenario {
-
-/// Places of a body at rest that a motion takes the tool into, each at the deepest and a quarter of its
-/// radius from the next; in order of time for each of the balls that stand for the tool.
-std::vector<sim::TouchedPlace> find_touched_places(const Scenario& s, const device::Trace& trace,
-                                                   const contact::ToolSolid& tool,
-                                                   const embed::TriangleTree& surface);
 
 /// Cells that are small where the tool comes and grow away from there.
 struct CellSizes {

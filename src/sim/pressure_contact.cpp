@@ -1,10 +1,30 @@
 // Contact as pressure over the touched patch: push, pull, and tools under which the body keeps its shape.
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "material/plasticity.h"
 #include "sim/hand_side.h"
 
 namespace argil::sim {
 
 using device::ToolMode;
+
+namespace {
+
+/// Of the least disc [m] that bears such a force [N] on clay that flows: a flat one of a rough punch bears
+/// 6.05 c_u, and nothing more. 0: the clay does not flow, or not at once.
+double find_least_radius(const Params& params, double force) {
+  constexpr double kBearing = 6.05;
+  if (!params.plasticity.enabled || params.plasticity.form != material::FlowForm::j2) return 0.0;
+  const double shear_modulus = params.elastic.youngs_modulus / (2.0 * (1.0 + params.elastic.poissons_ratio));
+  const double strength =
+      std::numbers::sqrt2 * shear_modulus * material::compute_yield_strain(params.plasticity, params.elastic);
+  return strength > 0.0 ? std::sqrt(force / (kBearing * strength * std::numbers::pi)) : 0.0;
+}
+
+}  // namespace
 
 /// How the body answers is decided where the tool comes to touch it, and stays so until it has left: no mode
 /// that is chosen in between kicks the hand, and a shape that was pressed in is held. What water does follows
@@ -18,9 +38,10 @@ bool HandSide::keeps_shape() const {
   return m_pressure ? m_state.yielding == contact::Yielding::no : is_wetting();
 }
 
-/// A pulling tool presses in like a pushing one until the hand turns back; then it holds what it touches.
+/// A pulling tool presses in like a pushing one until the hand turns back; then it holds what it touches. Of
+/// a body that keeps its shape nothing would come along.
 void HandSide::update_grip() {
-  if (m_state.mode != ToolMode::pull) return m_grip.release();
+  if (m_state.mode != ToolMode::pull || keeps_shape()) return m_grip.release();
   m_grip.test(m_state.hand_force, m_state.contact_tool);
   if (m_grip.has_let_go() && m_state.num_contacts == 0) m_grip.release();
   const bool turns_back =
@@ -28,8 +49,10 @@ void HandSide::update_grip() {
   if (m_grip.holds() || m_grip.has_let_go() || m_state.num_contacts == 0 || !turns_back) return;
   m_pressure->find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.contact_tool, m_state.yielding,
                             m_contacts);
-  m_grip.hold(m_contacts, m_pressure->find_patch(), m_touched.x_t1(), m_state.hand_force,
-              m_state.contact_tool);
+  // Facets of a thin or coarse part touch with a corner or a ridge alone.
+  contact::Patch patch = m_pressure->find_patch();
+  patch.radius = std::max(patch.radius, find_least_radius(m_params, m_state.hand_force.norm()));
+  m_grip.hold(m_contacts, patch, m_touched.x_t1(), m_state.hand_force, m_state.contact_tool);
 }
 
 void HandSide::meet_surface() {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "base/error.h"
@@ -89,6 +91,69 @@ TEST_F(GradedCells, ArePlacedAtTheDeepestContactWithHertzsRadius) {
     if ((find_centre(scene.body, t) - place.position).norm() < place.radius) {
       EXPECT_LE(find_size(scene.body, t), 0.0004);
     }
+}
+
+/// A block of 30 mm and a cube of 10 mm over it, a mesh as all tools that are not round.
+class GradedUnderACube : public GradedCells {
+ protected:
+  static constexpr double kTop = 0.03;
+  static constexpr double kHalf = 0.005;  // of the cube's edge
+  static constexpr double kDepth = 0.002;
+
+  /// The cube turned, its lowest point pressed kDepth deep.
+  scenario::Scene press(const Quat& turn) {
+    std::ofstream out(folder / "cube.obj");
+    out.precision(17);
+    double lowest = 0.0;
+    for (int v = 0; v < 8; ++v) {
+      const Vec3 x = turn * (kHalf * Vec3(v & 1 ? 1 : -1, v & 2 ? 1 : -1, v & 4 ? 1 : -1));
+      out << "v " << x.transpose() << '\n';
+      lowest = std::min(lowest, x.z());
+    }
+    out << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    out.close();
+    return build({"/body/shape/kind=box", "/body/shape/size_m=0.03", "/body/cells/kind=graded",
+                  "/body/cells/near_tool_m=0.0008",
+                  R"(/tool/shape={"kind": "mesh", "file": ")" + (folder / "cube.obj") + "\"}"},
+                 kTop - lowest - kDepth);
+  }
+};
+
+TEST_F(GradedUnderACube, ItsFaceCoversOnePlaceAsLargeAsTheFace) {
+  const sim::TouchedPlace& place = press(Quat::Identity()).body.touched_places.at(0);
+  EXPECT_LT((place.position - Vec3(0.001, 0.0007, kTop)).norm(), 0.3 * kHalf);  // a quarter is seen
+  // A ball that covers as much has √2 times Hertz's radius there.
+  const double radius = std::sqrt(4.0 * kHalf * kHalf / std::numbers::pi / 2.0);
+  EXPECT_NEAR(place.radius, radius, 0.15 * radius);
+}
+
+TEST_F(GradedUnderACube, ItsCornerCoversATriangle) {
+  const Quat turn = Quat::FromTwoVectors(Vec3(-1, -1, -1), Vec3(0, 0, -1));
+  const scenario::Scene scene = press(turn);
+  ASSERT_FALSE(scene.body.touched_places.empty());
+  const auto largest = std::max_element(scene.body.touched_places.begin(), scene.body.touched_places.end(),
+                                        [](const auto& a, const auto& b) { return a.radius < b.radius; });
+  EXPECT_LT((largest->position - Vec3(0.001, 0.0007, kTop)).norm(), 0.5 * kDepth);
+  const double radius = std::sqrt(1.5 * std::sqrt(3.0) * kDepth * kDepth / std::numbers::pi / 2.0);
+  EXPECT_NEAR(largest->radius, radius, 0.15 * radius);
+  EXPECT_FALSE(scene.contact_cells.empty());  // the run does not say that the motion misses
+}
+
+TEST_F(GradedUnderACube, ItsEdgeCoversARowOfPlaces) {
+  const Quat turn(Eigen::AngleAxisd(0.25 * std::numbers::pi, Vec3::UnitX()));
+  const scenario::Scene scene = press(turn);
+  for (const sim::TouchedPlace& place : scene.body.touched_places) {
+    EXPECT_LT(place.radius, 1.3 * kDepth);  // the strip is two depths wide, five times as long
+    EXPECT_LT(std::abs(place.position.y() - 0.0007), kDepth);
+  }
+  constexpr double kSmall = 1.5;  // radii, within which cells are small
+  for (double along = -kHalf; along <= kHalf; along += 0.1 * kHalf) {
+    const Vec3 x(0.001 + along, 0.0007, kTop);
+    EXPECT_TRUE(
+        std::any_of(scene.body.touched_places.begin(), scene.body.touched_places.end(),
+                    [&](const auto& place) { return (x - place.position).norm() < kSmall * place.radius; }))
+        << along;
+  }
 }
 
 TEST_F(GradedCells, AreAsManyAsWanted) {

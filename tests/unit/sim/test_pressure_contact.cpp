@@ -178,6 +178,24 @@ TEST(Modes, ThatChangeInContactDoNotKick) {
   }
 }
 
+/// Nothing would come along: the hand feels Hertz's force all the way out, which never draws.
+TEST(Modes, APullOfABodyThatKeepsItsShapeGripsNothing) {
+  using device::ToolMode;
+  Params params = make_params();
+  params.water.wetting_flux = 0.0;
+  params.contact.grip_strength = 1e5;
+  Simulation simulation = make_simulation(params, ToolMode::wet);
+  constexpr double kDeep = 2e-3;
+  constexpr int kTicks = 100;
+  lead(simulation, hand_at(kDeep, 0.0, ToolMode::wet), kTicks);
+  const std::vector<Vec3> out = lead(simulation, hand_at(0.0, 0.0, ToolMode::pull), kTicks);
+  const double deepest = 4.0 / 3.0 * kModulus / (1 - 0.09) * std::sqrt(kRadius) * std::pow(kDeep, 1.5);
+  for (int k = 0; k < kTicks; ++k) {
+    const double left = 1.0 - (k + 0.5) / kTicks;  // of the depth, mean over the tick
+    EXPECT_NEAR(out[static_cast<std::size_t>(k)].z(), deepest * std::pow(left, 1.5), 0.1 * deepest) << k;
+  }
+}
+
 TEST(Modes, AWettingToolIsFeltAsElasticClayAndLeavesItsShape) {
   Simulation simulation = make_simulation(make_params(), device::ToolMode::wet);
   const double depth = 1e-3;
@@ -222,6 +240,30 @@ TEST(Pull, LetsGoAtItsStrength) {
   EXPECT_GT(most, on_half_space);
   EXPECT_LT(most, 1.5 * on_half_space);
   EXPECT_LT(lead(simulation, large_hand_at(-2e-3, 0.0, ToolMode::pull), 200).back().norm(), 1e-9);
+}
+
+/// Clay of strength c_u bears no more than 6.05 c_u under a rough punch, so that a patch of at least F/6.05
+/// c_u carries F: at 8 c_u a tool pulls off no sooner than at 1.32 F, were it but a corner that it touches,
+/// by a contact so stiff that it covers next to nothing.
+TEST(Pull, HoldsAtLeastWhatItPressedWith) {
+  using device::ToolMode;
+  constexpr double kStrength = 2e3;
+  constexpr double kAtANode = -0.0012;  // half a millimetre beside it
+  constexpr double kDepth = 2e-4;
+  Params params = make_params();
+  params.plasticity.enabled = true;
+  params.plasticity.form = material::FlowForm::j2;
+  params.plasticity.strength = kStrength;
+  params.contact.grip_strength = 8.0 * kStrength;
+  params.contact.pressure_stiffness = 6e10;  // a hundred times what is chosen
+  Simulation simulation = make_simulation(params, ToolMode::pull);
+  lead(simulation, hand_at(kDepth, kAtANode, ToolMode::pull), 60);
+  const double pressed = lead(simulation, hand_at(kDepth, kAtANode, ToolMode::pull), 30).back().z();
+  ASSERT_GT(pressed, 0.02);
+  double most = 0.0;
+  for (const Vec3& f : lead(simulation, hand_at(-kDepth, kAtANode, ToolMode::pull), 200))
+    most = std::max(most, -f.z());
+  EXPECT_NEAR(most, 8.0 / 6.05 * pressed, 0.05 * pressed);
 }
 
 /// How the force changes with the hand's height, on a patch of two cells. A half-space under a disc of
