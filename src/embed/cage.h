@@ -46,8 +46,8 @@ struct Cage {
 };
 
 /// Tetrahedral body of a surface, which may have holes, non-manifold edges or degenerate faces. Fitted to it,
-/// its volume is that of a closed surface, and no vertex of the surface is farther outside than half a cell;
-/// a surface that winds round nothing is enclosed. Same surface and options, same bits. `name` is used in
+/// its boundary is laid on the surface as far as tets bear that, and its volume is that of a closed one; a
+/// surface that winds round nothing is enclosed. Same surface and options, same bits. `name` is used in
 /// errors.
 Cage make_cage(const mesh::TriangleMesh& surface, const CageOptions& options, const std::string& name);
 
