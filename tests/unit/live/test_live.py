@@ -180,7 +180,7 @@ class Live(unittest.TestCase):
         self.assert_equal()
 
     def test_another_program_reads_the_watched_file_while_it_grows(self):
-        process = self.start("--watch", "watch.h5", "--duration", "2")
+        process = self.start("--watch", "watch.h5", "--duration", "4")
         seen = []
         while process.poll() is None:
             time.sleep(0.05)
@@ -243,7 +243,7 @@ class Live(unittest.TestCase):
                     self.assertEqual(list(file["haptic/device_force"][-1]), [0, 0, 0])
 
     def test_late_samples_let_the_hand_go_until_they_come_again(self):
-        done, _ = self.run_with_stand_in("late", "3", good=200)
+        done, _ = self.run_with_stand_in("late", "4", good=200)
         self.assertEqual(done.returncode, 0, done.stderr)
         with h5py.File(self.folder / "live.h5") as file:
             is_watched = (file["haptic/gate_events"][:] & 16) != 0
@@ -274,7 +274,7 @@ class Live(unittest.TestCase):
     def test_a_controller_presses_and_replays(self):
         # Its reach ends at y = 0.2 m: there the tool is 2 mm deep in the ball's flank, at y = -0.018 m.
         socket = self.start_support("spacenav_stand_in.py", "--counts", "350", "--stroke", "2")
-        done = self.call("live", "scene.json", "-o", "live.h5", "--device", "spacenav", "--duration", "5",
+        done = self.call("live", "scene.json", "-o", "live.h5", "--device", "spacenav", "--duration", "8",
                          "--set", "/trace/device_to_world/translation_m=[0.001, -0.224, 0.02]",
                          environment={"SPNAV_SOCKET": socket})
         if "built without" in done.stderr or "unknown device" in done.stderr:
@@ -328,10 +328,10 @@ class Live(unittest.TestCase):
         self.assertEqual({line[3] for line in lines}, {"0.0"})  # dry
 
     def test_a_terminal_that_its_user_has_stopped_does_not_hold_up_the_record(self):
-        process, terminal = self.start_in_terminal("2.5")
+        process, terminal = self.start_in_terminal("4")
         os.read(terminal, 4096)  # it draws
         os.write(terminal, b"\x13")  # Ctrl-S
-        self.wait_for_rows(process, 1024)
+        self.wait_for_rows(process, 2048)
         os.write(terminal, b"\x11")  # Ctrl-Q
         seen = self.read_to_end(terminal)
         self.assertEqual(process.wait(), 0, seen)
