@@ -195,7 +195,8 @@ sim::Body make_cells(const Scenario& s, const Scenario& of_surface, const Presen
   const std::vector<sim::TouchedPlace> places = move_places(now, skin);
   const bool is_graded = !places.empty() || !s.body.cells.regions.empty();
   constexpr double kMostCubes = 300.0;  // a tet: of clay that is drawn out across a wide box
-  const embed::CageOptions options{first_tets, embed::Fit::surface, is_torn, kMostCubes * first_tets};
+  embed::CageOptions options{first_tets, embed::Fit::surface, is_torn, kMostCubes * first_tets};
+  options.lays = false;  // but once cells are graded
   body.mesh = embed::make_cage(body.touched, options, s.file).mesh;
   if (is_graded) {
     std::swap(body.skin, body.touched);   // that the cells follow
