@@ -26,7 +26,7 @@ class Surface {
     m_around.resize(static_cast<std::size_t>(surface.num_vertices()));
     for (Eigen::Index t = 0; t < n; ++t) {
       const auto v = surface.triangles.col(t);
-      m_normal.col(t) = (x(v(1)) - x(v(0))).cross(x(v(2)) - x(v(0)));  // by area
+      m_normal.col(t) = mesh::compute_area_vector(surface.vertices, v);
       for (Eigen::Index k = 0; k < 3; ++k) {
         m_around[static_cast<std::size_t>(v(k))].push_back(static_cast<int>(t));
         m_faces[make_edge(v(k), v((k + 1) % 3))].push_back(static_cast<int>(t));

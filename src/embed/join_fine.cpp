@@ -93,9 +93,7 @@ class Joiner {
   std::vector<int>& faces(int v) { return m_faces[static_cast<std::size_t>(v)]; }
   const std::vector<int>& faces(int v) const { return m_faces[static_cast<std::size_t>(v)]; }
   const Triangle& triangle(int t) const { return m_triangles[static_cast<std::size_t>(t)]; }
-  Vec3 find_normal(const Triangle& t) const {
-    return Vec3(m_x.col(t[1]) - m_x.col(t[0])).cross(Vec3(m_x.col(t[2]) - m_x.col(t[0])));
-  }
+  Vec3 find_normal(const Triangle& t) const { return mesh::compute_area_vector(m_x, t); }
 
   /// Around v, in increasing order; each is listed twice where the surface is closed there.
   void list_ring(int v, std::vector<int>& ring) const {

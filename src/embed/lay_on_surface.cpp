@@ -83,6 +83,19 @@ class Mover {
   mesh::TetMesh& m_body;
 };
 
+double find_longest_edge(const Points& x, const Eigen::Vector3i& corners) {
+  const Vec3 a = x.col(corners(0)), b = x.col(corners(1)), c = x.col(corners(2));
+  return std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
+}
+
+/// Of the triangles around each vertex [m]; 0: there are none.
+Field find_longest_edges(const Triangles& triangles, const Points& x) {
+  Field longest = Field::Zero(x.cols());
+  for (const auto& corners : triangles.colwise())
+    for (const int v : corners) longest(v) = std::max(longest(v), find_longest_edge(x, corners));
+  return longest;
+}
+
 /// How far the surface lies outside the facets around each vertex, along their normal: Σ gap N a over Σ N a
 /// of the points of a rule of degree 2 on each. Where the surface is not that of a facet's side, nothing
 /// counts.
@@ -90,23 +103,22 @@ class Gaps {
  public:
   Gaps(const mesh::TriangleMesh& surface, const TriangleTree& tree, const Triangles& boundary,
        const Points& x)
-      : m_gap(Field::Zero(x.cols())), m_area(m_gap), m_edge(m_gap), m_normal(Points::Zero(3, x.cols())) {
+      : m_gap(Field::Zero(x.cols())),
+        m_area(m_gap),
+        m_edge(find_longest_edges(boundary, x)),
+        m_normal(Points::Zero(3, x.cols())) {
     for (const auto& corners : boundary.colwise()) {
-      const Vec3 a = x.col(corners(0)), b = x.col(corners(1)), c = x.col(corners(2));
-      const Vec3 doubled = Vec3(b - a).cross(Vec3(c - a));
-      const double longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
-      for (const int v : corners) {
-        m_normal.col(v) += doubled;
-        m_edge(v) = std::max(m_edge(v), longest);
-      }
+      const Vec3 area = mesh::compute_area_vector(x, corners);
+      for (const int v : corners) m_normal.col(v) += area;
       for (int k = 0; k < 3; ++k) {
         Vec3 weights = Vec3::Constant(1.0 / 6.0);
         weights(k) = 2.0 / 3.0;
-        const Vec3 point = weights(0) * a + weights(1) * b + weights(2) * c;
-        const double gap = find_gap(surface, tree, point, doubled.normalized(), longest);
+        const Vec3 point =
+            weights(0) * x.col(corners(0)) + weights(1) * x.col(corners(1)) + weights(2) * x.col(corners(2));
+        const double gap = find_gap(surface, tree, point, area.normalized(), find_longest_edge(x, corners));
         for (Eigen::Index i = 0; i < 3; ++i) {
-          m_gap(corners(i)) += gap * weights(i) * doubled.norm();
-          m_area(corners(i)) += weights(i) * doubled.norm();
+          m_gap(corners(i)) += gap * weights(i) * area.norm();
+          m_area(corners(i)) += weights(i) * area.norm();
         }
       }
     }
@@ -125,9 +137,7 @@ class Gaps {
     const TriangleTree::Nearest nearest = tree.find_nearest(point, edge);
     if (nearest.triangle < 0) return 0.0;
     const auto corners = surface.triangles.col(nearest.triangle);
-    const Vec3 a = surface.vertices.col(corners(0));
-    const Vec3 there =
-        Vec3(surface.vertices.col(corners(1)) - a).cross(Vec3(surface.vertices.col(corners(2)) - a));
+    const Vec3 there = mesh::compute_area_vector(surface.vertices, corners);
     return there.normalized().dot(normal) > kSameSide ? (nearest.point - point).dot(normal) : 0.0;
   }
 
@@ -242,16 +252,9 @@ void match_volume(double wanted, const mesh::Topology& topology, mesh::TetMesh& 
     const double missing = wanted - compute_skin_volume({body.vertices, boundary});
     if (!(std::abs(missing) > kCloseEnough * wanted)) return;
     Points normal = Points::Zero(3, body.num_vertices());
-    Field edge = Field::Zero(body.num_vertices());
-    for (const auto& corners : boundary.colwise()) {
-      const Vec3 a = body.vertices.col(corners(0)), b = body.vertices.col(corners(1)),
-                 c = body.vertices.col(corners(2));
-      const double longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
-      for (const int v : corners) {
-        normal.col(v) += Vec3(b - a).cross(Vec3(c - a)) / 6.0;
-        edge(v) = std::max(edge(v), longest);
-      }
-    }
+    const Field edge = find_longest_edges(boundary, body.vertices);
+    for (const auto& corners : boundary.colwise())
+      for (const int v : corners) normal.col(v) += mesh::compute_area_vector(body.vertices, corners) / 3.0;
     const double gain =
         normal.colwise().norm() * edge.matrix();  // of the volume, where all move by an edge [m³]
     const double share = missing / gain;

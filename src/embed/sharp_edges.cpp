@@ -27,24 +27,19 @@ std::vector<Side> sort_sides(const Triangles& triangles) {
   return sides;
 }
 
-Vec3 find_normal(const mesh::TriangleMesh& surface, int triangle) {
-  const auto corners = surface.triangles.col(triangle);
-  const Vec3 a = surface.vertices.col(corners(0));
-  return Vec3(surface.vertices.col(corners(1)) - a)
-      .cross(Vec3(surface.vertices.col(corners(2)) - a))
-      .normalized();
-}
-
 }  // namespace
 
 SharpEdges find_sharp_edges(const mesh::TriangleMesh& surface) {
   const std::vector<Side> sides = sort_sides(surface.triangles);
+  const auto normal = [&](int triangle) {
+    return mesh::compute_area_vector(surface.vertices, surface.triangles.col(triangle)).normalized();
+  };
   std::vector<std::array<int, 2>> edges;
   std::vector<std::vector<int>> ends(static_cast<std::size_t>(surface.num_vertices()));
   for (std::size_t i = 1; i < sides.size(); ++i) {
     const Side &p = sides[i - 1], &q = sides[i];
     if (p.a != q.a || p.b != q.b) continue;
-    const Vec3 one = find_normal(surface, p.triangle), other = find_normal(surface, q.triangle);
+    const Vec3 one = normal(p.triangle), other = normal(q.triangle);
     if (one.isZero() || other.isZero() || one.dot(other) > kSharp) continue;
     edges.push_back({p.a, p.b});
     ends[static_cast<std::size_t>(p.a)].push_back(p.b);

@@ -69,11 +69,8 @@ void TriangleTree::summarise(Tree::Node& node, std::span<const int> triangles) c
   double area = 0.0;
   for (const int t : triangles) {
     const auto corners = m_surface.triangles.col(t);
-    const Vec3 a = m_surface.vertices.col(corners(0));
-    const Vec3 b = m_surface.vertices.col(corners(1));
-    const Vec3 c = m_surface.vertices.col(corners(2));
-    for (const Vec3& corner : {a, b, c}) node.box.include(corner);
-    const Vec3 area_normal = 0.5 * (b - a).cross(c - a);
+    for (const int v : corners) node.box.include(m_surface.vertices.col(v));
+    const Vec3 area_normal = mesh::compute_area_vector(m_surface.vertices, corners);
     group.area_normal += area_normal;
     moment += area_normal.norm() * m_centroid.col(t);
     area += area_normal.norm();

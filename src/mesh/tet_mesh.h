@@ -40,4 +40,11 @@ inline double compute_tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, co
   return (b - a).cross(c - a).dot(d - a) / 6.0;
 }
 
+/// Normal of the triangle with those three corners, out of a closed surface and as long as its area [m²].
+template <class Corners>
+Vec3 compute_area_vector(const Points& x, const Corners& corners) {
+  const Vec3 a = x.col(corners[0]);
+  return 0.5 * Vec3(x.col(corners[1]) - a).cross(Vec3(x.col(corners[2]) - a));
+}
+
 }  // namespace argil::mesh

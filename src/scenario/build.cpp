@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "contact/tool_shape.h"
 #include "embed/cage.h"
+#include "embed/skin_shape.h"
 #include "mesh/order.h"
 #include "mesh/quality.h"
 #include "mesh/sliver.h"
@@ -168,6 +169,18 @@ bool holds_skin(const Scenario& s, const sim::Body& body) {
   return body.skin.num_triangles() == 0 || embed::can_embed(body.mesh, body.skin.vertices, most_beyond(s));
 }
 
+/// How well graded cells follow the skin.
+std::string describe_fit(const sim::Body& body) {
+  const mesh::QualityReport quality = mesh::compute_quality(body.mesh);
+  std::ostringstream text;
+  text.precision(4);
+  if (embed::is_closed(body.skin))
+    text << ", volume " << quality.volume / embed::compute_skin_volume(body.skin) << " of the surface's";
+  text << ", dihedral angles " << quality.min_dihedral_degrees << " to " << quality.max_dihedral_degrees
+       << " degrees";
+  return text.str();
+}
+
 Halvings make_cells(const Scenario& s, const std::vector<sim::TouchedPlace>* places, Scene& scene) {
   if (s.body.cells.kind == CellKind::even) {
     make_mesh(s, s.body.target_tets, scene);
@@ -184,7 +197,10 @@ Halvings make_cells(const Scenario& s, const std::vector<sim::TouchedPlace>* pla
     std::optional<Halvings> halvings =
         grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes, bends_edges(s));
     if (!halvings) break;
-    if (holds_skin(s, scene.body) || kMore * count > most) return *std::move(halvings);
+    if (!holds_skin(s, scene.body) && kMore * count <= most) continue;
+    if (scene.body.skin.num_triangles() > 0 && !bends_edges(s))
+      scene.notes.back() += describe_fit(scene.body);
+    return *std::move(halvings);
   }
   const std::string reason = scene.notes.back();
   scene.notes = notes;

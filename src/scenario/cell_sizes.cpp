@@ -9,10 +9,8 @@
 
 #include "base/error.h"
 #include "contact/tool_solid.h"
-#include "embed/skin_shape.h"
 #include "embed/triangle_tree.h"
 #include "mesh/order.h"
-#include "mesh/quality.h"
 #include "mesh/topology.h"
 #include "scenario/covered_places.h"
 #include "scenario/true_surface.h"
@@ -191,18 +189,6 @@ std::string describe(const CellSizes& sizes, int before, int after) {
   return text.str();
 }
 
-/// How well halved tets follow the skin.
-std::string describe_fit(const sim::Body& body) {
-  const mesh::QualityReport quality = mesh::compute_quality(body.mesh);
-  std::ostringstream text;
-  text.precision(4);
-  if (embed::is_closed(body.skin))
-    text << ", volume " << quality.volume / embed::compute_skin_volume(body.skin) << " of the surface's";
-  text << ", dihedral angles " << quality.min_dihedral_degrees << " to " << quality.max_dihedral_degrees
-       << " degrees";
-  return text.str();
-}
-
 }  // namespace
 
 int count_fewest_tets(const BodySpec& body) {
@@ -365,10 +351,8 @@ std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trac
   if (bisected.mesh.num_tets() > kMostTets)
     throw InputError(s.file, "/body/cells", "asks for cells that make more than 5 million tets",
                      "give a larger near_tool_m or size_m, or a larger growth");
-  std::string note = describe(sizes, body.mesh.num_tets(), bisected.mesh.num_tets());
+  notes.push_back(describe(sizes, body.mesh.num_tets(), bisected.mesh.num_tets()));
   body.mesh = std::move(bisected.mesh);
-  if (body.skin.num_triangles() > 0 && !bends_edges) note += describe_fit(body);
-  notes.push_back(std::move(note));
   body.touched_places = std::move(sizes.places);
   return Halvings{std::move(bisected.halved_edge), mesh::sort_vertices(body.mesh)};
 }

@@ -53,8 +53,7 @@ struct Halvings {
 /// the ball of 1.5 a round a patch of radius a. Clay that flows wants more of the cells below the tool
 /// (results/clay): there, in a mesh file and where h₀ is given they are h₀ + 2.4 d h₀/a, with a slope of 0.8
 /// at most. None, and the reason in `notes`, where neither motion nor regions say where, or no tets are left
-/// to halve. `bends_edges`: the edges of the boundary are
-/// to bend with the surface; else they stay straight.
+/// to halve. `bends_edges`: the edges of the boundary are to bend with the surface; else they stay straight.
 std::optional<Halvings> grade_cells(const Scenario& s, const device::Trace& trace,
                                     const mesh::TriangleMesh& tool_surface,
                                     const std::vector<sim::TouchedPlace>* touched_places, sim::Body& body,

@@ -24,6 +24,15 @@ namespace {
 
 constexpr int kFewestTets = 100;  // that a body may be made of
 
+/// That begin at each vertex [m]; 0: none do.
+Field find_longest_edges(const Triangles& triangles, const Points& x) {
+  Field longest = Field::Zero(x.cols());
+  for (const auto& v : triangles.colwise())
+    for (Eigen::Index k = 0; k < 3; ++k)
+      longest(v(k)) = std::max(longest(v(k)), (x.col(v(k)) - x.col(v((k + 1) % 3))).norm());
+  return longest;
+}
+
 /// What the tool has pressed round, in facets as large as cells, lies on it.
 void lay_on_tool(const PresentShape& now, const Scenario& s, mesh::TriangleMesh& surface) {
   constexpr double kNear = 0.3;    // of an edge, to both sides,
@@ -31,11 +40,7 @@ void lay_on_tool(const PresentShape& now, const Scenario& s, mesh::TriangleMesh&
   constexpr double kFlat = 0.01;   // of an edge, of a tool without a curve
   constexpr double kDepth = 1e-3;  // of an edge: contacts press with about the clay's strength then
   if (!now.touching) return;
-  Field edge = Field::Zero(surface.num_vertices());
-  for (const auto& v : surface.triangles.colwise())
-    for (Eigen::Index k = 0; k < 3; ++k)
-      edge(v(k)) =
-          std::max(edge(v(k)), (surface.vertices.col(v(k)) - surface.vertices.col(v((k + 1) % 3))).norm());
+  const Field edge = find_longest_edges(surface.triangles, surface.vertices);
   contact::ToolSolid tool = contact::make_tool_solid(s.params.contact.round_tool, now.tool);
   const contact::Pose& pose = *now.touching;
   int face = 0;
@@ -131,10 +136,7 @@ struct Off {
 Off find_off(const Points& x, const Triangles& faces, const mesh::TriangleMesh& touched) {
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
   const embed::TriangleTree surface(touched), boundary({x, faces});
-  Field edge = Field::Zero(x.cols());
-  for (const auto& v : faces.colwise())
-    for (Eigen::Index k = 0; k < 3; ++k)
-      edge(v(k)) = std::max(edge(v(k)), (x.col(v(k)) - x.col(v((k + 1) % 3))).norm());
+  const Field edge = find_longest_edges(faces, x);
   Off off;
   for (Eigen::Index v = 0; v < x.cols(); ++v)
     if (edge(v) > 0.0) off.add(surface.find_nearest(x.col(v), kAnywhere).distance, edge(v));
