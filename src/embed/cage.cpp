@@ -268,7 +268,7 @@ class CageSearch {
   Cage finish_body(mesh::TetMesh mesh) {
     if (leaves_thin())
       require_most(mesh);
-    else if (is_fitted() && m_options.lays)
+    else if (is_fitted())
       lay(mesh);
     return finish(std::move(mesh), m_cell_size, m_surface, m_skin, m_tree);
   }

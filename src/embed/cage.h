@@ -18,9 +18,6 @@ struct CageOptions {
   /// Of a fitted body: what is thinner than a cell, and what hangs on it alone, is left out, not thickened.
   bool leaves_thin = false;
   double most_cubes = 1e8;  ///< that the lattice may have in the box of the surface
-  /// Of a fitted body: its boundary is laid on the surface here; else the lattice's is left, to be laid on
-  /// later.
-  bool lays = true;
   /// Of a fitted body: the edges of its boundary are to bend with the surface, so that less is cut off.
   bool bends_edges = false;
 };

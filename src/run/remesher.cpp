@@ -11,18 +11,10 @@
 namespace argil::run {
 namespace {
 
-/// When cells are renewed. Ten-node tets are larger and bend: they are spoilt in fewer steps.
-struct Wear {
-  Tick steps_between_looks;
-  double shortest_epoch;  // [s]
-};
-constexpr Wear kFourNodes = {8, 0.05};
-constexpr Wear kTenNodes = {2, 0.02};
-// Of the worst tet, mesh::compute_shape: below which cells are renewed while nothing touches the body,
-// and while something does.
-constexpr double kWorn = 0.24;
-constexpr double kSpoilt = 0.2;
-constexpr double kWait = 0.25;  // [s] after a shape that gave no cells
+constexpr Tick kStepsBetweenLooks = 4;
+constexpr double kShortestEpoch = 0.02;  // [s]
+constexpr double kSpoilt = 0.25;  // mesh::compute_shape of the worst tet, below which cells are renewed
+constexpr double kWait = 0.25;    // [s] after a shape that gave no cells
 
 }  // namespace
 
@@ -34,15 +26,13 @@ Remesher::Remesher(const scenario::Scenario& s, output::ResultFile* file, bool i
 
 bool Remesher::is_due(const sim::Simulation& simulation) const {
   const sim::RateParams& rates = m_scenario.params.rates;
-  const Wear& wear = m_scenario.params.solid.element == solid::ElementKind::p2 ? kTenNodes : kFourNodes;
   const Tick tick = simulation.clock().tick;
   if (tick <= m_waits_until) return false;
-  if (tick % (wear.steps_between_looks * rates.physics_period_ticks) != 0) return false;
+  if (tick % (kStepsBetweenLooks * rates.physics_period_ticks) != 0) return false;
   const sim::Body& body = simulation.body();
-  if (static_cast<double>(tick - body.epoch_tick) * rates.haptic_period < wear.shortest_epoch) return false;
+  if (static_cast<double>(tick - body.epoch_tick) * rates.haptic_period < kShortestEpoch) return false;
   if (simulation.body_state().is_at_rest && simulation.body_state().plastic_dissipation == 0.0) return false;
-  return simulation.body_side().find_worst_shape() <
-         (simulation.hand_state().num_contacts == 0 ? kWorn : kSpoilt);
+  return simulation.body_side().find_worst_shape() < kSpoilt;
 }
 
 bool Remesher::renew_if_spoilt(sim::Simulation& simulation) {

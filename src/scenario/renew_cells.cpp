@@ -197,8 +197,7 @@ sim::Body make_cells(const Scenario& s, const Scenario& of_surface, const Presen
   const std::vector<sim::TouchedPlace> places = move_places(now, skin);
   const bool is_graded = !places.empty() || !s.body.cells.regions.empty();
   constexpr double kMostCubes = 300.0;  // a tet: of clay that is drawn out across a wide box
-  embed::CageOptions options{first_tets, embed::Fit::surface, is_torn, kMostCubes * first_tets};
-  options.lays = false;  // but once cells are graded
+  const embed::CageOptions options{first_tets, embed::Fit::surface, is_torn, kMostCubes * first_tets};
   body.mesh = embed::make_cage(body.touched, options, s.file).mesh;
   if (is_graded) {
     std::swap(body.skin, body.touched);   // that the cells follow
@@ -214,7 +213,6 @@ sim::Body make_cells(const Scenario& s, const Scenario& of_surface, const Presen
   mesh::sort_tets(body.mesh);
   body.mesh.numbers.clear();
   body.topology = mesh::make_topology(body.mesh);
-  if (!is_torn) embed::lay_on_surface(body.touched, body.topology, false, body.mesh);
   const bool has_own_boundary = skin.size() == 0 && s.params.solid.element != solid::ElementKind::p2;
   const double wanted = has_own_boundary ? embed::compute_skin_volume({now.x, now.body.topology.boundary})
                                          : embed::compute_skin_volume(body.touched);

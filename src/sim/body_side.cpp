@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/check.h"
@@ -97,24 +98,40 @@ void BodySide::begin_strained(const TensorField& elastic) {
 }
 
 /// By turns to the elastic equilibrium, which is the nearest stress in balance, and to the nearest within the
-/// strength; both sets are convex, so that the turns lead to a stress in both, where there is one. Sooner where
-/// each return goes on beyond [Agmon1954].
-void BodySide::balance(const Points& contact_force) {
+/// strength; both sets are convex, so that the turns lead to a stress in both, where there is one. Sooner
+/// where each return goes on beyond [Agmon1954].
+double BodySide::balance(const Points& contact_force) {
   constexpr int kTurns = 20;
   constexpr double kEnough = 1e-3;  // past the strength
   const Points v = m_state.solid.v;
   const Points force = m_force.loads() + contact_force;
   TensorField balanced = find_elastic_strain(m_solid);  // of the last turn that came to an end
+  double beyond = 0.0;
   for (int turn = 0; turn < kTurns; ++turn) {
     const StepStatus status = solid::find_equilibrium(m_solid, m_region.whole(), {force}, m_state.solid,
                                                       solid::EquilibriumAccuracy::rough);
     if (status.is_ok()) balanced = find_elastic_strain(m_solid);
     TensorField elastic = balanced;
-    const double beyond = status.is_ok() && turn + 1 < kTurns ? limit_to_strength(elastic) : 0.0;
+    const bool is_last = turn + 1 == kTurns || !status.is_ok();
+    if (!is_last) beyond = limit_to_strength(elastic);
     m_state.solid.v = v;
     begin_strained(elastic);
-    if (beyond < kEnough) return;
+    if (!status.is_ok()) return std::numeric_limits<double>::infinity();
+    if (is_last || beyond < kEnough) break;
   }
+  return beyond;
+}
+
+StepStatus BodySide::settle(const ContactLoad& load, StepResult& result) {
+  const BodyProgress before = m_state;
+  const Points v = m_state.solid.v;
+  m_state.solid.v.setZero();
+  begin_step(load, result);
+  ARGIL_TRY(find_velocity(load));
+  ARGIL_TRY(move_solid(load, result));
+  static_cast<BodyProgress&>(m_state) = before;
+  m_state.solid.v = v;
+  return StepStatus::ok();
 }
 
 /// And on as far again, all but a fifth. Returns by what share the farthest was beyond.

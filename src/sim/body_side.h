@@ -49,8 +49,13 @@ class BodySide {
 
   /// Changes the clay's stress, in the shape that it has, until it is in balance with the loads and these
   /// forces of contacts, 3×n [N], and within its strength; by about as little as that takes. Nothing changes
-  /// where supports alone do not hold the body.
-  void balance(const Points& contact_force);
+  /// where supports alone do not hold the body. Returns by what share of it the stress
+  /// is still beyond that; infinite where there is no equilibrium.
+  double balance(const Points& contact_force);
+
+  /// A step in which no time passes and nothing is booked: the body comes to rest against a tool that stands
+  /// still, and then has the speed that it had. To be committed, or rolled back where it failed.
+  StepStatus settle(const ContactLoad& load, StepResult& result);
 
   /// Plastic strain of each tet since the run began, also in earlier cells (6×tets), Mandel: for pictures.
   TensorField find_flow() const;

@@ -83,6 +83,12 @@ void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& fricti
     m_state.place.outward = pressure.normalized();  // so that of pressure nothing is along the surface
 }
 
+void ForceBetweenSteps::change_answer(const device::Wrench& answer, const Vec3& friction) {
+  m_state.excess += m_state.ticks * (m_state.answer.force - answer.force);
+  m_state.answer = answer;
+  m_state.friction = friction;
+}
+
 StepStatus ForceBetweenSteps::find_stiffness(const BodyBetweenSteps& body) {
   Place& told = m_state.told;
   if (told.outward.isZero(0.0) || !(told.springs > 0.0)) return StepStatus::ok();

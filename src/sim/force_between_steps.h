@@ -32,6 +32,9 @@ class ForceBetweenSteps {
   /// The body has answered with this on the hand; `friction` is a part of its force [N].
   void receive(const device::Wrench& answer, const Vec3& friction);
 
+  /// Between two steps that force has become this.
+  void change_answer(const device::Wrench& answer, const Vec3& friction);
+
   /// K of what the body was told, from its own matrix, before it answers: how it yields in a step to forces
   /// that are shared as those of its contacts.
   StepStatus find_stiffness(const BodyBetweenSteps& body);

@@ -98,6 +98,30 @@ Points HandSide::put_under_tool(const std::vector<PressedPoint>& before, const P
                        x, *m_pressure);
 }
 
+void HandSide::hand_over_still(ContactLoad& load) {
+  const contact::Pose& tool = m_state.contact_tool;
+  if (m_grip.holds()) {
+    m_grip.find_contacts(m_touched.x_t1(), tool, tool, m_contacts);
+  } else {
+    m_pressure->find_contacts(m_touched.x_t1(), tool, tool, m_state.yielding, m_contacts);
+    if (m_friction) m_friction->stretch(m_touched.x_t0(), m_touched.x_t1(), tool, tool, m_contacts);
+  }
+  m_collector.begin_detection(0.0, {});
+  m_state.hand_force = m_contacts.force_on_tool + m_contacts.resistance_on_tool;
+  m_state.hand_torque = m_contacts.torque_on_tool + m_contacts.resistance_torque_on_tool;
+  gather_contact_forces();
+  m_collector.hand_over(pose(), m_state.mode, m_params.rates.physics_period_ticks, m_contacts, load);
+}
+
+void HandSide::feel_settled(const StepResult& result, const Points& x) {
+  m_state.hand_force = result.felt.force;
+  m_state.hand_torque = result.felt.torque;
+  note_answer(result);
+  if (m_between) m_between->change_answer(result.felt, result.friction);
+  place_surface(x);
+  commit();
+}
+
 Points HandSide::find_contact_force() {
   NodalForce force(m_body.solid().model.elements.num_nodes());
   if (!m_pressure || keeps_shape() || m_state.num_contacts == 0) return force.at;

@@ -75,9 +75,14 @@ class HandSide {
   /// A surface at `x` is put under the tool so that it presses as it did before (keep_pressure). Returns
   /// where its vertices are then.
   Points put_under_tool(const std::vector<PressedPoint>& before, const Points& x);
+  /// The load of a tool that stands where it was last told to be.
+  void hand_over_still(ContactLoad& load);
+  /// The body has settled under that: its surface stands at `x` now.
+  void feel_settled(const StepResult& result, const Points& x);
   /// On the body, 3×n nodes [N]: pressures where the tool is now, scaled to the force that the hand feels.
   Points find_contact_force();
   /// Does the tool touch or lie in a body whose surface is at x?
+  bool is_pressing() const { return m_pressure && !keeps_shape() && m_state.num_contacts > 0; }
   bool overlaps(const Points& x) const { return m_detector.overlaps(x, m_state.tool); }
 
   const HandState& state() const { return m_state; }

@@ -33,6 +33,7 @@ std::unique_ptr<Simulation::Sides> Simulation::make_next_sides(Body body, const 
 
 bool Simulation::renew_cells(Body body) {
   constexpr double kLeastVolume = 0.05;  // of a tet, over that at rest
+  constexpr double kSettled = 0.1;       // of a stress, beyond the strength
   const RemappedState clay = remap(this->body(), solid(), body_state().solid.x, pore_water().saturation(),
                                    body_side().find_flow(), body);
   const double most = 1.0 / std::max(kLeastVolume, m_params.solid.min_volume_ratio);
@@ -48,9 +49,17 @@ bool Simulation::renew_cells(Body body) {
     sides = make_next_sides(std::move(laid), clay);
   }
   set_sides(std::move(sides));
-  body_side().balance(hand().find_contact_force());
+  if (body_side().balance(hand().find_contact_force()) > kSettled) settle();
   body_side().set_flow(clay.flow);
   return true;
+}
+
+void Simulation::settle() {
+  if (!hand().is_pressing()) return;
+  hand().hand_over_still(m_load);
+  if (!body_side().settle(m_load, m_result).is_ok()) return body_side().roll_back();
+  body_side().commit();
+  hand().feel_settled(m_result, surface_now());
 }
 
 void Simulation::restore_cells(Body body) {

@@ -29,7 +29,7 @@ class Simulation final : private BodySteps {
   Points surface_now() const;
   /// Between two steps: the body gets new cells in the shape that it has now. `body`: these, with skin,
   /// embedding and topology; what its clay is like, water, speed and strain, is taken over from the old ones
-  /// (remap). The hand feels what it felt; contacts are found anew in the next tick. False, and nothing has
+  /// (remap). The hand feels what it felt, but for what the new cells do not bear. False, and nothing has
   /// changed, where the clay of some cell would be pressed beyond what its law bears.
   bool renew_cells(Body body);
   /// The body has these cells, of which a snapshot was taken that is restored next.
@@ -93,6 +93,8 @@ class Simulation final : private BodySteps {
   void set_sides(std::unique_ptr<Sides> sides);
   /// That go on from the present ones with other cells.
   std::unique_ptr<Sides> make_next_sides(Body body, const RemappedState& clay);
+  /// What the balance has left beyond the strength flows, in a step without time, and the hand feels that.
+  void settle();
 
   /// Body and hand, who know each other.
   struct Sides {
