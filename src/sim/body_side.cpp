@@ -106,18 +106,16 @@ double BodySide::balance(const Points& contact_force) {
   const Points v = m_state.solid.v;
   const Points force = m_force.loads() + contact_force;
   TensorField balanced = find_elastic_strain(m_solid);  // of the last turn that came to an end
-  double beyond = 0.0;
-  for (int turn = 0; turn < kTurns; ++turn) {
+  double beyond = std::numeric_limits<double>::infinity();
+  for (int turn = 0; turn < kTurns && beyond >= kEnough; ++turn) {
     const StepStatus status = solid::find_equilibrium(m_solid, m_region.whole(), {force}, m_state.solid,
                                                       solid::EquilibriumAccuracy::rough);
     if (status.is_ok()) balanced = find_elastic_strain(m_solid);
     TensorField elastic = balanced;
-    const bool is_last = turn + 1 == kTurns || !status.is_ok();
-    if (!is_last) beyond = limit_to_strength(elastic);
+    if (status.is_ok() && turn + 1 < kTurns) beyond = limit_to_strength(elastic);
     m_state.solid.v = v;
     begin_strained(elastic);
     if (!status.is_ok()) return std::numeric_limits<double>::infinity();
-    if (is_last || beyond < kEnough) break;
   }
   return beyond;
 }
@@ -127,8 +125,7 @@ StepStatus BodySide::settle(const ContactLoad& load, StepResult& result) {
   const Points v = m_state.solid.v;
   m_state.solid.v.setZero();
   begin_step(load, result);
-  ARGIL_TRY(find_velocity(load));
-  ARGIL_TRY(move_solid(load, result));
+  ARGIL_TRY(step_solid(load, result));
   static_cast<BodyProgress&>(m_state) = before;
   m_state.solid.v = v;
   return StepStatus::ok();
@@ -186,6 +183,10 @@ StepStatus BodySide::make_step(const ContactLoad& load, StepResult& result) {
   begin_step(load, result);
   if (m_params.rates.moves_water(m_state.steps)) ARGIL_TRY(move_water(load, result));
   if (m_economy.rests(m_state, load, m_force.contacts())) return StepStatus::ok();
+  return step_solid(load, result);
+}
+
+StepStatus BodySide::step_solid(const ContactLoad& load, StepResult& result) {
   ARGIL_TRY(find_velocity(load));
   if (m_state.is_at_rest) return StepStatus::ok();
   return move_solid(load, result);

@@ -49,8 +49,8 @@ class BodySide {
 
   /// Changes the clay's stress, in the shape that it has, until it is in balance with the loads and these
   /// forces of contacts, 3×n [N], and within its strength; by about as little as that takes. Nothing changes
-  /// where supports alone do not hold the body. Returns by what share of it the stress
-  /// is still beyond that; infinite where there is no equilibrium.
+  /// where supports alone do not hold the body. Returns by what share of the strength the last stress in
+  /// balance was beyond it; infinite where there is no equilibrium.
   double balance(const Points& contact_force);
 
   /// A step in which no time passes and nothing is booked: the body comes to rest against a tool that stands
@@ -106,6 +106,7 @@ class BodySide {
   void begin_strained(const TensorField& elastic);
   double limit_to_strength(TensorField& elastic) const;
   StepStatus make_step(const ContactLoad& load, StepResult& result);
+  StepStatus step_solid(const ContactLoad& load, StepResult& result);
   void hold_still(const ContactLoad& load, const Failure& failure, StepResult& result);
   void begin_step(const ContactLoad& load, StepResult& result);
   /// At the end of the present step [s].

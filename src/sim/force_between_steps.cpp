@@ -67,12 +67,15 @@ void ForceBetweenSteps::repay(bool has_left, LoadCollector& load) {
     load.add_reaction({share.vertex, share.weight, share.force.cwiseProduct(-given / step_s)});
 }
 
+double ForceBetweenSteps::ticks_ahead() const {
+  return 0.5 * (m_planned - 1) + m_planned * m_lag;
+}
+
 /// Where the force grows steadily from answer to answer, by ΔF, the hand has felt (½(N − 1) + N·lag) ΔF more
 /// in N ticks than that: that the body gets with the next one.
 void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& friction) {
-  const double ahead = (0.5 * (m_planned - 1) + m_planned * m_lag) * m_period;
   m_state.owed += m_period * (m_state.excess + (m_state.ticks - m_planned) * m_state.answer.force) +
-                  ahead * (m_state.answer.force - answer.force);
+                  ticks_ahead() * m_period * (m_state.answer.force - answer.force);
   m_state.excess.setZero();
   m_state.ticks = 0;
   m_state.answer = answer;
@@ -84,7 +87,7 @@ void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& fricti
 }
 
 void ForceBetweenSteps::change_answer(const device::Wrench& answer, const Vec3& friction) {
-  m_state.excess += m_state.ticks * (m_state.answer.force - answer.force);
+  m_state.excess += (m_planned - m_state.ticks - ticks_ahead()) * (answer.force - m_state.answer.force);
   m_state.answer = answer;
   m_state.friction = friction;
 }

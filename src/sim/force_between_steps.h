@@ -32,7 +32,7 @@ class ForceBetweenSteps {
   /// The body has answered with this on the hand; `friction` is a part of its force [N].
   void receive(const device::Wrench& answer, const Vec3& friction);
 
-  /// Between two steps that force has become this.
+  /// Between two steps that force has become this for the hand, which the body has not got.
   void change_answer(const device::Wrench& answer, const Vec3& friction);
 
   /// K of what the body was told, from its own matrix, before it answers: how it yields in a step to forces
@@ -87,6 +87,8 @@ class ForceBetweenSteps {
   };
 
   bool presses() const { return !m_state.place.outward.isZero(0.0); }
+
+  double ticks_ahead() const;
 
   double m_period;  // δ [s]
   int m_planned;    // ticks of a step

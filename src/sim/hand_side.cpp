@@ -83,7 +83,7 @@ void HandSide::go_on_from(const HandSide& before, const Points& x) {
 }
 
 std::vector<PressedPoint> HandSide::find_pressed() {
-  if (!m_pressure || keeps_shape() || m_grip.holds() || m_state.num_contacts == 0) return {};
+  if (!is_pressing() || m_grip.holds()) return {};
   contact::Contacts contacts;
   m_pressure->prepare(m_touched.x_t1());
   m_pressure->find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.contact_tool, m_state.yielding,
@@ -98,14 +98,19 @@ Points HandSide::put_under_tool(const std::vector<PressedPoint>& before, const P
                        x, *m_pressure);
 }
 
+void HandSide::find_still_contacts() {
+  const contact::Pose& tool = m_state.contact_tool;
+  if (m_grip.holds())
+    m_grip.find_contacts(m_touched.x_t1(), tool, tool, m_contacts);
+  else
+    m_pressure->find_contacts(m_touched.x_t1(), tool, tool, m_state.yielding, m_contacts);
+}
+
 void HandSide::hand_over_still(ContactLoad& load) {
   const contact::Pose& tool = m_state.contact_tool;
-  if (m_grip.holds()) {
-    m_grip.find_contacts(m_touched.x_t1(), tool, tool, m_contacts);
-  } else {
-    m_pressure->find_contacts(m_touched.x_t1(), tool, tool, m_state.yielding, m_contacts);
-    if (m_friction) m_friction->stretch(m_touched.x_t0(), m_touched.x_t1(), tool, tool, m_contacts);
-  }
+  find_still_contacts();
+  if (m_friction && !m_grip.holds())
+    m_friction->stretch(m_touched.x_t0(), m_touched.x_t1(), tool, tool, m_contacts);
   m_collector.begin_detection(0.0, {});
   m_state.hand_force = m_contacts.force_on_tool + m_contacts.resistance_on_tool;
   m_state.hand_torque = m_contacts.torque_on_tool + m_contacts.resistance_torque_on_tool;
@@ -116,7 +121,7 @@ void HandSide::hand_over_still(ContactLoad& load) {
 void HandSide::feel_settled(const StepResult& result, const Points& x) {
   m_state.hand_force = result.felt.force;
   m_state.hand_torque = result.felt.torque;
-  note_answer(result);
+  m_state.last_answer = result.felt.force;
   if (m_between) m_between->change_answer(result.felt, result.friction);
   place_surface(x);
   commit();
@@ -124,12 +129,8 @@ void HandSide::feel_settled(const StepResult& result, const Points& x) {
 
 Points HandSide::find_contact_force() {
   NodalForce force(m_body.solid().model.elements.num_nodes());
-  if (!m_pressure || keeps_shape() || m_state.num_contacts == 0) return force.at;
-  const contact::Pose& tool = m_state.contact_tool;
-  if (m_grip.holds())
-    m_grip.find_contacts(m_touched.x_t1(), tool, tool, m_contacts);
-  else
-    m_pressure->find_contacts(m_touched.x_t1(), tool, tool, m_state.yielding, m_contacts);
+  if (!is_pressing()) return force.at;
+  find_still_contacts();
   const double found = m_contacts.force_on_tool.norm();
   const double share = found > 0.0 ? m_state.hand_force.norm() / found : 0.0;
   for (const contact::Contact& c : m_contacts.contacts)

@@ -81,8 +81,9 @@ class HandSide {
   void feel_settled(const StepResult& result, const Points& x);
   /// On the body, 3×n nodes [N]: pressures where the tool is now, scaled to the force that the hand feels.
   Points find_contact_force();
-  /// Does the tool touch or lie in a body whose surface is at x?
+  /// Does it touch a body that yields to it, by the pressure law?
   bool is_pressing() const { return m_pressure && !keeps_shape() && m_state.num_contacts > 0; }
+  /// Does the tool touch or lie in a body whose surface is at x?
   bool overlaps(const Points& x) const { return m_detector.overlaps(x, m_state.tool); }
 
   const HandState& state() const { return m_state; }
@@ -118,6 +119,7 @@ class HandSide {
   void press(const contact::Contact& contact, const Vec3& on_hand, const ContactSpring& spring);
   void release_springs();
   // hand_side.cpp
+  void find_still_contacts();
   void prepare_detection(const Points& x);
   bool is_compliant() const;
   bool is_wetting() const;

@@ -57,7 +57,11 @@ bool Simulation::renew_cells(Body body) {
 void Simulation::settle() {
   if (!hand().is_pressing()) return;
   hand().hand_over_still(m_load);
-  if (!body_side().settle(m_load, m_result).is_ok()) return body_side().roll_back();
+  if (!body_side().settle(m_load, m_result).is_ok()) {
+    body_side().roll_back();
+    hand().roll_back(nullptr);
+    return;
+  }
   body_side().commit();
   hand().feel_settled(m_result, surface_now());
 }

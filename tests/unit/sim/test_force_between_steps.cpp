@@ -1,0 +1,43 @@
+// What hand and body get between two steps, where the force of the last one changes under the hand.
+#include <gtest/gtest.h>
+
+#include "sim/force_between_steps.h"
+
+namespace argil::sim {
+namespace {
+
+/// What the body is owed once all is over is what the hand has felt and the body has not got [N s].
+TEST(ForceBetweenSteps, OwesWhatTheHandFeelsOfAChangedAnswer) {
+  RateParams rates;
+  rates.haptic_period = 1e-3;
+  rates.physics_period_ticks = 4;
+  for (const double lag : {0.0, 0.5}) {
+    ForceBetweenSteps between(rates, lag);
+    Vec3 felt = Vec3::Zero(), got = Vec3::Zero();
+    const auto feel = [&](const Vec3& force, int ticks) {
+      for (int k = 0; k < ticks; ++k, felt += rates.haptic_period * force) between.feel(force);
+    };
+    const auto answer = [&](const Vec3& force) {
+      between.receive({force, Vec3::Zero()}, Vec3::Zero());
+      got += rates.step_seconds() * force;
+    };
+    feel(Vec3::Zero(), 4);
+    answer(Vec3(0, 1, 2));
+    feel(Vec3(0, 1, 2.5), 1);
+    between.change_answer({Vec3(0.5, 1, 1.5), Vec3::Zero()}, Vec3::Zero());
+    feel(Vec3(0.5, 1, 1.75), 3);
+    answer(Vec3(0.25, 1, 1.5));
+    feel(Vec3(0.25, 1, 1.5), 4);
+    answer(Vec3::Zero());
+    feel(Vec3::Zero(), 4);
+    answer(Vec3::Zero());
+    Snapshot saved;
+    Archive archive = Archive::make_saving(saved);
+    between.serialize(archive);
+    EXPECT_LT((Vec3(saved.at("between/owed").reshaped()) - (felt - got)).norm(), 1e-15) << lag;
+    EXPECT_GT((felt - got).norm(), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace argil::sim
