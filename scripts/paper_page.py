@@ -188,7 +188,8 @@ def sculpted():
                 `scripts/reproduce sculpted` leaves a page to turn and replay it, build/paper/sculpted.html.""") + prose(f"""
                 **Chosen after looking**: the places and the depths. The horn is frayed at its tip, where the ball that drew
                 it sat and the triangles of the skin are few. The largest forces are {force["pull"]:.1f} N in the pull and
-                {force["push"]:.0f} N in the push: a thumb's, more than a desktop device renders, and too large besides, as the cells are too few for a ball of 6 mm. The cells enclose
+                {force["push"]:.0f} N in the push: a thumb's, more than a desktop device renders, and too large besides, as the
+                cells are too few for a ball of 6 mm. The cells enclose
                 {100 * (cells["first"] - 1.0):.1f} % more than the skin at the start and {100 * (cells["last"] - 1.0):.1f} % more at
                 the end: new cells lie on the skin, where the first ones were too coarse to.""")
 

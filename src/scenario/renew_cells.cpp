@@ -213,6 +213,7 @@ sim::Body make_cells(const Scenario& s, const Scenario& of_surface, const Presen
   mesh::sort_tets(body.mesh);
   body.mesh.numbers.clear();
   body.topology = mesh::make_topology(body.mesh);
+  // Once more: the vertices that grading has added let the boundary come nearer.
   if (!is_torn && is_graded) embed::lay_on_surface(body.touched, body.topology, false, body.mesh);
   const bool has_own_boundary = skin.size() == 0 && s.params.solid.element != solid::ElementKind::p2;
   const double wanted = has_own_boundary ? embed::compute_skin_volume({now.x, now.body.topology.boundary})

@@ -45,8 +45,6 @@ void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::P
     m_state.shares.push_back({c.vertex, c.weight, Vec3::Constant(c.spring / told.springs)});
 }
 
-/// A quarter of the debt a step: with more, a force that comes to rest would swing. There the debt of a step
-/// is its change, so that of what is off, z² − z + β = 0 remains from step to step.
 void ForceBetweenSteps::go_on_from(const ForceBetweenSteps& before, const Points& x_before, const Points& x) {
   m_state = before.m_state;
   for (SurfaceForce& share : m_state.shares)
@@ -55,6 +53,8 @@ void ForceBetweenSteps::go_on_from(const ForceBetweenSteps& before, const Points
   commit();
 }
 
+/// A quarter of the debt a step: with more, a force that comes to rest would swing. There the debt of a step
+/// is its change, so that of what is off, z² − z + β = 0 remains from step to step.
 void ForceBetweenSteps::repay(bool has_left, LoadCollector& load) {
   constexpr double kPart = 0.25;        // β
   constexpr double kNegligible = 1e-9;  // of what the hand feels
@@ -86,6 +86,8 @@ void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& fricti
     m_state.place.outward = pressure.normalized();  // so that of pressure nothing is along the surface
 }
 
+/// At the end of the step receive() takes this answer for what the body got in N ticks and what the hand felt
+/// from the first on. Until now it was the old one.
 void ForceBetweenSteps::change_answer(const device::Wrench& answer, const Vec3& friction) {
   m_state.excess += (m_planned - m_state.ticks - ticks_ahead()) * (answer.force - m_state.answer.force);
   m_state.answer = answer;

@@ -88,6 +88,7 @@ class ForceBetweenSteps {
 
   bool presses() const { return !m_state.place.outward.isZero(0.0); }
 
+  /// ½(N − 1) + N·lag: ticks by which the hand feels a steady growth before the body answers with it.
   double ticks_ahead() const;
 
   double m_period;  // δ [s]

@@ -76,7 +76,7 @@ class Interrupt(unittest.TestCase):
             self.assertIsNone(study.poll(), "it ended before it was told to")
             children = Path(f"/proc/{study.pid}/task/{study.pid}/children").read_text().split()
             study.send_signal(number)
-            error = study.communicate(timeout=120)[1]
+            error = study.communicate(timeout=60)[1]
         self.assertEqual(study.returncode, 130, error)
         self.assertEqual(error, f"argil: interrupted; what has ended is kept in {output}.runs, and the same command goes on "
                                 "from there\n")
