@@ -10,8 +10,8 @@
 namespace argil::sim {
 namespace {
 
-constexpr double kOfBound = 0.2;  // what a solve's residual does, over the most that it could
-constexpr int kSteps = 8;         // from one look at the whole body to the next; fewer just after the touch
+constexpr double kOfBound = 1.0 / 3.0;  // what a solve's residual does, over the most that it could
+constexpr int kSteps = 8;  // from one look at the whole body to the next; fewer just after the touch
 
 }  // namespace
 

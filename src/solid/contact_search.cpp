@@ -14,6 +14,7 @@ namespace {
 constexpr int kRoundsWithoutSearch = 4;
 constexpr int kMostRounds = 80;  // of a search; then contacts are only let go
 constexpr double kConeTolerance = 1e-3;
+constexpr double kRounding = 1e-9;
 
 /// Of what a contact would exert without a limit, what it does.
 Vec3 limit_force(const PointStiffness& contact, double friction_limit, const Vec3& trial) {
@@ -193,10 +194,13 @@ void start_alone(std::span<const PointStiffness> contacts, const Points& v, doub
   std::vector<Vec3>& trial = activity.trial;
   trial.resize(contacts.size());
   bool has_friction = false;
+  const bool has_pressed =
+      std::any_of(contacts.begin(), contacts.end(), [](const PointStiffness& c) { return c.has_pressed; });
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     trial[i] = contacts[i].force;
     has_friction = has_friction || contacts[i].friction > 0.0;
-    if (contacts[i].is_near) activity.acts[i] = 0;
+    if (contacts[i].is_alone)  // most of a body's way is that of the tool, so that few points come or go
+      activity.acts[i] = (has_pressed ? contacts[i].has_pressed : !contacts[i].is_near) ? 1 : 0;
   }
   if (!has_friction) return;
   activity.friction.resize(contacts.size());
@@ -232,15 +236,18 @@ double compute_potential_alone(const PointStiffness& contact, const Vec3& trial,
   return (length > limit ? limit * (length - 0.5 * limit) : 0.5 * length * length) / contact.stiffness;
 }
 
-bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffness> list) {
+bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffness> list, double tolerance) {
   if (!body.has_implicit_contact()) return true;
   const StepContacts contacts = body.step_contacts(list);
   ContactActivity& activity = body.contacts;
   if (!activity.are_alone) return !update_active_contacts(contacts, body.trial.x, activity);
   find_trials(contacts, body.trial.x, activity.trial);
+  const double pressing_tolerance = std::max(kRounding, tolerance);
   if (activity.num_updates < kRoundsWithoutSearch) {
     const Misfit misfit = find_misfit(list, activity, true);
-    if (misfit.pressing == 0.0 && misfit.friction <= kConeTolerance * misfit.friction_sum) return true;
+    if (misfit.pressing <= pressing_tolerance * misfit.pressing_sum &&
+        misfit.friction <= kConeTolerance * misfit.friction_sum)
+      return true;
     ++activity.num_updates;
     move_limits(list, 1.0, activity);
     if (activity.num_updates == kRoundsWithoutSearch) stand_at_solution(body, activity);
@@ -251,10 +258,9 @@ bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffnes
     --activity.search.num_rounds;
     return !let_go(list, activity);
   }
-  constexpr double kRounding = 1e-9;
   constexpr double kFrictionTolerance = 0.1 * kConeTolerance;
   const Misfit misfit = find_misfit(list, activity, false);
-  if (misfit.pressing <= kRounding * misfit.pressing_sum &&
+  if (misfit.pressing <= pressing_tolerance * misfit.pressing_sum &&
       misfit.friction <= kFrictionTolerance * misfit.friction_sum) {
     const Misfit of_cone = find_misfit(list, activity, true);
     if (of_cone.friction <= kConeTolerance * of_cone.friction_sum) return true;

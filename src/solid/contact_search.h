@@ -35,7 +35,8 @@ double compute_potential_alone(const PointStiffness& contact, const Vec3& trial,
 /// ½ Σ max(0, n·f − k n·(x − x₀))²/k, and Huber's for friction [Huber1964]. Newton's method on it is to solve
 /// again with what acts at the last solution. After some rounds the way to each solution is searched for the
 /// least potential, so that no set comes back and the search ends. Then the limits follow what presses, until
-/// friction carries what Coulomb's law says to a thousandth. Of other contacts see update_active_contacts().
-bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffness> list);
+/// friction carries what Coulomb's law says to a thousandth. `tolerance`: share of what presses that may draw
+/// or be missing. Of other contacts see update_active_contacts().
+bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffness> list, double tolerance);
 
 }  // namespace argil::solid

@@ -43,8 +43,8 @@ struct ContactActivity {
   bool are_alone = false;          ///< all groups are of one entry
   ContactSearch search;            ///< then, after some updates
 
-  /// Of a step of this length [s] with these contacts, of a body that goes at v (3×n) [m/s]. All act but
-  /// those that are near.
+  /// Of a step of this length [s] with these contacts, of a body that goes at v (3×n) [m/s]. What is alone
+  /// acts where it has pressed, or, if none has, where it is not near; all others act.
   void start(std::span<const PointStiffness> contacts, const Points& v, double step_s);
   /// They act as they do; the search for others begins anew.
   void go_on() { num_updates = search.num_rounds = 0; }

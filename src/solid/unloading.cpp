@@ -31,25 +31,40 @@ double find_loading(const Body& body, const Points& v, Eigen::Index p) {
   return body.prediction.tau * n.dot(to_mandel(0.5 * (rate + rate.transpose()))) / body.materials.yield()(p);
 }
 
-/// Calls mark(loading, unloads) of each point, which says whether it has changed the latter. Returns how many
-/// have.
+/// Calls mark(point, loading) of each point whose elastic strain is known, in runs that threads share, and
+/// sums up what it returns.
 template <class Mark>
-double mark_points(Body& body, const Part& part, Mark mark) {
+double sum_of_points(Body& body, const Part& part, Mark mark) {
   const Elements& elements = body.model.elements;
   const std::ptrdiff_t Q = elements.points_per_tet;
   const ElasticArrays elastic = body.elastic.arrays();
-  const auto mark_point = [&](std::ptrdiff_t p) {
-    if (elastic.is_known[p / kLanes] == 0) return false;
-    char& unloads = body.system.unloads[static_cast<std::size_t>(p)];
-    if (!mark(find_loading(body, body.trial.v, p), unloads)) return false;
-    body.system.is_tet_changed[static_cast<std::size_t>(p / Q)] = 1;
-    return true;
-  };
   return part.batches.sum(elements.num_tets(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    std::ptrdiff_t count = 0;
-    for (std::ptrdiff_t p = Q * begin; p < Q * end; ++p) count += mark_point(p) ? 1 : 0;
-    return count;
+    double sum = 0.0;
+    for (std::ptrdiff_t p = Q * begin; p < Q * end; ++p)
+      if (elastic.is_known[p / kLanes] != 0) sum += mark(p, find_loading(body, body.trial.v, p));
+    return sum;
   });
+}
+
+void set_unloads(Body& body, std::ptrdiff_t point, bool unloads) {
+  const int Q = body.model.elements.points_per_tet;
+  body.system.unloads[static_cast<std::size_t>(point)] = unloads ? 1 : 0;
+  body.system.is_tet_changed[static_cast<std::size_t>(point / Q)] = 1;
+}
+
+bool unloads(const Body& body, std::ptrdiff_t point) {
+  return body.system.unloads[static_cast<std::size_t>(point)] != 0;
+}
+
+/// Σ ‖fᵢ‖² over the corners [N²], fᵢ = V 2μ (n : dε) n ∇Nᵢ, of a point whose elastic resistance along n was
+/// left out.
+double find_missing_force(const Body& body, std::ptrdiff_t p, double loading) {
+  const Mat3 n = from_mandel(find_flow_direction(body, p));
+  const double stress = 2.0 * body.materials.point_mu()(p) * loading * body.materials.yield()(p);
+  double sum = 0.0;
+  for (int corner = 0; corner < 4; ++corner)
+    sum += (n * body.materials.gradient().col(4 * p + corner)).squaredNorm();
+  return std::pow(body.materials.weight()(p) * stress, 2) * sum;
 }
 
 }  // namespace
@@ -70,21 +85,28 @@ Vec6 find_flow_direction(const Body& body, Eigen::Index point) {
 void begin_unloading(Body& body, const Part& part) {
   body.system.unloading_rounds = 0;
   if (!has_flowing_tangents(body)) return;
-  mark_points(body, part, [](double loading, char& unloads) {
-    const char before = unloads;
-    unloads = loading < -kLeast ? 1 : 0;
-    return unloads != before;
+  sum_of_points(body, part, [&](std::ptrdiff_t p, double loading) {
+    if (unloads(body, p) != (loading < -kLeast)) set_unloads(body, p, loading < -kLeast);
+    return 0.0;
   });
 }
 
-bool find_unloading(Body& body, const Part& part) {
+bool find_unloading(Body& body, const Part& part, double enough) {
   constexpr int kMostRounds = 4;
   if (!has_flowing_tangents(body) || body.system.unloading_rounds++ == kMostRounds) return false;
-  return mark_points(body, part, [](double loading, char& unloads) {
-           const bool is_new = unloads == 0 && loading < -kLeast;
-           if (is_new) unloads = 1;
-           return is_new;
-         }) > 0;
+  const auto is_new = [&](std::ptrdiff_t p, double loading) {
+    return loading < -kLeast && !unloads(body, p);
+  };
+  const double left =
+      body.prediction.tau * std::sqrt(sum_of_points(body, part, [&](std::ptrdiff_t p, double loading) {
+        return is_new(p, loading) ? find_missing_force(body, p, loading) : 0.0;
+      }));
+  if (left <= enough) return false;
+  sum_of_points(body, part, [&](std::ptrdiff_t p, double loading) {
+    if (is_new(p, loading)) set_unloads(body, p, true);
+    return 0.0;
+  });
+  return true;
 }
 
 }  // namespace argil::solid

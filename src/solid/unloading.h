@@ -14,8 +14,9 @@ void begin_unloading(Body& body, const Part& part);
 /// elastic strain is not known.
 Vec6 find_flow_direction(const Body& body, Eigen::Index point);
 
-/// By a solution. True where it takes points back that were to flow: the same step is to be solved anew.
-/// Those that were not to flow stay elastic for this step.
-bool find_unloading(Body& body, const Part& part);
+/// By a solution. True where it takes points back that were to flow, and what they resist with as elastic
+/// ones is more than `enough`, as residuals are measured: the same step is to be solved anew. Those that were
+/// not to flow stay elastic for this step.
+bool find_unloading(Body& body, const Part& part, double enough);
 
 }  // namespace argil::solid

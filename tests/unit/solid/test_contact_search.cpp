@@ -18,6 +18,7 @@ SolidParams make_params(Iteration iteration) {
   SolidParams params;
   params.iteration = iteration;
   params.solver.kind = linear::SolverKind::cholesky;
+  params.solver.tolerance = 1e-9;  // of what presses, that may draw
   params.rayleigh_stiffness = 2e-3;
   return params;
 }
@@ -116,6 +117,50 @@ TEST_P(EveryIteration, PressesWhereItIsPressedOn) {
   if (GetParam() == Iteration::one) {
     EXPECT_GT(num_searched, 3);
   }
+}
+
+/// As much as a solve may leave of its residual, contacts may leave of what presses: fewer solves, and a
+/// force that is as far off.
+TEST(ContactSearch, LeavesAsMuchAsTheSolve) {
+  int num_solves[2] = {};
+  double largest = 0.0;
+  for (int round = 0; round < 20; ++round)
+    for (const bool is_loose : {false, true}) {
+      Rng rng(static_cast<std::uint64_t>(round));
+      SolidParams params = make_params(Iteration::one);
+      if (is_loose) params.solver.tolerance = 1e-3;
+      Scene scene = make_block(params);
+      const std::vector<PointStiffness> list = make_contacts(scene, rng, 1e2, 5e-5);
+      for (const PointStiffness& c : list)
+        if (!c.is_near) spread(c, c.force, scene.load);
+      Points force = scene.load;
+      const Points before = scene.state.x;
+      ASSERT_TRUE(scene.step(kStep, list).is_ok()) << round;
+      num_solves[is_loose ? 1 : 0] += scene.solid.newton.iterations;
+      const Pressing pressing = find_pressing(scene, list, before);
+      apply_contact_stiffness(scene.solid, list, force);
+      const double off = (force - pressing.force).norm() / pressing.sum;
+      EXPECT_LT(off, is_loose ? 1e-3 : 1e-6) << round;
+      if (is_loose) largest = std::max(largest, off);
+    }
+  EXPECT_LT(num_solves[1], num_solves[0]);
+  EXPECT_GT(largest, 0.0);
+}
+
+/// What pressed where a step begins presses in its first solve, and what did not does not.
+TEST(ContactSearch, BeginsWithWhatHasPressed) {
+  Rng rng(3);
+  Scene scene = make_block(make_params(Iteration::one));
+  std::vector<PointStiffness> list = make_contacts(scene, rng, 1e2, 5e-5);
+  const auto start = [&] {
+    scene.solid.contacts.start(list, scene.state.v, kStep);
+    return scene.solid.contacts.acts;
+  };
+  const std::vector<char> first = start();
+  for (std::size_t i = 0; i < list.size(); ++i) EXPECT_EQ(first[i] != 0, !list[i].is_near) << i;
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].has_pressed = i % 3 == 0;
+  const std::vector<char> later = start();
+  for (std::size_t i = 0; i < list.size(); ++i) EXPECT_EQ(later[i] != 0, i % 3 == 0) << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(Iterations, EveryIteration, testing::Values(Iteration::one, Iteration::newton),

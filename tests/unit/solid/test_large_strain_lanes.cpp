@@ -89,7 +89,7 @@ class LargeStrainLanes : public testing::TestWithParam<StrainModel> {
   const ElasticLaw::Lanes& lanes = find_law(GetParam()).lanes;
 };
 INSTANTIATE_TEST_SUITE_P(Laws, LargeStrainLanes, testing::Values(StrainModel::hencky, StrainModel::curnier),
-                         [](const auto& info) { return std::string(find_law(info.param).name); });
+                         [](const auto& law) { return std::string(find_law(law.param).name); });
 
 TEST_P(LargeStrainLanes, PressAsThePointDoes) {
   for (const bool with_pressure : {false, true}) {
