@@ -12,7 +12,7 @@ namespace argil::run {
 namespace {
 
 constexpr Tick kStepsBetweenLooks = 4;
-constexpr double kShortestEpoch = 0.02;  // [s]
+constexpr double kShortestEpoch = 0.012;  // [s]
 constexpr double kSpoilt = 0.25;  // mesh::compute_shape of the worst tet, below which cells are renewed
 constexpr double kWait = 0.25;    // [s] after a shape that gave no cells
 
