@@ -136,10 +136,9 @@ PUSH_PULL = [  # press the belly, go up, draw the chest out
     Stroke("push", 0.50, -4.0, -4.0, 0.0),
     Stroke("push", 0.30, 15.0, -4.0, 0.0),
     Stroke("push", 0.50, 4.0, 16.0, 0.0),
-    Stroke("pull", 0.30, -0.5, 16.0, 0.0),
-    Stroke("pull", 0.60, 1.0, 16.0, 0.0),
-    Stroke("pull", 0.40, 12.0, 16.0, 0.0),
-    Stroke("pull", 0.50, 25.0, 0.0, 0.0),
+    Stroke("pull", 0.30, -2.0, 16.0, 0.0),
+    Stroke("pull", 0.70, 4.0, 16.0, 0.0),
+    Stroke("push", 0.80, 25.0, 0.0, 0.0),
 ]
 
 LIGHT = [  # come, press, hold and let go
