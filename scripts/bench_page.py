@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes the tables of results/bench/README.md from the CSV files beside it, each below the line of its columns.
+"""Writes the tables of results/bench/README.md and parts.md from the CSV files beside them, each below the line of its columns.
 
     scripts/bench_page.py [--check]
 
@@ -12,7 +12,6 @@ import sys
 from pathlib import Path
 
 BENCH = Path(__file__).resolve().parent.parent / "results/bench"
-PAGE = BENCH / "README.md"
 
 
 def read(name):
@@ -28,6 +27,27 @@ def three(value):
 def ms(value):
     """Of microseconds."""
     return three(float(value) / 1000)
+
+
+def list_costs():
+    """A row a setting, with its one and two threads side by side; the reference of a scene first."""
+    runs = {}
+    for row in read("cost"):
+        runs.setdefault((row["scene"], row["element"], row["wanted_tets"], row["ticks_of_step"], row["fidelity"]), []).append(row)
+    elements = {"p1": "four-node", "p2": "ten-node"}
+    for (scene, element, _, ticks, fidelity), rows in runs.items():
+        one, *two = rows
+        if fidelity == "reference":
+            yield [scene, f"*reference: {one['wanted_tets']} {elements[element]} tets, 0.5 ms; twice the step, half the tets:*",
+                   *(f"*{value} %*" for value in errors(one)), "", ""]
+            continue
+        words = [f"{one['tets']} {elements[element]}", *([f"{ticks} ms"] if ticks != "1" else []), *(["`auto`"] if fidelity == "auto" else [])]
+        yield [scene, ", ".join(words), *(f"{value} %" for value in errors(one)),
+               *(f"{row['touching_ticks_per_s']}; {three(row['step_ms'])} / {three(row['step_p99_ms'])}" for row in (one, *two))]
+
+
+def errors(row):
+    return three(row["error_percent"]), f"{float(row['error_at_peak_percent']):+.1f}".replace("-", "−")
 
 
 def list_steps():
@@ -48,16 +68,6 @@ def list_sizes():
         full, auto = float(runs[0]["force_N"]), float(runs[2]["force_N"])
         yield [body, runs[0]["tets"], *(f"{ms(run['step'])} / {ms(run['step_p99'])}" for run in runs),
                f"{100 * abs(auto / full - 1):.2f} %", f"{abs(auto - full) / max(0.02, 0.01 * full):.2f}"]
-
-
-def list_bullet():
-    rows = {tuple(row["name"].split("/iterations")[0].split("/")): row for row in read("bullet")}
-    for (program, *size), bullet in rows.items():
-        if program == "bullet":
-            argil = [rows["argil", *size, f"threads:{t}"] for t in (1, 2)]
-            yield [bullet["tets"], ms(bullet["step"]), *(ms(row["step"]) for row in argil),
-                   f"{float(bullet['step']) / float(argil[0]['step']):.0f}",
-                   f"{float(bullet['top_mm']):.3f}, {float(argil[0]['top_mm']):.3f}"]
 
 
 def list_tolerances():
@@ -88,15 +98,6 @@ def list_extents():
                row["error_over_bound"] or "–", row["start_s"] or "–", row["peak_MiB"] or "–"]
 
 
-def list_bare_steps():
-    rows = read("elastic")
-    pairs = [(rows[i], rows[i + 1]) for i in range(0, len(rows), 2)]
-    for argil, other in sorted(pairs, key=lambda pair: (-float(pair[0]["tolerance"]), int(pair[0]["tets"]))):
-        yield [argil["tolerance"], argil["tets"], argil["threads"], three(argil["ms_median"]), three(other["ms_median"]),
-               argil["ratio"], f"{float(argil['ms_least']) / float(other['ms_least']):.2f}", argil["iterations"],
-               other["iterations"]]
-
-
 def list_instructions():
     for row in read("instructions"):
         yield [row["tets"], *(three(float(row[stage]) / 1e6)
@@ -118,23 +119,24 @@ def list_contacts():
         yield [kind.replace("_", " "), row["triangles"], row["contacts"], three(row["cpu_time"])]
 
 
-TABLES = {
-    "| mode | tets | threads | contact |": list_steps,
-    "| body | tets | full, 1 thread |": list_sizes,
-    "| tets | Bullet [ms] |": list_bullet,
-    "| tets | clay kernel |": list_tolerances,
-    "| design |": list_designs,
-    "| scene | tets | mode |": list_extents,
-    "| tolerance | tets | threads |": list_bare_steps,
-    "| tets | contact | assemble |": list_instructions,
-    "| tets | water [µs] |": list_wet_ticks,
-    "| tool | triangles |": list_contacts,
+PAGES = {
+    "README.md": {"| scene | cells, step |": list_costs},
+    "parts.md": {
+        "| mode | tets | threads | contact |": list_steps,
+        "| tets | clay kernel |": list_tolerances,
+        "| design |": list_designs,
+        "| body | tets | full, 1 thread |": list_sizes,
+        "| scene | tets | mode |": list_extents,
+        "| tets | contact | assemble |": list_instructions,
+        "| tets | water [µs] |": list_wet_ticks,
+        "| tool | triangles |": list_contacts,
+    },
 }
 
 
-def write_tables(page):
+def write_tables(page, tables):
     lines = page.split("\n")
-    for header, rows in TABLES.items():
+    for header, rows in tables.items():
         first = next(i for i, line in enumerate(lines) if line.startswith(header)) + 2
         end = next(i for i in range(first, len(lines) + 1) if i == len(lines) or not lines[i].startswith("|"))
         table = [f"| {' | '.join(row)} |" for row in rows()]
@@ -148,11 +150,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
-    page = PAGE.read_text(encoding="utf-8")
-    written = write_tables(page)
-    if options.check:
-        sys.exit(0 if written == page else f"{PAGE}: its tables are not those of the files beside it: run scripts/bench_page.py")
-    PAGE.write_text(written, encoding="utf-8")
+    for name, tables in PAGES.items():
+        page = (BENCH / name).read_text(encoding="utf-8")
+        written = write_tables(page, tables)
+        if not options.check:
+            (BENCH / name).write_text(written, encoding="utf-8")
+        elif written != page:
+            sys.exit(f"{BENCH / name}: its tables are not those of the files beside it: run scripts/bench_page.py")
 
 
 if __name__ == "__main__":
