@@ -218,17 +218,17 @@ def cages():
             "rms distance from the finest [mm]", "largest displacement [mm]", "peak force [N]"]
     words = prose("""The paper shows both cages and gives no count of tets. The skin has the same vertices
                 whatever the cage. Embedding error: distance of a skin vertex from Σ wᵢ xᵢ, the
-                largest over all frames; a lowest weight below 0 is that of a skin vertex outside of the body, which
-                its nearest tet carries.""")
+                largest over all frames; a lowest weight of 0 or more means that every skin vertex
+                lies in its tet.""")
     words += pictures(("cage_dinosaur.png", "cages of the dinosaur"),
                       ("cage_figure.png", "cages of the figure"))
     if not rows:
         return words + "*Not made yet: cages.csv*\n"
     return (words + table(head, cells) + pictures(("cages.png", "against the cage's tets"))
-            + prose(f"""**Not converged**: {still_changes(rows)}. Coarse four-node tets are too
-                stiff, and few of them lie under the tool. Forces elsewhere on this page are
-                those of the cells that their scenario asks for; the finest body here is no reference but the best
-                there is."""))
+            + prose(f"""**Not converged**: {still_changes(rows)}. A cage's boundary lies off the skin and
+                comes nearer as it is refined, a coarse p1 tet is too stiff, and the penalty counts
+                pairs. Forces on this page are those of their cage of 5000 tets, and the finest cage
+                here is no reference but the best there is."""))
 
 
 def rates():
