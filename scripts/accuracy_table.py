@@ -25,12 +25,12 @@ PRESSED = ["/contact/law=pressure"]
 FIRM = ["/material/plasticity/enabled=false", "/material/clay_kernel/form=off"]
 
 
-def press(shape, tool, path, contact=None, mode="push", **material):
+def press(shape, tool, path, friction=0.0, **material):
     """A scene of its own: `path` is t, x, y, z [s, m] of the tool."""
     firm = {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3, "plasticity": {"enabled": False}, "clay_kernel": {"form": "off"}}
     floor = {"kind": "half_space", "normal": [0, 0, 1], "offset_m": 0.002}
     return {"about": "A press.", "body": {"shape": {"skin_triangles": 0, **shape}, "fixed": [floor]}, "material": {**firm, **material},
-            "tool": {"shape": tool, "mode": mode}, "contact": {"law": "pressure", **(contact or {})}, "dynamics": {"rayleigh_stiffness_s": 0.001},
+            "tool": {"shape": tool}, "contact": {"law": "pressure", "friction": friction}, "dynamics": {"rayleigh_stiffness_s": 0.001},
             "trace": {"file": "path.csv"}, "path": path}
 
 
@@ -39,6 +39,7 @@ def go_down(top, depth, x=0.0012, y=0.0007, seconds=0.15):
 
 
 BALL = {"kind": "sphere", "radius_m": 0.006}
+LED = [(0, -0.004, 0.001, 0.0463), (0.1, -0.004, 0.001, 0.0452), (0.3, 0.004, 0.001, 0.0452)]  # over a block of 40 mm
 SCENES = {
     "light press": ("study_light_press.json", PRESSED),
     "slide": ("study_slide.json", PRESSED),
@@ -54,16 +55,13 @@ SCENES = {
     # None of these was looked at while the choice was made.
     "demonstration, dry": ("demo_dino_dry.json", ["/trace/duration_s=0.9"]),
     "demonstration, soft": ("study_soft_dino.json", ["/trace/duration_s=0.9"]),
-    "figure": ("demo_figure_push_pull.json", [*PRESSED, "/trace/duration_s=1.2"]),
+    "figure": ("demo_figure_push_pull.json", ["/trace/duration_s=1.2"]),
     "stylus on a block": press({"kind": "box", "size_m": 0.03}, {"kind": "stylus", "radius_m": 0.004, "tip_radius_m": 0.0015, "length_m": 0.06},
                                go_down(0.0315, 0.0006)),
     "capsule across a cylinder": press({"kind": "cylinder", "size_m": 0.04}, {"kind": "capsule", "radius_m": 0.005, "length_m": 0.02},
-                                       go_down(0.055, 0.0008), contact={"friction": 0.3}),
-    "ball led over a block": press({"kind": "box", "size_m": 0.04}, BALL,
-                                   [(0, -0.004, 0.001, 0.0463), (0.1, -0.004, 0.001, 0.0452), (0.3, 0.004, 0.001, 0.0452)]),
-    "the same with friction": press({"kind": "box", "size_m": 0.04}, BALL,
-                                    [(0, -0.004, 0.001, 0.0463), (0.1, -0.004, 0.001, 0.0452), (0.3, 0.004, 0.001, 0.0452)],
-                                    contact={"friction": 0.4}),
+                                       go_down(0.055, 0.0008), friction=0.3),
+    "ball led over a block": press({"kind": "box", "size_m": 0.04}, BALL, LED),
+    "the same with friction": press({"kind": "box", "size_m": 0.04}, BALL, LED, friction=0.4),
     "edge of a block": press({"kind": "box", "size_m": 0.03}, BALL, go_down(0.036, 0.001, x=0.0148, y=0.0007)),
     "stiff clay, deep": press({"kind": "box", "size_m": 0.03}, {"kind": "sphere", "radius_m": 0.004}, go_down(0.034, 0.002, seconds=0.4),
                               youngs_modulus_Pa=5e6, plasticity={"strength_Pa": 25e3}, clay_kernel={"form": "off"}),

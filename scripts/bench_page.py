@@ -38,7 +38,7 @@ def list_costs():
     for (scene, element, _, ticks, fidelity), rows in runs.items():
         one, *two = rows
         if fidelity == "reference":
-            yield [scene, f"*reference: {one['wanted_tets']} {elements[element]} tets, 0.5 ms; twice the step, half the tets:*",
+            yield [scene, f"*reference: {one['wanted_tets']} {elements[element]}, 0.5 ms*",
                    *(f"*{value} %*" for value in errors(one)), "", ""]
             continue
         words = [f"{one['tets']} {elements[element]}", *([f"{ticks} ms"] if ticks != "1" else []), *(["`auto`"] if fidelity == "auto" else [])]

@@ -6,9 +6,9 @@ Usage: cost_table.py [-o FILE.csv] [--scenes NAME ...] [--repeats N]      writes
 
 Runs go tick by tick through the package `argil` of build/python. Times are of the ticks in which the tool touches: of the repeats, which
 alternate with the other settings, the least median and the least 99th percentile. `error_percent` is the root mean square of the error of
-the force at the hand over that of the force, while either touches; `error_at_peak_percent` is that of the largest force. The row
-whose fidelity is `reference` has the distance of the reference to one of half as many cells and steps as long as a tick. References stay in build/cost/, under
-the hash of their resolved scenario and of the program that made them.
+the force at the hand over that of the force, while either touches; `error_at_peak_percent` is that of the largest force. A scene's first
+row, of fidelity `reference`, has the distance of the reference from a run of half as many cells in steps of a tick. References stay in
+build/cost/, under the hash of their resolved scenario and of the program that made them.
 """
 import argparse
 import hashlib

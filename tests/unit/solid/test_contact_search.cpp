@@ -83,6 +83,12 @@ Pressing find_pressing(const Scene& scene, const std::vector<PointStiffness>& li
   return pressing;
 }
 
+/// With the forces that the contacts press with at the start; near ones give none.
+void load(Scene& scene, const std::vector<PointStiffness>& list) {
+  for (const PointStiffness& c : list)
+    if (!c.is_near) spread(c, c.force, scene.load);
+}
+
 class EveryIteration : public testing::TestWithParam<Iteration> {};
 
 /// And nothing else acts on the body.
@@ -97,8 +103,7 @@ TEST_P(EveryIteration, PressesWhereItIsPressedOn) {
       const std::vector<PointStiffness> list = make_contacts(scene, rng, stiffness, 5e-5);
       for (int n = 0; n < scene.num_nodes(); ++n) scene.load.col(n) = Vec3(0, 0, rng.uniform(0.0, 0.05));
       const Points others = scene.load;
-      for (const PointStiffness& c : list)
-        if (!c.is_near) spread(c, c.force, scene.load);
+      load(scene, list);
       Points force = scene.load;
       Points wanted = others;
       const Points before = scene.state.x;
@@ -131,8 +136,7 @@ TEST(ContactSearch, LeavesAsMuchAsTheSolve) {
       if (is_loose) params.solver.tolerance = 1e-3;
       Scene scene = make_block(params);
       const std::vector<PointStiffness> list = make_contacts(scene, rng, 1e2, 5e-5);
-      for (const PointStiffness& c : list)
-        if (!c.is_near) spread(c, c.force, scene.load);
+      load(scene, list);
       Points force = scene.load;
       const Points before = scene.state.x;
       ASSERT_TRUE(scene.step(kStep, list).is_ok()) << round;
@@ -176,8 +180,7 @@ TEST(ContactSearch, ACorrectedSolutionPressesWhereItIsPressedOn) {
     Rng rng(static_cast<std::uint64_t>(round));
     Scene scene = make_block(params);
     const std::vector<PointStiffness> list = make_contacts(scene, rng, 1e3, 5e-5);
-    for (const PointStiffness& c : list)
-      if (!c.is_near) spread(c, c.force, scene.load);
+    load(scene, list);
     Points force = scene.load;
     const Points before = scene.state.x;
     StepLoads loads{scene.load, list};
