@@ -59,7 +59,7 @@ SCENES = {
     "stylus on a block": press({"kind": "box", "size_m": 0.03}, {"kind": "stylus", "radius_m": 0.004, "tip_radius_m": 0.0015, "length_m": 0.06},
                                go_down(0.0315, 0.0006)),
     "capsule across a cylinder": press({"kind": "cylinder", "size_m": 0.04}, {"kind": "capsule", "radius_m": 0.005, "length_m": 0.02},
-                                       go_down(0.055, 0.0008), friction=0.3),
+                                       go_down(0.045, 0.0008), friction=0.3),
     "ball led over a block": press({"kind": "box", "size_m": 0.04}, BALL, LED),
     "the same with friction": press({"kind": "box", "size_m": 0.04}, BALL, LED, friction=0.4),
     "edge of a block": press({"kind": "box", "size_m": 0.03}, BALL, go_down(0.036, 0.001, x=0.0148, y=0.0007)),
