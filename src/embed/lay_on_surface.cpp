@@ -23,6 +23,15 @@ constexpr double kLeastDegrees = 15.0;  // between faces, and from a straight an
 constexpr double kClose = 0.02;         // of an edge: nearer to the surface a vertex stays
 constexpr int kHalvings = 3;            // of a way that tets do not bear
 
+/// Of its mean ratio and angles over the least wanted.
+double find_quality(const Points& vertices, const Eigen::Vector4i& t) {
+  const std::array<Vec3, 4> x = {vertices.col(t(0)), vertices.col(t(1)), vertices.col(t(2)),
+                                 vertices.col(t(3))};
+  const mesh::DihedralAngles angles = mesh::compute_dihedral_angles(x);
+  return std::min({mesh::compute_shape(x) / kLeastShape, angles.smallest_degrees / kLeastDegrees,
+                   (180.0 - angles.largest_degrees) / kLeastDegrees});
+}
+
 class Mover {
  public:
   Mover(const mesh::Topology& topology, mesh::TetMesh& body) : m_topology(topology), m_body(body) {}
@@ -69,13 +78,7 @@ class Mover {
   /// Of mean ratios and angles over the least wanted.
   double find_worst(int v) const {
     double worst = std::numeric_limits<double>::infinity();
-    each_tet(v, [&](const auto& t) {
-      const std::array<Vec3, 4> x = {m_body.vertices.col(t(0)), m_body.vertices.col(t(1)),
-                                     m_body.vertices.col(t(2)), m_body.vertices.col(t(3))};
-      const mesh::DihedralAngles angles = mesh::compute_dihedral_angles(x);
-      worst = std::min({worst, mesh::compute_shape(x) / kLeastShape, angles.smallest_degrees / kLeastDegrees,
-                        (180.0 - angles.largest_degrees) / kLeastDegrees});
-    });
+    each_tet(v, [&](const auto& t) { worst = std::min(worst, find_quality(m_body.vertices, t)); });
     return worst;
   }
 
@@ -150,6 +153,12 @@ class Gaps {
 
 namespace {
 
+std::vector<char> find_outside(const mesh::Topology& topology, const mesh::TetMesh& body) {
+  std::vector<char> is_outside(static_cast<std::size_t>(body.num_vertices()), 0);
+  for (const int v : topology.boundary.reshaped()) is_outside[static_cast<std::size_t>(v)] = 1;
+  return is_outside;
+}
+
 /// A vertex on its way to a place.
 struct Way {
   double distance;  // over the edges there
@@ -210,8 +219,7 @@ std::vector<char> lay_on_edges(const mesh::TriangleMesh& surface, const std::vec
 void lay_on_surface(const mesh::TriangleMesh& surface, const mesh::Topology& topology, bool bends_edges,
                     mesh::TetMesh& body) {
   const TriangleTree tree(surface);
-  std::vector<char> is_outside(static_cast<std::size_t>(body.num_vertices()), 0);
-  for (const int v : topology.boundary.reshaped()) is_outside[static_cast<std::size_t>(v)] = 1;
+  const std::vector<char> is_outside = find_outside(topology, body);
   Mover mover(topology, body);
   const auto sweep = [&] {
     for (int v = 0; v < body.num_vertices(); ++v) {
@@ -239,6 +247,67 @@ void lay_on_surface(const mesh::TriangleMesh& surface, const mesh::Topology& top
     for (int v = 0; v < body.num_vertices(); ++v)
       if (is_outside[static_cast<std::size_t>(v)] != 0 && is_sharp[static_cast<std::size_t>(v)] == 0)
         mover.move(v, body.vertices.col(v) + gaps.find_way(v), false);
+  }
+}
+
+namespace {
+
+/// Ways inside become the means of those around, the boundary's stay.
+void spread_ways(const mesh::Topology& topology, const mesh::TetMesh& body,
+                 const std::vector<char>& is_outside, Points& ways) {
+  constexpr int kTimes = 20;
+  for (int i = 0; i < kTimes; ++i)
+    for (int v = 0; v < body.num_vertices(); ++v) {
+      const auto at = static_cast<std::size_t>(v);
+      if (is_outside[at] != 0) continue;
+      Vec3 sum = Vec3::Zero();
+      for (int c = topology.vertex_begin[at]; c < topology.vertex_begin[at + 1]; ++c)
+        for (const int other : body.tets.col(topology.vertex_corners[static_cast<std::size_t>(c)] / 4))
+          if (other != v) sum += ways.col(other);
+      ways.col(v) = sum / std::max(1, 3 * (topology.vertex_begin[at + 1] - topology.vertex_begin[at]));
+    }
+}
+
+/// All go their ways at once; those of tets that would not bear it go half of theirs, and in the end none.
+void move_together(Points ways, mesh::TetMesh& body) {
+  const Points before = body.vertices;
+  Field least(body.num_tets());
+  for (int t = 0; t < body.num_tets(); ++t) least(t) = std::min(1.0, find_quality(before, body.tets.col(t)));
+  constexpr int kTimes = 12;
+  for (int i = 0; i <= kTimes; ++i) {
+    body.vertices = before + ways;
+    const Points tried = ways;
+    bool is_borne = true;
+    for (int t = 0; t < body.num_tets(); ++t) {
+      if (!(find_quality(body.vertices, body.tets.col(t)) < least(t))) continue;
+      is_borne = false;
+      for (const int v : body.tets.col(t)) ways.col(v) = (2 * i < kTimes ? 0.5 : 0.0) * tried.col(v);
+    }
+    if (is_borne) return;
+  }
+  body.vertices = before;
+}
+
+}  // namespace
+
+void draw_to_surface(const mesh::TriangleMesh& surface, const mesh::Topology& topology, mesh::TetMesh& body) {
+  constexpr int kTimes = 6;
+  const TriangleTree tree(surface);
+  const std::vector<char> is_outside = find_outside(topology, body);
+  const Mover mover(topology, body);
+  for (int i = 0; i < kTimes; ++i) {
+    Points ways = Points::Zero(3, body.num_vertices());
+    for (int v = 0; v < body.num_vertices(); ++v) {
+      if (is_outside[static_cast<std::size_t>(v)] == 0) continue;
+      double edge = 0.0;
+      mover.find_middle(v, edge);
+      const TriangleTree::Nearest nearest =
+          tree.find_nearest(body.vertices.col(v), std::numeric_limits<double>::infinity());
+      if (nearest.distance > kClose * edge) ways.col(v) = nearest.point - body.vertices.col(v);
+    }
+    if (ways.isZero(0.0)) return;
+    spread_ways(topology, body, is_outside, ways);
+    move_together(std::move(ways), body);
   }
 }
 

@@ -13,6 +13,10 @@ namespace argil::embed {
 void lay_on_surface(const mesh::TriangleMesh& surface, const mesh::Topology& topology, bool bends_edges,
                     mesh::TetMesh& body);
 
+/// Before that, where the boundary is off by most of an edge: moves its vertices to the nearest place of the
+/// surface, and with them those inside, the less the farther they are, as far as tets keep their shape.
+void draw_to_surface(const mesh::TriangleMesh& surface, const mesh::Topology& topology, mesh::TetMesh& body);
+
 /// Moves the boundary out or in, by one share of the edges there, until it encloses as much as `wanted` [m³],
 /// as far as tets keep their shape. Where that is more than a tenth of an edge, nothing moves.
 void match_volume(double wanted, const mesh::Topology& topology, mesh::TetMesh& body);

@@ -13,8 +13,11 @@ namespace {
 
 constexpr Tick kStepsBetweenLooks = 4;
 constexpr double kShortestEpoch = 0.012;  // [s]
-constexpr double kSpoilt = 0.25;  // mesh::compute_shape of the worst tet, below which cells are renewed
-constexpr double kWait = 0.25;    // [s] after a shape that gave no cells
+// mesh::compute_shape of the worst tet, below which cells are renewed. A lattice that a body began with is
+// flattened evenly, and bears more of it than cells that were laid on a shape.
+constexpr double kSpoiltFirst = 0.18;
+constexpr double kSpoilt = 0.22;
+constexpr double kWait = 0.25;  // [s] after a shape that gave no cells
 
 }  // namespace
 
@@ -32,7 +35,7 @@ bool Remesher::is_due(const sim::Simulation& simulation) const {
   const sim::Body& body = simulation.body();
   if (static_cast<double>(tick - body.epoch_tick) * rates.haptic_period < kShortestEpoch) return false;
   if (simulation.body_state().is_at_rest && simulation.body_state().plastic_dissipation == 0.0) return false;
-  return simulation.body_side().find_worst_shape() < kSpoilt;
+  return simulation.body_side().find_worst_shape() < (body.epoch == 0 ? kSpoiltFirst : kSpoilt);
 }
 
 bool Remesher::renew_if_spoilt(sim::Simulation& simulation) {

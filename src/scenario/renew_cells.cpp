@@ -140,8 +140,11 @@ Off find_off(const Points& x, const Triangles& faces, const mesh::TriangleMesh& 
   Off off;
   for (Eigen::Index v = 0; v < x.cols(); ++v)
     if (edge(v) > 0.0) off.add(surface.find_nearest(x.col(v), kAnywhere).distance, edge(v));
-  for (const auto& p : touched.vertices.colwise()) {
-    const embed::TriangleTree::Nearest found = boundary.find_nearest(p, kAnywhere);
+  std::vector<char> is_used(static_cast<std::size_t>(touched.num_vertices()), 0);  // others may lie inside
+  for (const int v : touched.triangles.reshaped()) is_used[static_cast<std::size_t>(v)] = 1;
+  for (int v = 0; v < touched.num_vertices(); ++v) {
+    if (is_used[static_cast<std::size_t>(v)] == 0) continue;
+    const embed::TriangleTree::Nearest found = boundary.find_nearest(touched.vertices.col(v), kAnywhere);
     off.add(found.distance, edge(faces(0, found.triangle)));
   }
   return off;
@@ -214,7 +217,10 @@ sim::Body make_cells(const Scenario& s, const Scenario& of_surface, const Presen
   body.mesh.numbers.clear();
   body.topology = mesh::make_topology(body.mesh);
   // Once more: the vertices that grading has added let the boundary come nearer.
-  if (!is_torn && is_graded) embed::lay_on_surface(body.touched, body.topology, false, body.mesh);
+  if (!is_torn && is_graded) {
+    embed::draw_to_surface(body.touched, body.topology, body.mesh);
+    embed::lay_on_surface(body.touched, body.topology, false, body.mesh);
+  }
   const bool has_own_boundary = skin.size() == 0 && s.params.solid.element != solid::ElementKind::p2;
   const double wanted = has_own_boundary ? embed::compute_skin_volume({now.x, now.body.topology.boundary})
                                          : embed::compute_skin_volume(body.touched);

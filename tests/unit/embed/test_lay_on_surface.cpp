@@ -52,6 +52,39 @@ TEST(LayOnSurface, ABallThatIsTooLargeComesToLieOnTheSphere) {
               0.003 * std::numbers::pi / 6.0 * 1e-3);
 }
 
+/// A block whose top is pressed in where a ball of radius 12 mm stands 6 mm deep.
+mesh::TriangleMesh press_ball_into(mesh::TriangleMesh block, double top) {
+  const Vec3 middle(0, 0, top + 0.006);
+  for (auto x : block.vertices.colwise())
+    if ((x - middle).norm() < 0.012) x = middle + 0.012 * (x - middle).normalized();
+  return block;
+}
+
+TEST(DrawToSurface, AFlatTopFollowsADentThatIsDeeperThanItsCells) {
+  const Vec3 size(0.06, 0.06, 0.03);
+  const mesh::TriangleMesh flat = test::make_box_skin(60, Vec3(0, 0, 0.5 * size.z()) - 0.5 * size, size);
+  const mesh::TriangleMesh dented = press_ball_into(flat, size.z());
+  const mesh::TetMesh whole = make_cage(flat, {20000, Fit::surface}, "block").mesh;
+  const mesh::Topology topology = mesh::make_topology(whole);
+  ASSERT_GT(find_farthest(whole, topology, dented), 4e-3);
+  mesh::TetMesh laid = whole, drawn = whole;
+  lay_on_surface(dented, topology, false, laid);
+  draw_to_surface(dented, topology, drawn);
+  EXPECT_GE(find_worst(drawn), std::min(find_worst(whole), 0.25));
+  lay_on_surface(dented, topology, false, drawn);
+  constexpr double kCell = 3.6e-3;  // the edge of a regular tet of the mean volume
+  EXPECT_LT(find_farthest(drawn, topology, dented), kCell / 3.0);
+  EXPECT_LT(2.0 * find_farthest(drawn, topology, dented), find_farthest(laid, topology, dented));
+}
+
+TEST(DrawToSurface, ABodyThatLiesOnItStaysAsItIs) {
+  const mesh::TriangleMesh block = test::make_box_skin(12, Vec3(0, 0, 0), Vec3(0.1, 0.06, 0.04));
+  mesh::TetMesh body = make_cage(block, {3000, Fit::surface}, "block").mesh;
+  const Points before = body.vertices;
+  draw_to_surface(block, mesh::make_topology(body), body);
+  EXPECT_LT((body.vertices - before).cwiseAbs().maxCoeff(), 1e-4);
+}
+
 TEST(LayOnSurface, APlateThinnerThanACellIsNoThickerThanItIs) {
   const Vec3 size(0.06, 0.06, 0.003);
   const mesh::TriangleMesh plate = test::make_box_skin(20, Vec3(0, 0, 0), size);

@@ -209,6 +209,40 @@ class NewCellsOfTenNodes(NewCells):
     JUMP = 0.08
 
 
+class WithNothingSaidOfCells(unittest.TestCase):
+    """A ball is pressed into a block by half its radius, with a scenario that says what the clay is and nothing of cells."""
+
+    @staticmethod
+    def write(folder, case):
+        radius, depth = case["ball_radius_m"], case["depth_m"][-1]
+        edge = 25 * radius
+        t = np.arange(0, 1.001, 0.001)
+        height = edge + radius * 31 / 30 - (depth + radius / 30) * t
+        np.savetxt(folder / "press.csv", np.c_[t, np.full_like(t, 0.02 * radius), np.full_like(t, 0.03 * radius), height],
+                   delimiter=",", header="t,x,y,z", comments="")
+        (folder / "press.json").write_text(json.dumps({
+            "about": "a press", "body": {"shape": {"kind": "box", "size_m": edge, "skin_triangles": 0},
+                                         "fixed": [{"kind": "plane", "normal": [0, 0, 1], "offset_m": 0}]},
+            "material": {"youngs_modulus_Pa": case["youngs_modulus_Pa"], "poissons_ratio": case["poissons_ratio"],
+                         "plasticity": {"strength_Pa": case["c_u_Pa"]}, "clay_kernel": {"form": "off"}},
+            "tool": {"shape": {"kind": "sphere", "radius_m": radius}}, "trace": {"file": "press.csv"}}))
+        return folder / "press.json", edge + radius
+
+    def test_the_force_is_that_of_another_program(self):
+        file = Path(__file__).resolve().parents[4] / "shared/cases/clay.json"
+        if not file.exists():
+            self.skipTest(f"there is no {file.name} of axisymmetric solutions")
+        for case in json.loads(file.read_text())["cases"]:
+            with self.subTest(case["name"]), tempfile.TemporaryDirectory() as name:
+                scene, top = self.write(Path(name), case)
+                run(scene, Path(name) / "press.h5", "-q")
+                with h5py.File(Path(name) / "press.h5") as result:
+                    depth, force = top - result["haptic/tool_position"][:, 2], result["haptic/force"][:, 2]
+                found = np.interp(case["depth_m"][1:], depth, force)
+                off = np.abs(found - case["force_N"][1:]) / case["force_N"][-1]
+                self.assertLess(off.max(), 0.03, off)
+
+
 class UnderATip(unittest.TestCase):
     """A tip of 3 mm ploughs through the flank of a dinosaur of 200 mm, whose toes no cells of some millimetres follow."""
 
