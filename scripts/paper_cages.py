@@ -11,7 +11,7 @@ from pathlib import Path
 import argil_plot as ap
 from argil_plot import np, plt
 
-NEAREST = 48  # tets around a skin vertex, by their centroids
+NEAREST = 128  # tets around a skin vertex, by their centroids
 ROUNDING = 1e-13  # of a place [m]
 
 

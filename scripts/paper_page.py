@@ -210,25 +210,24 @@ def still_changes(rows):
 
 def cages():
     rows = read_rows("cages.csv")
-    cells = [[row["body"], row["tets"], row["skin_vertices"], f"{float(row['lowest_weight']):.1e}",
+    cells = [[row["body"], row["tets"], row["skin_vertices"], f"{float(row['lowest_weight']):.2f}",
               f"{float(row['embedding_error_m']):.1e}", f"{1e3 * float(row['skin_difference_m']):.3f}",
               f"{1e3 * float(row['largest_displacement_m']):.2f}", f"{float(row['peak_N']):.2f}"]
              for row in rows]
     head = ["body", "tets", "skin vertices", "lowest weight [–]", "embedding error [m]",
             "rms distance from the finest [mm]", "largest displacement [mm]", "peak force [N]"]
-    words = prose("""The paper shows both cages and gives no count of tets. The skin has the same vertices
-                whatever the cage. Embedding error: distance of a skin vertex from Σ wᵢ xᵢ, the
-                largest over all frames; a lowest weight of 0 or more means that every skin vertex
-                lies in its tet.""")
+    words = prose("""The paper shows both cages and gives no count of tets. Here the cells follow the skin, which has
+                the same vertices whatever the cells. A vertex just outside is carried by the tet below it, with a
+                weight below 0. Embedding error: distance of a skin vertex from Σ wᵢ xᵢ of one tet with constant weights,
+                the largest over all frames: rounding.""")
     words += pictures(("cage_dinosaur.png", "cages of the dinosaur"),
                       ("cage_figure.png", "cages of the figure"))
     if not rows:
         return words + "*Not made yet: cages.csv*\n"
     return (words + table(head, cells) + pictures(("cages.png", "against the cage's tets"))
-            + prose(f"""**Not converged**: {still_changes(rows)}. A cage's boundary lies off the skin and
-                comes nearer as it is refined, a coarse p1 tet is too stiff, and the penalty counts
-                pairs. Forces on this page are those of their cage of 5000 tets, and the finest cage
-                here is no reference but the best there is."""))
+            + prose(f"""**Not converged**: {still_changes(rows)}. Cells at the tool are as small as the
+                number of tets lets them be, and a coarse four-node tet is too stiff. Bodies on this page have
+                5000 or 10 000 tets; the finest here is no reference but the best there is."""))
 
 
 def rates():
