@@ -16,7 +16,7 @@ constexpr double kShortestEpoch = 0.012;  // [s]
 // mesh::compute_shape of the worst tet, below which cells are renewed. A lattice that a body began with is
 // flattened evenly, and bears more of it than cells that were laid on a shape.
 constexpr double kSpoiltFirst = 0.15;
-constexpr double kSpoilt = 0.22;
+constexpr double kSpoilt = 0.2;
 constexpr double kWait = 0.25;  // [s] after a shape that gave no cells
 
 }  // namespace

@@ -248,9 +248,9 @@ class UnderATip(unittest.TestCase):
 
     @staticmethod
     def write(folder):
-        t = np.arange(0, 0.4, 0.001)
+        t = np.arange(0, 0.7, 0.001)
         y = np.interp(t, [0, 0.2], [-0.034, -0.0305])
-        x = np.interp(t, [0.2, 0.4], [-0.006, -0.001])
+        x = np.interp(t, [0.2, 0.7], [-0.006, 0.0065])
         np.savetxt(folder / "plough.csv", np.c_[t, x, y, np.full_like(t, 0.062)], delimiter=",", header="t,x,y,z", comments="")
         (folder / "plough.json").write_text(json.dumps({
             "about": "a tip that ploughs",
