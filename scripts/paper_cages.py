@@ -10,6 +10,7 @@ from pathlib import Path
 
 import argil_plot as ap
 from argil_plot import np, plt
+from render_shots import list_weights
 
 NEAREST = 128  # tets around a skin vertex, by their centroids
 ROUNDING = 1e-13  # of a place [m]
@@ -22,14 +23,8 @@ def find_carriers(frames, tets):
     wrong tet strains otherwise than the skin, and errs. Where nothing strains, and several carry the vertex to
     rounding, the one with the highest least weight.
     """
-    from scipy.spatial import cKDTree
-
     first = frames[0]["skin_position"][:]
-    corners = frames[0]["position"][:][tets]
-    inverse = np.linalg.inv((corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1))
-    nearest = cKDTree(corners.mean(axis=1)).query(first, min(NEAREST, len(tets)))[1].reshape(len(first), -1)
-    last = np.einsum("vnij,vnj->vni", inverse[nearest], first[:, None] - corners[nearest, 0])
-    weights = np.concatenate([1.0 - last.sum(axis=2, keepdims=True), last], axis=2)
+    nearest, weights = list_weights(frames[0]["position"][:], tets, first, NEAREST)
     error = np.zeros(nearest.shape)
     for frame in frames:
         carried = np.einsum("vni,vnij->vnj", weights, frame["position"][:][tets[nearest]])

@@ -90,16 +90,22 @@ def rest_points(result, skinned):
     return np.einsum("vi,vij->vj", weights, rest[tets[tet]])
 
 
-def find_weights(points, tets, skin):
-    """Containing tet of each skin vertex and its barycentric weights there."""
+def list_weights(points, tets, skin, count):
+    """The `count` tets about each skin vertex, by their centroids, and its barycentric weights in each: [vertices, count] and
+    [vertices, count, 4]."""
     from scipy.spatial import cKDTree  # here, for few pictures need it
 
     corners = points[tets]
     inverse = np.linalg.inv((corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1))
-    _, nearest = cKDTree(corners.mean(axis=1)).query(skin, min(NEAREST, len(tets)))
+    _, nearest = cKDTree(corners.mean(axis=1)).query(skin, min(count, len(tets)))
     nearest = nearest.reshape(len(skin), -1)
     last = np.einsum("vnij,vnj->vni", inverse[nearest], skin[:, None] - corners[nearest, 0])
-    weights = np.concatenate([1.0 - last.sum(axis=2, keepdims=True), last], axis=2)
+    return nearest, np.concatenate([1.0 - last.sum(axis=2, keepdims=True), last], axis=2)
+
+
+def find_weights(points, tets, skin):
+    """Containing tet of each skin vertex and its barycentric weights there."""
+    nearest, weights = list_weights(points, tets, skin, NEAREST)
     best = weights.min(axis=2).argmax(axis=1)
     rows = np.arange(len(skin))
     return nearest[rows, best], weights[rows, best]

@@ -140,10 +140,9 @@ Off find_off(const Points& x, const Triangles& faces, const mesh::TriangleMesh& 
   Off off;
   for (Eigen::Index v = 0; v < x.cols(); ++v)
     if (edge(v) > 0.0) off.add(surface.find_nearest(x.col(v), kAnywhere).distance, edge(v));
-  std::vector<char> is_used(static_cast<std::size_t>(touched.num_vertices()), 0);  // others may lie inside
-  for (const int v : touched.triangles.reshaped()) is_used[static_cast<std::size_t>(v)] = 1;
+  const Field of_touched = find_longest_edges(touched.triangles, touched.vertices);
   for (int v = 0; v < touched.num_vertices(); ++v) {
-    if (is_used[static_cast<std::size_t>(v)] == 0) continue;
+    if (!(of_touched(v) > 0.0)) continue;  // inside the body
     const embed::TriangleTree::Nearest found = boundary.find_nearest(touched.vertices.col(v), kAnywhere);
     off.add(found.distance, edge(faces(0, found.triangle)));
   }
