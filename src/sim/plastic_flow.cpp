@@ -79,21 +79,22 @@ double PlasticFlow::apply_to_points(std::ptrdiff_t begin, std::ptrdiff_t end, Te
   return dissipated;
 }
 
-/// Of a law that lets them flow itself. Shape alone is released: μ V of the squares.
+/// Of a law that lets them flow itself. Shape alone is dissipated: μ V of the squares.
 double PlasticFlow::flow_by_law(std::ptrdiff_t begin, std::ptrdiff_t end, TensorField& plastic_strain,
                                 bool& is_flowing) const {
-  double released[kLanes];
-  unsigned flowed = find_law(m_params.solid.model)
-                        .flow({m_solid.kinematics.strain().data(), plastic_strain.data(),
-                               m_solid.materials.yield().data(), m_rule, m_solid.elastic.arrays()},
-                              begin, end, released);
+  double squares[kLanes];
+  unsigned flowed =
+      find_law(m_params.solid.model)
+          .flow({m_solid.kinematics.strain().data(), plastic_strain.data(), m_solid.materials.yield().data(),
+                 m_rule, m_solid.elastic.arrays(), m_solid.model.params.flows_in_solve},
+                begin, end, squares);
   is_flowing = is_flowing || flowed != 0;
   double dissipated = 0.0;
   for (; flowed != 0; flowed &= flowed - 1) {
     const int lane = std::countr_zero(flowed);
     const int point = static_cast<int>(begin) + lane;
     dissipated += m_solid.materials.of(m_solid.model.elements.tet_of_point(point)).mu *
-                  m_solid.materials.weight()(point) * released[lane];
+                  m_solid.materials.weight()(point) * squares[lane];
   }
   return dissipated;
 }

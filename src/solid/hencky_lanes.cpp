@@ -83,7 +83,7 @@ ARGIL_EVERY_PROCESSOR double compute_hencky_energy(const ForceArrays& tets, std:
 }
 
 ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptrdiff_t begin,
-                                              std::ptrdiff_t end, double* released) {
+                                              std::ptrdiff_t end, double* dissipated) {
   // Stretches of F_p are e^±8 then, whose squares are as far apart as numbers have digits. Clay is elastic
   // beyond.
   constexpr double kMostPlastic = 8.0;
@@ -141,10 +141,10 @@ ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptr
   for (int k = 0; k < 6; ++k) plastic_squares += plastic[k] * plastic[k];
   const Lanes is_written = plastic_squares <= kMostPlastic * kMostPlastic ? one : zero;
   share = is_written != 0.0 ? share : zero;
-  const Lanes loss = squares - (1.0 - share) * (1.0 - share) * squares;
+  const Lanes loss = 2.0 * share * (1.0 - (points.is_balanced_after ? 1.0 : 0.5) * share) * squares;
   unsigned flowed = 0;
   for (int lane = 0; lane < static_cast<int>(end - begin); ++lane) {
-    released[lane] = share[lane] > 0.0 ? loss[lane] : 0.0;
+    dissipated[lane] = share[lane] > 0.0 ? loss[lane] : 0.0;
     if (!(share[lane] > 0.0)) continue;
     flowed |= 1U << lane;
     for (int k = 0; k < 6; ++k) points.plastic_strain[6 * (begin + lane) + k] = plastic[k][lane];

@@ -20,11 +20,16 @@ struct FlowArrays {
   const double* yield = nullptr;     ///< ‖dev ε‖ at which a point flows, 1 a point
   material::FlowRule rule = {};      ///< how much of the deviator flows
   ElasticArrays elastic = {};        ///< before the flow
+  bool is_balanced_after = true;     ///< the stress after the flow is what balanced the step's forces
 };
 
 /// Radial return of points begin … end−1, at most kLanes of them, at held F; bit p − begin is set where p
-/// flowed. released: ‖dev ε‖² that each loses. No point flows to ‖E_p‖ > 8.
-unsigned flow_by_hencky(const FlowArrays& points, std::ptrdiff_t begin, std::ptrdiff_t end, double* released);
+/// flowed. dissipated: what each loses, over μ and its volume: 2 dev ε_e : Δε_p of the stress that balanced
+/// the step's forces, so that the work put in is stored or lost. That is the stress after the flow (backward
+/// Euler's σ : Δε_p); where forces were balanced at held plastic strain, it is what flow releases, ‖dev ε_e‖²
+/// before less after. No point flows to ‖E_p‖ > 8.
+unsigned flow_by_hencky(const FlowArrays& points, std::ptrdiff_t begin, std::ptrdiff_t end,
+                        double* dissipated);
 
 /// Share of the yield from which a point's stiffness is that of one that flows.
 inline constexpr double kAtYield = 1.0 - 1e-6;

@@ -67,8 +67,8 @@ struct ElasticLaw {
   double (*volume_change)(const PointMotion& motion, const Vec6& plastic_strain);
   Mat3 (*volume_gradient)(const PointMotion& motion, const Vec6& plastic_strain);
   /// Of a logarithmic split: flow of points begin … end−1, at most kLanes of them; bit p − begin is set where
-  /// p flowed. released: ‖dev ε_e‖² that each loses. Else null.
-  unsigned (*flow)(const FlowArrays& points, std::ptrdiff_t begin, std::ptrdiff_t end, double* released);
+  /// p flowed. dissipated: over μ and the volume of each. Else null.
+  unsigned (*flow)(const FlowArrays& points, std::ptrdiff_t begin, std::ptrdiff_t end, double* dissipated);
   /// ∂P/∂F without its negative modes, where the law knows a way; else null.
   Function<Mat9> positive_tangent;
 

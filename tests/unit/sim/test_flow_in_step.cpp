@@ -74,6 +74,32 @@ TEST(FlowInAStep, IsFeltInStepsOfAMillisecondAsInMuchShorterOnes) {
   EXPECT_LT(largest, 0.04 * peak);
 }
 
+TEST(FlowInAStep, WhatTheContactGaveIsStoredOrLost) {
+  // Backward Euler loses energy besides, to first order in the step; it makes none.
+  double of_long_steps = 0.0;
+  for (const int ticks_per_ms : {1, 4}) {
+    const Params p = make_params(ticks_per_ms);
+    Simulation simulation = make_press(p);
+    double over = 0.0;
+    for (int k = 1; k <= 50 * ticks_per_ms; ++k) {
+      ASSERT_TRUE(simulation.tick(place_at(depth_at(k * p.rates.haptic_period))).is_ok()) << k;
+      const PhysicsRecord r = simulation.physics_record();
+      over = std::max(over, r.elastic_energy + r.kinetic_energy + r.plastic_dissipation - r.contact_work);
+    }
+    const PhysicsRecord pressed = simulation.physics_record();
+    ASSERT_GT(pressed.plastic_dissipation, pressed.elastic_energy);
+    EXPECT_LT(over, 1e-3 * pressed.contact_work);
+    const double lost =
+        1.0 - (pressed.elastic_energy + pressed.kinetic_energy + pressed.plastic_dissipation) /
+                  pressed.contact_work;
+    EXPECT_LT(lost, 0.04);
+    if (ticks_per_ms == 1)
+      of_long_steps = lost;
+    else
+      EXPECT_LT(lost, 0.4 * of_long_steps);
+  }
+}
+
 /// Steps make the more of a misjudged stiffness the longer they are.
 class LetGo : public testing::TestWithParam<int> {};
 

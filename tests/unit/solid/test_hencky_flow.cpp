@@ -50,10 +50,10 @@ struct Point {
     F = next;
     const PointMotion m = motion();
     const Vec6 strain = compute_strain(m.F, m.R);
-    double released[8] = {};
-    flow_by_hencky({strain.data(), plastic_strain.data(), &yield, rule}, 0, 1, released);
-    dissipated += kMu * released[0];
-    least_loss = std::min(least_loss, released[0]);
+    double lost[8] = {};
+    flow_by_hencky({strain.data(), plastic_strain.data(), &yield, rule}, 0, 1, lost);
+    dissipated += kMu * lost[0];
+    least_loss = std::min(least_loss, lost[0]);
   }
 };
 
@@ -61,7 +61,7 @@ TEST(HenckyFlow, ABarThatIsDrawnHasTheStrengthInTension) {
   // σ_y = √3 c_u, whatever the stretch: twice as long, and half as long.
   for (const double goal : {2.0, 0.5}) {
     Point point;
-    constexpr int kSteps = 4000;
+    constexpr int kSteps = 100;  // each of half the yield and more
     for (int i = 1; i <= kSteps; ++i) {
       const double s = std::pow(goal, static_cast<double>(i) / kSteps);
       point.move_to(Vec3(s, 1.0 / std::sqrt(s), 1.0 / std::sqrt(s)).asDiagonal());
@@ -75,7 +75,7 @@ TEST(HenckyFlow, ABarThatIsDrawnHasTheStrengthInTension) {
     EXPECT_NEAR(point.plastic_strain(0), std::log(goal) - sign * elastic, 1e-13);
     EXPECT_NEAR(point.plastic_strain(1), -0.5 * point.plastic_strain(0), 1e-13);
     EXPECT_NEAR(point.dissipated, std::sqrt(3.0) * kStrength * std::abs(point.plastic_strain(0)),
-                0.005 * point.dissipated);  // to first order in the step
+                1e-9 * point.dissipated);
   }
 }
 
@@ -159,10 +159,10 @@ double find_imbalance(int steps) {
   return (point.dissipated + point.energy()) / work - 1.0;
 }
 
-TEST(HenckyFlow, WhatIsPutInIsStoredOrLostToFirstOrderInTheStep) {
+TEST(HenckyFlow, WhatIsPutInIsStoredOrLostToSecondOrderInTheStep) {
   const double coarse = find_imbalance(4000), fine = find_imbalance(8000);
-  EXPECT_LT(std::abs(coarse), 0.02);
-  EXPECT_NEAR(coarse / fine, 2.0, 0.1);
+  EXPECT_LT(std::abs(coarse), 1e-4);
+  EXPECT_NEAR(coarse / fine, 4.0, 0.2);
 }
 
 TEST(HenckyFlow, BelowItsStrengthItIsElastic) {
