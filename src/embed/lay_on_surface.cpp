@@ -45,7 +45,7 @@ class Mover {
     double share = 1.0;
     for (int i = 0; i <= kHalvings; ++i, share *= 0.5) {
       m_body.vertices.col(v) = before + share * (place - before);
-      const double found = find_worst(v);
+      const double found = find_worst(v, least);
       if (for_shape ? found > least : found >= least) return;
     }
     m_body.vertices.col(v) = before;
@@ -75,10 +75,12 @@ class Mover {
     for (int c = m_topology.vertex_begin[first]; c < m_topology.vertex_begin[first + 1]; ++c)
       use(m_body.tets.col(m_topology.vertex_corners[static_cast<std::size_t>(c)] / 4));
   }
-  /// Of mean ratios and angles over the least wanted.
-  double find_worst(int v) const {
+  /// Of mean ratios and angles over the least wanted; below `least`, that of any tet that is.
+  double find_worst(int v, double least = -std::numeric_limits<double>::infinity()) const {
     double worst = std::numeric_limits<double>::infinity();
-    each_tet(v, [&](const auto& t) { worst = std::min(worst, find_quality(m_body.vertices, t)); });
+    each_tet(v, [&](const auto& t) {
+      if (worst >= least) worst = std::min(worst, find_quality(m_body.vertices, t));
+    });
     return worst;
   }
 

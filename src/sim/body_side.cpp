@@ -108,8 +108,9 @@ double BodySide::balance(const Points& contact_force) {
   TensorField balanced = find_elastic_strain(m_solid);  // of the last turn that came to an end
   double beyond = std::numeric_limits<double>::infinity();
   for (int turn = 0; turn < kTurns && beyond >= kEnough; ++turn) {
+    using Accuracy = solid::EquilibriumAccuracy;
     const StepStatus status = solid::find_equilibrium(m_solid, m_region.whole(), {force}, m_state.solid,
-                                                      solid::EquilibriumAccuracy::rough);
+                                                      turn == 0 ? Accuracy::rough : Accuracy::rough_again);
     if (status.is_ok()) balanced = find_elastic_strain(m_solid);
     TensorField elastic = balanced;
     if (status.is_ok() && turn + 1 < kTurns) beyond = limit_to_strength(elastic);

@@ -1,18 +1,18 @@
 #include "sim/remap.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "base/lanes.h"
 #include "base/mandel.h"
 #include "contact/nearest.h"
 #include "embed/tet_locator.h"
 #include "mesh/curved.h"
 #include "mesh/topology.h"
+#include "solid/hencky_lanes.h"
 
 namespace argil::sim {
 namespace {
@@ -31,19 +31,6 @@ std::array<Vec4, kSamples> list_samples() {
     samples[static_cast<std::size_t>(4 + k)](k) = 0.8125;
   }
   return samples;
-}
-
-Mat3 apply_to_modes(const Mat3& symmetric, double (*function)(double)) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> modes(symmetric);
-  return modes.eigenvectors() * modes.eigenvalues().unaryExpr(function).asDiagonal() *
-         modes.eigenvectors().transpose();
-}
-
-double half_logarithm(double x) {
-  return 0.5 * std::log(x);
-}
-double exp_of_minus_double(double x) {
-  return std::exp(-2.0 * x);
 }
 
 /// Finds tets of a mesh for places of another.
@@ -156,13 +143,19 @@ void keep_water(const Field& volume, double wanted, Field& saturation) {
 }  // namespace
 
 TensorField find_elastic_strain(const solid::Body& solid) {
-  const solid::Elements& elements = solid.model.elements;
-  TensorField elastic(6, elements.num_points());
-  for (int point = 0; point < elements.num_points(); ++point) {
-    const Mat3 F = solid.kinematics.at(point).F;
-    const Mat3 metric = apply_to_modes(from_mandel(solid.plastic_strain->col(point)), exp_of_minus_double);
-    const Mat3 b = F * metric * F.transpose();
-    elastic.col(point) = to_mandel(apply_to_modes(0.5 * (b + b.transpose()), half_logarithm));
+  const solid::Kinematics& kinematics = solid.kinematics;
+  const Eigen::Index num_points = solid.model.elements.num_points();
+  TensorField elastic(6, num_points);
+  for (Eigen::Index begin = 0; begin < num_points; begin += kLanes) {
+    const Eigen::Index end = std::min(begin + kLanes, num_points);
+    solid::find_hencky_strain(kinematics.strain().data(), solid.plastic_strain->data(), begin, end,
+                              elastic.data());
+    for (Eigen::Index p = begin; p < end; ++p) {
+      const Vec6 e = elastic.col(p);
+      const Mat3 in_frame = (Mat3() << e(0), e(5), e(4), e(5), e(1), e(3), e(4), e(3), e(2)).finished();
+      const Mat3 R = kinematics.rotation().middleCols<3>(3 * p);
+      elastic.col(p) = to_mandel(R * in_frame * R.transpose());
+    }
   }
   return elastic;
 }

@@ -82,6 +82,13 @@ ARGIL_EVERY_PROCESSOR double compute_hencky_energy(const ForceArrays& tets, std:
   return sum;
 }
 
+ARGIL_EVERY_PROCESSOR void find_hencky_strain(const double* strain, const double* plastic_strain,
+                                              std::ptrdiff_t begin, std::ptrdiff_t end, double* elastic) {
+  Lanes found[6];
+  read_elastic(strain, plastic_strain, {}, begin, end, found);
+  write_lanes<6>(found, begin, end, elastic);
+}
+
 ARGIL_EVERY_PROCESSOR unsigned flow_by_hencky(const FlowArrays& points, std::ptrdiff_t begin,
                                               std::ptrdiff_t end, double* dissipated) {
   // Stretches of F_p are e^±8 then, whose squares are as far apart as numbers have digits. Clay is elastic

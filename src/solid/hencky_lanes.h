@@ -13,6 +13,11 @@ void compute_hencky_forces(const ForceArrays& tets, std::ptrdiff_t begin, std::p
 /// Their elastic energy V (μ ε:ε + ½ λ (tr ε)²) [J].
 double compute_hencky_energy(const ForceArrays& tets, std::ptrdiff_t begin, std::ptrdiff_t end);
 
+/// Elastic strain ½ ln b of points begin … end−1, at most kLanes of them, in the frame of R: 6 a point, 11 22
+/// 33 23 13 12 as in the matrix. strain: S − 1; plastic_strain: E_p; both Mandel.
+void find_hencky_strain(const double* strain, const double* plastic_strain, std::ptrdiff_t begin,
+                        std::ptrdiff_t end, double* elastic);
+
 /// Points that may flow, and how.
 struct FlowArrays {
   const double* strain = nullptr;    ///< S − 1, Mandel, 6 a point

@@ -33,7 +33,8 @@ Mat3 compute_anisotropic_block(const Vec3& gi, const Vec3& gj, const Mat3& R, co
 }
 
 bool takes_pairs(const Body& body) {
-  return body.model.keeps_tet_stiffness() && body.materials.is_isotropic() && !body.prediction.is_static;
+  const bool is_exact = body.prediction.is_static && !body.prediction.is_rough;
+  return body.model.keeps_tet_stiffness() && body.materials.is_isotropic() && !is_exact;
 }
 
 /// Stiffness of tets that have changed, which all lie in the part, or of all.
@@ -42,6 +43,7 @@ void set_pairs(Body& body, const Part& part, bool all) {
   System& system = body.system;
   const Elements& elements = body.model.elements;
   const bool is_quadratic = elements.nodes_per_tet == 10;
+  const bool flows = body.model.params.flows_in_solve && !body.prediction.is_static;
   const TangentArrays points{body.materials.gradient().data(),
                              body.kinematics.frame().data(),
                              body.plastic_strain->data(),
@@ -51,7 +53,7 @@ void set_pairs(Body& body, const Part& part, bool all) {
                              share.exact,
                              share.kept,
                              is_quadratic ? system.point_pairs.data() : system.pairs.data(),
-                             body.model.params.flows_in_solve ? body.materials.yield().data() : nullptr,
+                             flows ? body.materials.yield().data() : nullptr,
                              system.unloads.data()};
   const auto set = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     const auto is_changed = [&](std::ptrdiff_t from, std::ptrdiff_t to) {

@@ -40,8 +40,10 @@ bool assemble_newton(Body& body, const Part& part, const StepLoads& loads) {
   }
   newton.is_moved_by_load = true;
   newton.potential = compute_potential(body, part, loads);
+  if (body.prediction.is_static && body.prediction.keeps_matrix) return false;
   body.system.is_projected = false;
   assemble_matrix(body, part, loads.contacts);
+  body.prediction.keeps_matrix = body.prediction.is_rough;
   return false;
 }
 

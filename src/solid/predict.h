@@ -13,6 +13,8 @@ struct Body;
 /// with its own x̂, v̂ and τ. Statics: without M and D, τ = 1, v' the displacement.
 struct Prediction {
   bool is_static = false;
+  bool is_rough = false;           ///< statics: by the stiffness of steps, gathered once
+  bool keeps_matrix = false;       ///< statics: there is one that will do
   double load_share = 1.0;         ///< statics: part of the loads that is applied
   double tau = 0.0;                ///< [s]
   Points x_hat, v_hat;             ///< 3×n [m], [m/s]

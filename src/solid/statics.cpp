@@ -40,12 +40,14 @@ StepStatus iterate(Body& body, const Part& whole, const StepLoads& loads, const 
   return StepStatus::ok();
 }
 
-void begin(Body& body, const StepLoads& loads, const SolidState& state) {
+void begin(Body& body, const StepLoads& loads, const SolidState& state, EquilibriumAccuracy accuracy) {
   body.plastic_strain = &state.plastic_strain;
   body.elastic.forget_all();
   body.is_state_changed = true;
   store_nodal_stiffness(body.model, body.materials, body.system);
   body.prediction.is_static = true;
+  body.prediction.is_rough = accuracy != EquilibriumAccuracy::exact;
+  body.prediction.keeps_matrix = accuracy == EquilibriumAccuracy::rough_again;
   body.prediction.tau = 1.0;
   body.prediction.v_hat.setZero();
   body.committed.v.setZero();
@@ -79,7 +81,7 @@ StepStatus find_equilibrium(Body& body, const Part& whole, const StepLoads& load
   const std::unique_ptr<linear::Solver> solver = linear::make_solver(
       is_exact ? make_exact(params.solver) : make_rough(params.solver), body.model.threads);
   body.newton.tolerance = is_exact ? params.newton_tolerance : kRoughTolerance;
-  begin(body, loads, state);
+  begin(body, loads, state, accuracy);
   double done = 0.0;
   for (double step = 1.0; done < 1.0;) {
     body.prediction.load_share = std::min(1.0, done + step);
@@ -90,6 +92,7 @@ StepStatus find_equilibrium(Body& body, const Part& whole, const StepLoads& load
       step *= 2.0;
       continue;
     }
+    body.prediction.keeps_matrix = false;
     step *= 0.5;
     if (step < kSmallestShare) {
       const StepStatus last_good = update_kinematics(body, whole, state.x, {}, 0);  // what records describe

@@ -10,8 +10,9 @@ namespace argil::solid {
 struct Body;
 
 enum class EquilibriumAccuracy {
-  exact,  ///< as /dynamics/newton/tolerance asks
-  rough   ///< to a ten-thousandth of loads and reactions, by iterations that need no factor
+  exact,       ///< as /dynamics/newton/tolerance asks
+  rough,       ///< to a ten-thousandth of loads and reactions, by iterations that need no factor
+  rough_again  ///< the same with the matrix of the last time, from which the body has hardly moved
 };
 
 /// Static equilibrium of the whole body under `loads` from state.x on: the limit of a step without mass, by
