@@ -1,5 +1,6 @@
 // Equilibria where rounding and stiffness differ by many orders within one body, and nearly incompressible
 // ones by every solver.
+#include "solid/committed.h"
 #include "support/laws.h"
 #include "support/solid_scene.h"
 
@@ -129,6 +130,48 @@ TEST(NodalVolumes, TakeAFactorOfAllTheirStiffnessInLongSteps) {
               30);  // over a factor of the tets' own part: twice as many
   }
 }
+
+class RoughEquilibrium : public testing::TestWithParam<ElementKind> {};
+
+TEST_P(RoughEquilibrium, IsNearlyTheExactOneAndGathersOneMatrixForManyLoads) {
+  SolidParams params;
+  params.model = StrainModel::hencky;
+  params.element = GetParam();
+  params.iteration = Iteration::newton;
+  const mesh::TetMesh mesh = test::make_irregular_block(6, 2, 2, Vec3(kLength, 0.1, 0.1));
+  const auto make_scene = [&] {
+    return Scene(mesh, {test::hold_nodes(find_end(mesh, 0.0))}, params, 1e5, 0.3);
+  };
+  Scene rough = make_scene();
+  const SolidState at_rest = rough.state;
+  const std::vector<int> tip = find_end(mesh, kLength);
+  for (const double pull : {0.5, 0.6, -0.4}) {  // some percent of strain
+    Scene exact = make_scene();
+    for (const int n : tip) exact.load.col(n) = Vec3(pull, 0.0, -0.1 * pull);
+    ASSERT_TRUE(exact.find_equilibrium().is_ok());
+    const double largest = exact.displacement().cwiseAbs().maxCoeff();
+    ASSERT_GT(largest, 0.01 * kLength);
+    const bool is_first = pull == 0.5;
+    rough.state = at_rest;
+    ASSERT_TRUE(find_equilibrium(rough.solid, rough.region.whole(), {exact.load}, rough.state,
+                                 is_first ? EquilibriumAccuracy::rough : EquilibriumAccuracy::rough_again)
+                    .is_ok());
+    EXPECT_LT((rough.state.x - exact.state.x).cwiseAbs().maxCoeff(), 0.01 * largest) << pull;
+    EXPECT_EQ(rough.solid.history.counters.assembled_rows, is_first ? rough.solid.model.num_free() : 0);
+  }
+  for (const int n : tip) rough.load.col(n) = Vec3(0.5, 0.0, -0.05);
+  rough.state = at_rest;
+  forget(rough.solid, rough.region);
+  ASSERT_TRUE(update_kinematics(rough.solid, rough.region, rough.state.x, 0).is_ok());
+  ASSERT_TRUE(rough.step(1e-3).is_ok());  // with a matrix of its own
+  Scene fresh = make_scene();
+  fresh.load = rough.load;
+  ASSERT_TRUE(fresh.step(1e-3).is_ok());
+  EXPECT_LT((rough.state.v - fresh.state.v).norm(), 1e-3 * fresh.state.v.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, RoughEquilibrium,
+                         testing::Values(ElementKind::p1, ElementKind::p1_nodal, ElementKind::p2));
 
 }  // namespace
 }  // namespace argil::solid

@@ -216,6 +216,21 @@ Mat3 find_elastic_strain(const Mat3& stretch, const Vec6& plastic) {
   return 0.5 * Mat3(stretch * metric * stretch).log();
 }
 
+TEST(HenckyLanes, ElasticStrainIsThatOfMatrixFunctions) {
+  const Tets tets;
+  each_batch([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    TensorField all(6, kTets);
+    find_hencky_strain(tets.strain.data(), tets.plastic.data(), begin, end, all.data());
+    for (std::ptrdiff_t t = begin; t < end; ++t) {
+      const Mat3 expected =
+          find_elastic_strain(Mat3::Identity() + from_mandel(tets.strain.col(t)), tets.plastic.col(t));
+      const Vec6 e = all.col(t);
+      const Mat3 matrix = (Mat3() << e(0), e(5), e(4), e(5), e(1), e(3), e(4), e(3), e(2)).finished();
+      EXPECT_LT((matrix - expected).norm(), 1e-13) << t;
+    }
+  });
+}
+
 TEST(HenckyLanes, FlowReturnsToTheYieldAlongTheElasticStrain) {
   Tets tets;
   const TensorField before = tets.plastic;
