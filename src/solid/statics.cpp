@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kEnd = std::numeric_limits<double>::infinity();  // of time: supports at their full way
 
-constexpr double kRoughTolerance = 1e-4;  // of the residual over loads and reactions
+constexpr double kRoughTolerance = 1e-5;  // of the residual over loads and reactions
 
 linear::SolverParams make_rough(linear::SolverParams solver) {
   solver.kind = linear::SolverKind::pcg_jacobi;

@@ -11,7 +11,7 @@ struct Body;
 
 enum class EquilibriumAccuracy {
   exact,       ///< as /dynamics/newton/tolerance asks
-  rough,       ///< to a ten-thousandth of loads and reactions, by iterations that need no factor
+  rough,       ///< to 1e-5 of loads and reactions, by iterations that need no factor
   rough_again  ///< the same with the matrix of the last time, from which the body has hardly moved
 };
 

@@ -145,13 +145,13 @@ TEST_P(RoughEquilibrium, IsNearlyTheExactOneAndGathersOneMatrixForManyLoads) {
   Scene rough = make_scene();
   const SolidState at_rest = rough.state;
   const std::vector<int> tip = find_end(mesh, kLength);
-  for (const double pull : {0.5, 0.6, -0.4}) {  // some percent of strain
+  for (const double pull : {0.2, 0.25, -0.2}) {  // which also bends
     Scene exact = make_scene();
     for (const int n : tip) exact.load.col(n) = Vec3(pull, 0.0, -0.1 * pull);
     ASSERT_TRUE(exact.find_equilibrium().is_ok());
     const double largest = exact.displacement().cwiseAbs().maxCoeff();
-    ASSERT_GT(largest, 0.01 * kLength);
-    const bool is_first = pull == 0.5;
+    ASSERT_GT(largest, 0.005 * kLength);
+    const bool is_first = pull == 0.2;
     rough.state = at_rest;
     ASSERT_TRUE(find_equilibrium(rough.solid, rough.region.whole(), {exact.load}, rough.state,
                                  is_first ? EquilibriumAccuracy::rough : EquilibriumAccuracy::rough_again)
