@@ -61,7 +61,7 @@ TEST(HenckyFlow, ABarThatIsDrawnHasTheStrengthInTension) {
   // σ_y = √3 c_u, whatever the stretch: twice as long, and half as long.
   for (const double goal : {2.0, 0.5}) {
     Point point;
-    constexpr int kSteps = 100;  // each of half the yield and more
+    constexpr int kSteps = 100;  // each of a third of the elastic strain
     for (int i = 1; i <= kSteps; ++i) {
       const double s = std::pow(goal, static_cast<double>(i) / kSteps);
       point.move_to(Vec3(s, 1.0 / std::sqrt(s), 1.0 / std::sqrt(s)).asDiagonal());
