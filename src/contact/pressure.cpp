@@ -114,54 +114,71 @@ void PressureContact::press_corners(const PlacedFace& face, double share) {
   }
 }
 
+PressureContact::FacePiece PressureContact::take_whole(const PlacedFace& face) {
+  return {kWhole, face.x};
+}
+
+std::array<PressureContact::FacePiece, 4> PressureContact::quarter_piece(const PlacedFace& face,
+                                                                         const FacePiece& piece) {
+  const std::array<Piece, 4> parts = quarter(piece.weight);
+  const std::array<Vec3, 3>& corner = piece.x;
+  const std::array<Vec3, 3> middle = {face.at(parts[3][0]), face.at(parts[3][1]), face.at(parts[3][2])};
+  return {{{parts[0], {corner[0], middle[0], middle[2]}},
+           {parts[1], {middle[0], corner[1], middle[1]}},
+           {parts[2], {middle[2], middle[1], corner[2]}},
+           {parts[3], middle}}};
+}
+
+/// How far the corners of a piece are from its middle [m].
+double PressureContact::find_reach(const FacePiece& piece, const Vec3& middle) {
+  double squares = 0.0;
+  for (const Vec3& corner : piece.x) squares = std::max(squares, (corner - middle).squaredNorm());
+  return std::sqrt(squares);
+}
+
 /// Does the way out of the tool change its direction on a piece that it covers? From one side of a sharp tip
 /// to the other it jumps, where the tip is deepest.
-bool PressureContact::turns(const PlacedFace& face, const Piece& piece) {
-  const Vec3 centre = face.at(find_centre(piece));
+bool PressureContact::turns(const FacePiece& piece, const Vec3& centre) {
   const LeastDistance middle = find_least_distance(centre, kAnywhere);
-  double reach = 0.0;
-  for (const Vec3& corner : piece) reach = std::max(reach, (face.at(corner) - centre).norm());
+  const double reach = find_reach(piece, centre);
   if (middle.distance >= reach) return false;
-  return std::any_of(piece.begin(), piece.end(), [&](const Vec3& corner) {
-    const LeastDistance found = find_least_distance(face.at(corner), kAnywhere);
+  return std::any_of(piece.x.begin(), piece.x.end(), [&](const Vec3& corner) {
+    const LeastDistance found = find_least_distance(corner, kAnywhere);
     return found.distance < reach && found.outward.dot(middle.outward) < kTurned;
   });
 }
 
 /// Each piece of `level` presses with its centre; on rigid faces those that the tool's edges cross are split
 /// on.
-PressureContact::Cover PressureContact::press_pieces(const PlacedFace& face, const Piece& piece, int level,
-                                                     double share, Contacts& out) {
-  const Vec3 centre = find_centre(piece);
+PressureContact::Cover PressureContact::press_pieces(const PlacedFace& face, const FacePiece& piece,
+                                                     int level, double share, Contacts& out) {
+  const Vec3 centre = find_centre(piece.weight);
   const Vec3 x = face.at(centre);
+  const auto press_parts = [&] {
+    Cover sum;
+    for (const FacePiece& part : quarter_piece(face, piece))
+      sum += press_pieces(face, part, level - 1, share, out);
+    return sum;
+  };
   if (level > 0) {
-    double reach = 0.0;
-    for (const Vec3& corner : piece) reach = std::max(reach, (face.at(corner) - x).norm());
-    const double distance = find_least_distance(x, reach + m_margin).distance;
+    const double reach = find_reach(piece, x);
+    const double distance = find_nearness(x, reach + m_margin).distance;
     if (distance >= reach + m_margin) return {};
     // What the tool may only come near is seen no finer than the patch that it would make there.
-    if (distance < reach || reach > std::sqrt(m_tool.radius() * m_margin) / 6.0) {
-      Cover sum;
-      for (const Piece& part : quarter(piece)) sum += press_pieces(face, part, level - 1, share, out);
-      return sum;
-    }
+    if (distance < reach || reach > std::sqrt(m_tool.radius() * m_margin) / 6.0) return press_parts();
   }
-  if (level <= 0 && level > -kMostHalvings && is_rigid(face) && turns(face, piece)) {
-    Cover sum;
-    for (const Piece& part : quarter(piece)) sum += press_pieces(face, part, level - 1, share, out);
-    return sum;
-  }
+  if (level <= 0 && level > -kMostHalvings && is_rigid(face) && turns(piece, x)) return press_parts();
   const bool yields = m_yielding == Yielding::yes;
   const PointDepth depth = yields ? find_depth(x) : find_held_depth(x, face.normal);
   if (depth.mean > 0.0 || depth.begin > 0.0 || finds_near()) {
-    const Vec3 a = face.at(piece[1]) - face.at(piece[0]);
-    const Vec3 b = face.at(piece[2]) - face.at(piece[0]);
+    const Vec3 a = piece.x[1] - piece.x[0];
+    const Vec3 b = piece.x[2] - piece.x[0];
     const double area = share * 0.5 * a.cross(b).norm() * facing_share(depth.outward, face.normal);
     const Eigen::Vector3i v = m_surface.col(face.number);
     add_contact({v(0), v(1), v(2)}, face.number, centre, depth, area * stiffness_of(face), x, out);
   }
   // Where κ hangs on the patch's area, once finer than the pressure.
-  return m_needs_cover ? measure_cover(face, piece, yields ? 0 : 1) : Cover{};
+  return m_needs_cover ? measure_cover(face, piece.weight, yields ? 0 : 1) : Cover{};
 }
 
 bool PressureContact::is_rigid(const Face& face) const {
@@ -197,7 +214,7 @@ void PressureContact::press_face(Face& face, double spacing, const Points& x, Co
       face.by_corners = part;
       press_corners(placed, part);
     } else {
-      cover = press_pieces(placed, kWhole, level + i, part, out);
+      cover = press_pieces(placed, take_whole(placed), level + i, part, out);
     }
     cover.area *= part;
     cover.facing_area *= part;

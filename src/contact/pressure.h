@@ -141,6 +141,10 @@ class PressureContact {
     std::vector<double> radius;  ///< [m]
     double motion = 0.0;         ///< of the body since then, along any axis [m]
   };
+  struct FacePiece {
+    Piece weight;
+    std::array<Vec3, 3> x;  ///< of its corners [m]
+  };
   struct PlacedPiece {  // of a triangle
     std::array<Vec3, 3> x;
     Vec3 centre;
@@ -230,10 +234,13 @@ class PressureContact {
   double find_held_facing(const Vec3& p, const Vec3& normal, const Place& place);
   // pressure.cpp
   bool is_rigid(const Face& face) const;
-  bool turns(const PlacedFace& face, const Piece& piece);
+  static FacePiece take_whole(const PlacedFace& face);
+  static std::array<FacePiece, 4> quarter_piece(const PlacedFace& face, const FacePiece& piece);
+  static double find_reach(const FacePiece& piece, const Vec3& middle);
+  bool turns(const FacePiece& piece, const Vec3& centre);
   void press_face(Face& face, double spacing, const Points& x, Contacts& out);
   void press_corners(const PlacedFace& face, double share);
-  Cover press_pieces(const PlacedFace& face, const Piece& piece, int level, double share, Contacts& out);
+  Cover press_pieces(const PlacedFace& face, const FacePiece& piece, int level, double share, Contacts& out);
   void add_contact(const std::array<int, 3>& vertex, int triangle, const Vec3& weight,
                    const PointDepth& depth, double stiffness, const Vec3& point, Contacts& out) const;
   void press_all_corners(const Points& x, Contacts& out);

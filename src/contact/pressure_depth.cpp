@@ -197,14 +197,17 @@ PressureContact::PointDepth PressureContact::find_depth(const Vec3& p) {
     if (begin > 0.0 || end.distance < 0.0) return {-end.distance, begin, -end.distance, 1.0, end.outward};
     if (begin < 0.0 && end.distance > 0.0) return {0.0, begin, -end.distance, 0.0, end.outward};
   }
+  if (m_places.size() == 1) {
+    const ToolDistance found = find_distance(p, m_places.front(), finds_near() ? kAnywhere : 0.0);
+    const double depth = -found.distance;
+    return {std::max(0.0, depth), depth, depth, depth > 0.0 ? 1.0 : 0.0, found.outward};
+  }
   PointDepth point;
   const double pieces = static_cast<double>(m_places.size() - 1);
   // From a place that is farther away, the tool does not come to the point in one piece of its way.
-  const double far = m_places.size() > 1 ? m_way / pieces : 0.0;
+  const double far = m_way / pieces;
   ToolDistance before = find_distance(p, m_places.front(), far);
   point.begin = point.end = -before.distance;
-  if (m_places.size() == 1 && (point.end > 0.0 || !finds_near()))
-    return {std::max(0.0, point.end), point.end, point.end, point.end > 0.0 ? 1.0 : 0.0, before.outward};
   ToolDistance end;
   if (m_is_solved_for) {
     end = find_distance(p, m_places.back());
