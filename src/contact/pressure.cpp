@@ -148,16 +148,44 @@ bool PressureContact::turns(const FacePiece& piece, const Vec3& centre) {
   });
 }
 
+/// Of the first pieces, beside which corners press. A face that stays flat takes pieces of a ball's depth as
+/// soon as they count at all, however small their part, and its corners come off it. So a part of them that
+/// grows from nothing would jump, the more the stiffer κ. What grows is how far they are below the plane of
+/// the corners' depths: κ has no say in it.
+PressureContact::PieceRule PressureContact::make_first_rule(const Face& face, double share,
+                                                            double own_depth) const {
+  PieceRule rule{share, own_depth};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int vertex = m_surface(static_cast<Eigen::Index>(k), face.number);
+    const int place = m_corner_of_vertex[static_cast<std::size_t>(vertex)];
+    rule.corner[k] = m_corners[static_cast<std::size_t>(place)].depth;
+  }
+  return rule;
+}
+
+void PressureContact::lower(const PieceRule& rule, const Vec3& weight, PointDepth& depth) {
+  double begin = 0.0, end = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    begin += weight(static_cast<Eigen::Index>(k)) * rule.corner[k].begin;
+    end += weight(static_cast<Eigen::Index>(k)) * rule.corner[k].end;
+  }
+  depth.begin = begin + rule.own_depth * (depth.begin - begin);
+  depth.end = end + rule.own_depth * (depth.end - end);
+  const bool touches = depth.begin > 0.0 || depth.end > 0.0;
+  depth.mean = touches ? depth.end : 0.0;
+  depth.share = touches ? 1.0 : 0.0;
+}
+
 /// Each piece of `level` presses with its centre; on rigid faces those that the tool's edges cross are split
 /// on.
 PressureContact::Cover PressureContact::press_pieces(const PlacedFace& face, const FacePiece& piece,
-                                                     int level, double share, Contacts& out) {
+                                                     int level, const PieceRule& rule, Contacts& out) {
   const Vec3 centre = find_centre(piece.weight);
   const Vec3 x = face.at(centre);
   const auto press_parts = [&] {
     Cover sum;
     for (const FacePiece& part : quarter_piece(face, piece))
-      sum += press_pieces(face, part, level - 1, share, out);
+      sum += press_pieces(face, part, level - 1, rule, out);
     return sum;
   };
   if (level > 0) {
@@ -169,11 +197,12 @@ PressureContact::Cover PressureContact::press_pieces(const PlacedFace& face, con
   }
   if (level <= 0 && level > -kMostHalvings && is_rigid(face) && turns(piece, x)) return press_parts();
   const bool yields = m_yielding == Yielding::yes;
-  const PointDepth depth = yields ? find_depth(x) : find_held_depth(x, face.normal);
+  PointDepth depth = yields ? find_depth(x) : find_held_depth(x, face.normal);
+  if (rule.own_depth < 1.0) lower(rule, centre, depth);
   if (depth.mean > 0.0 || depth.begin > 0.0 || finds_near()) {
     const Vec3 a = piece.x[1] - piece.x[0];
     const Vec3 b = piece.x[2] - piece.x[0];
-    const double area = share * 0.5 * a.cross(b).norm() * facing_share(depth.outward, face.normal);
+    const double area = rule.share * 0.5 * a.cross(b).norm() * facing_share(depth.outward, face.normal);
     const Eigen::Vector3i v = m_surface.col(face.number);
     add_contact({v(0), v(1), v(2)}, face.number, centre, depth, area * stiffness_of(face), x, out);
   }
@@ -203,18 +232,23 @@ void PressureContact::press_face(Face& face, double spacing, const Points& x, Co
   // hangs on it most.
   const double passage = m_yielding == Yielding::yes ? 1.0 : 0.4;
   const double share = std::clamp((levels - level - 0.5) / passage + 0.5, 0.0, 1.0);
+  // Beside corners the first pieces soon bear most: what they bear is no more than corners would, and comes
+  // up to what pieces do.
+  const bool is_first = level == 0 && finds_near() && !is_rigid(face);
+  const double by_finer = is_first ? 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share) : share;
   face.cover = {};
   face.by_corners = 0.0;
   for (int i = 0; i < 2; ++i) {
-    const double part = i == 0 ? 1.0 - share : share;
+    const double part = i == 0 ? 1.0 - by_finer : by_finer;
     if (!(part > 0.0)) continue;
     Cover cover;
     if (level + i == 0 && m_yielding == Yielding::yes) {
       cover = face.whole;
-      face.by_corners = part;
+      face.by_corners = 1.0 - share;
       press_corners(placed, part);
     } else {
-      cover = press_pieces(placed, take_whole(placed), level + i, part, out);
+      const PieceRule rule = is_first ? make_first_rule(face, part, share) : PieceRule{part};
+      cover = press_pieces(placed, take_whole(placed), level + i, rule, out);
     }
     cover.area *= part;
     cover.facing_area *= part;
@@ -309,6 +343,19 @@ void PressureContact::find_unpressed(const Points& x, const Pose& pose, Contacts
   contacts.sum_reactions(pose.position);
 }
 
+/// Of the patch as large as it is at one time, from one that the tool's way draws out along the surface: of a
+/// disc of radius r, by w, to π r² + 2 r w.
+double PressureContact::find_radius_at_end(const Points& x) const {
+  const Vec3 path = m_places.back().position - m_places.front().position;
+  Vec3 normal = Vec3::Zero();
+  for (const Face& face : m_faces)
+    if (face.whole.facing_area > 0.0) normal += face.whole.facing_area * place_face(face, x).normal;
+  const double length = normal.norm();
+  if (!(length > 0.0)) return m_patch_radius;
+  const double way = path.cross(normal / length).norm() / std::numbers::pi;
+  return std::hypot(way, m_patch_radius) - way;
+}
+
 void PressureContact::press(const Points& x, const Pose& pose_t0, const Pose& pose_t1, Yielding yielding,
                             Contacts& contacts) {
   contacts.clear();
@@ -322,6 +369,7 @@ void PressureContact::press(const Points& x, const Pose& pose_t0, const Pose& po
   // they are all that counts.
   const double points_per_radius = yielding == Yielding::yes ? 3.0 : 4.0;
   m_patch_radius = find_patch_radius(x);
+  if (finds_near() && m_patch_radius > 0.0) m_patch_radius = find_radius_at_end(x);
   const double radius = m_patch_radius > 0.0 ? m_patch_radius : std::sqrt(m_tool.radius() * m_margin);
   if (radius == 0.0) return;
   for (Face& face : m_faces) press_face(face, radius / points_per_radius, x, contacts);

@@ -178,6 +178,11 @@ class PressureContact {
     Cover cover;
     double by_corners = 0.0;  // share of it that presses with its corners
   };
+  struct PieceRule {         // how the pieces of a face press
+    double share;            // of their area counts
+    double own_depth = 1.0;  // share of their own depth, beside one that is linear between the corners
+    std::array<PointDepth, 3> corner = {};
+  };
   struct PlacedFace : Face {
     std::array<Vec3, 3> x;  // [m]
     Vec3 normal = Vec3::Zero();
@@ -203,6 +208,7 @@ class PressureContact {
   Cover cover_piece(const PlacedFace& face, const PlacedPiece& piece, double area, const LeastDistance& found,
                     double band, FindCorner find_corner);
   double find_patch_radius(const Points& x);
+  double find_radius_at_end(const Points& x) const;
   void limit_levels(int pass);
   double find_band(const Face& face, int level) const;
   double find_band_of_side(double side) const;
@@ -240,7 +246,11 @@ class PressureContact {
   bool turns(const FacePiece& piece, const Vec3& centre);
   void press_face(Face& face, double spacing, const Points& x, Contacts& out);
   void press_corners(const PlacedFace& face, double share);
-  Cover press_pieces(const PlacedFace& face, const FacePiece& piece, int level, double share, Contacts& out);
+  Cover press_pieces(const PlacedFace& face, const FacePiece& piece, int level, const PieceRule& rule,
+                     Contacts& out);
+  PieceRule make_first_rule(const Face& face, double share, double own_depth) const;
+  /// To a mean of its own depth and of the one that is linear between the corners.
+  static void lower(const PieceRule& rule, const Vec3& weight, PointDepth& depth);
   void add_contact(const std::array<int, 3>& vertex, int triangle, const Vec3& weight,
                    const PointDepth& depth, double stiffness, const Vec3& point, Contacts& out) const;
   void press_all_corners(const Points& x, Contacts& out);

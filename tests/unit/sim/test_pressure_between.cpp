@@ -390,6 +390,41 @@ TEST(PressureStiffness, DoubledChangesNoForceByAHundredth) {
   }
 }
 
+/// The same in every tick of a way in and out again, from a patch of two cells in radius to one of three:
+/// pieces of faces press beside the nodes in between, whose part in it must not hang on κ (0.054 else).
+TEST(PressureStiffness, DoubledChangesNoTickByAHundredth) {
+  constexpr double kLarge = 0.03, kDepth = 6e-3, kCell = 4.5e-3;  // edge of a regular tet as large as a cell
+  constexpr int kTicks = 140;
+  const auto hand = [](double depth) {
+    device::DeviceSample sample = press_block(0.0);
+    sample.position.z() = test::kBlockHeight + kLarge - depth;
+    return sample;
+  };
+  std::vector<std::vector<Vec3>> forces;
+  double automatic = 0.0;
+  for (const double factor : {0.0, 2.0}) {
+    Params params = make_pressure_params();
+    params.contact.round_tool = contact::RoundTool{kLarge, 0.0, kLarge, false};
+    params.contact.pressure_stiffness = factor * automatic;
+    Simulation simulation(argil::test::make_block_body(10, 10, 5, Vec3(0.04, 0.04, test::kBlockHeight)),
+                          contact::make_sphere_tool(kLarge, 2), params, hand(-1e-4));
+    if (factor == 0.0) automatic = simulation.body_side().find_surface_stiffness().per_area.mean();
+    std::vector<Vec3>& all = forces.emplace_back(lead(simulation, hand(kDepth), kTicks));
+    const std::vector<Vec3> out = lead(simulation, hand(0.0), kTicks);
+    all.insert(all.end(), out.begin(), out.end());
+  }
+  double largest = 0.0;
+  for (int k = 0; k < 2 * kTicks; ++k) {
+    const double way = static_cast<double>((k + 1) % kTicks) / kTicks;
+    const double depth = k < kTicks ? -1e-4 + way * (kDepth + 1e-4) : kDepth * (1.0 - way);
+    if (std::sqrt(kLarge * std::max(depth, 0.0)) < 2.0 * kCell) continue;
+    const auto tick = static_cast<std::size_t>(k);
+    largest = std::max(largest, std::abs(forces[1][tick].z() / forces[0][tick].z() - 1.0));
+  }
+  EXPECT_GT(largest, 1e-5);
+  EXPECT_LT(largest, 0.01);
+}
+
 /// A tool that stands still is felt as a constant, whatever κ, cells and step: what presses in one step
 /// presses in the next.
 class Rest : public testing::TestWithParam<std::tuple<int, double, int>> {};
