@@ -29,8 +29,9 @@ void fill_times(const std::string& file, const TraceOptions& options, RawTrace& 
   if (!raw.time.empty()) return;
   const double rate = raw.rate_hz > 0.0 ? raw.rate_hz : options.default_rate_hz;
   if (!(rate > 0.0 && std::isfinite(rate)))
-    throw InputError(file, "", "no time column and no sampling rate",
-                     "name a column t [s] or give the rate in Hz by /trace/default_rate_hz");
+    throw InputError(
+        file, "", "no time column and no sampling rate",
+        "name a column t [s] or give the rate in Hz by /trace/default_rate_hz, for instance 1000");
   for (std::size_t i = 0; i < raw.position.size(); ++i) raw.time.push_back(static_cast<double>(i) / rate);
   raw.is_time_given = true;
 }
@@ -74,7 +75,9 @@ namespace {
                                    const Vec3& at) {
   const std::string problem = "place " + print_number(at.stableNorm()) + " m from the origin, more than " +
                               print_number(kFarthestPlace) + " m";
-  if (raw.is_length_given) throw InputError(file, print_place(raw, i), problem, "correct the unit of length");
+  if (raw.is_length_given)
+    throw InputError(file, print_place(raw, i), problem,
+                     "correct the unit of length, or subtract one place from all of them");
   throw UnlikelyUnit(file, print_place(raw, i), problem, "/trace/length_unit", "m, cm, mm or um", "mm");
 }
 

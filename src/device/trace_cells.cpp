@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -190,6 +191,20 @@ Vec4 read_orientation(Parser& parser, std::size_t line) {
   return turn_by_angles(parser.options.angle_order, parser.radians * numbers.head<3>()).coeffs();
 }
 
+/// And another cell behind it, so that the row was not cut in the middle of the last number.
+bool holds_all_that_is_read(const Parser& parser) {
+  int last = parser.layout.button;
+  for (const int column : parser.layout.column) last = std::max(last, column);
+  return parser.fields.size() > static_cast<std::size_t>(last) + 1;
+}
+
+/// As where several sensors take turns in one table.
+bool holds_no_place(const Parser& parser) {
+  for (const Role role : {kX, kY, kZ})
+    if (!trim(parser.fields[static_cast<std::size_t>(parser.layout.column[role])]).empty()) return false;
+  return true;
+}
+
 }  // namespace
 
 bool is_number(const std::string& text) {
@@ -198,6 +213,10 @@ bool is_number(const std::string& text) {
 
 void read_sample(Parser& parser, std::size_t line) {
   if (parser.fields.size() == parser.width + 1 && parser.fields.back().empty()) parser.fields.pop_back();
+  if (parser.fields.size() < parser.width && holds_all_that_is_read(parser)) {
+    if (parser.num_short++ == 0) parser.short_line = line;
+    parser.fields.resize(parser.width);
+  }
   if (parser.fields.size() != parser.width)
     throw InputError(parser.file, parser.place(line),
                      std::to_string(parser.fields.size()) + " fields, not " + std::to_string(parser.width),
@@ -205,6 +224,10 @@ void read_sample(Parser& parser, std::size_t line) {
                          std::string(name_separator(parser.separator)));
   RawTrace& raw = parser.raw;
   const Layout& layout = parser.layout;
+  if (holds_no_place(parser)) {
+    if (parser.num_placeless++ == 0) parser.placeless_line = line;
+    return;
+  }
   if (raw.line.empty()) {
     choose_length_unit(parser, line);
     choose_time_unit(parser, line);

@@ -75,6 +75,12 @@ void check_rate(const std::string& file, const RawTrace& raw, double median) {
                      "/trace/time_unit", "s, ms, us or ns", is_slow ? guess_time_unit(median) : "");
 }
 
+double longest_gap(const std::vector<double>& time) {
+  double longest = 0.0;
+  for (std::size_t i = 1; i < time.size(); ++i) longest = std::max(longest, time[i] - time[i - 1]);
+  return longest;
+}
+
 void bridge_pauses(const std::string& file, const TraceOptions& options, double median, RawTrace& raw) {
   const std::vector<double>& t = raw.time;
   int count = 0;
@@ -83,11 +89,13 @@ void bridge_pauses(const std::string& file, const TraceOptions& options, double 
     const double gap = t[i] - t[i - 1];
     if (!(gap > kPauseIntervals * median)) continue;
     if (!(gap <= std::max((1.0 + kRounding) * options.max_gap, kMaxGapIntervals * median)))
-      throw InputError(file, print_place(raw, i),
-                       "pause of " + print_number(gap) + " s, longer than /trace/max_gap_s, " +
-                           print_number(options.max_gap) + " s, and than " + print_number(kMaxGapIntervals) +
-                           " median intervals of " + print_number(median) + " s",
-                       "cut the trace there, or set /trace/max_gap_s to bridge it by a straight line");
+      throw InputError(
+          file, print_place(raw, i),
+          "pause of " + print_number(gap) + " s, longer than /trace/max_gap_s, " +
+              print_number(options.max_gap) + " s, and than " + print_number(kMaxGapIntervals) +
+              " median intervals of " + print_number(median) + " s",
+          "cut the trace there, or bridge it by a straight line by /trace/max_gap_s, for instance " +
+              print_number(std::ceil(1000.0 * longest_gap(t)) / 1000.0));
     if (longest == 0 || gap > t[longest] - t[longest - 1]) longest = i;
     if (++count <= kMostPausesSaid)
       raw.notes.push_back("pause of " + print_number(gap) + " s at " + print_number(t[i - 1] - t[0]) +

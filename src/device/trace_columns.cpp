@@ -112,6 +112,23 @@ std::string quote(const std::vector<std::string>& names) {
   return text;
 }
 
+/// The names from the left, without those of a kind that was there before, as a list of JSON.
+std::string propose_columns(const std::vector<std::string>& names, const Layout& layout) {
+  std::string list;
+  std::string left_out;  // since the last that counts
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const bool counts =
+        std::find(layout.column.begin(), layout.column.end(), static_cast<int>(i)) != layout.column.end();
+    if (!counts) {
+      left_out += (i > 0 ? ", " : "") + std::string("\"-\"");
+      continue;
+    }
+    list += left_out + (i > 0 ? ", " : "") + '"' + std::string(trim(names[i])) + '"';
+    left_out.clear();
+  }
+  return "[" + list + "]";
+}
+
 struct Candidate {
   Role role;
   bool is_plain;
@@ -236,6 +253,13 @@ std::string_view name_role(Role role) {
   return kNames[static_cast<std::size_t>(role)];
 }
 
+bool names_a_place(const std::vector<std::string>& names) {
+  std::array<bool, kNumRoles> is_there{};
+  for (const std::string& name : names)
+    if (const auto found = find_role(name)) is_there[static_cast<std::size_t>(found->role)] = true;
+  return is_there[kX] && is_there[kY] && is_there[kZ];
+}
+
 std::string_view find_remedy(const std::string& name) {
   const std::string base = split_name(name).base;
   if (base.find("button") != std::string::npos || base.find("btn") != std::string::npos)
@@ -261,7 +285,8 @@ Layout find_layout(const std::string& file, const std::string& place, const std:
       throw InputError(
           file, place,
           "two columns for '" + names[i] + "': it and '" + names[static_cast<std::size_t>(slot)] + "'",
-          kColumnHelp);
+          "name from the left those that count by /trace/columns, for instance " +
+              propose_columns(names, layout));
     if (slot != Layout::kAbsent && is_plain) continue;  // the plain name is meant
     slot = static_cast<int>(i);
     is_plain = found->is_plain;

@@ -37,6 +37,9 @@ struct Layout {
 Layout find_layout(const std::string& file, const std::string& place, const std::vector<std::string>& names,
                    const TraceOptions& options);
 
+/// Do they name x, y and z?
+bool names_a_place(const std::vector<std::string>& names);
+
 /// How an ignored column can be read; empty: not at all.
 std::string_view find_remedy(const std::string& name);
 

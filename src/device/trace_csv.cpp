@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "device/csv.h"
@@ -18,11 +19,25 @@ bool is_header_row(const Parser& parser) {
   return true;
 }
 
+struct Comment {
+  std::string_view text;  // without its sign
+  std::size_t line = 0;
+};
+
+/// With columns named by the user, before the first sample: a row of words where the place should be.
+bool is_second_header(const Parser& parser) {
+  if (parser.options.columns.empty() || !parser.raw.line.empty() || !is_header_row(parser)) return false;
+  for (const Role role : {kX, kY, kZ}) {
+    const auto column = static_cast<std::size_t>(parser.layout.column[role]);
+    if (column >= parser.fields.size() || trim(parser.fields[column]).empty()) return false;
+  }
+  return names_a_place(parser.fields) || parser.fields.size() == parser.width;
+}
+
 /// The rows that say how a file is built.
 struct Preview {
-  std::string_view comment;  // last comment line before the first row, without its sign
-  std::size_t comment_line = 0;
-  std::string_view row[2];  // the first two
+  std::vector<Comment> comments;  // before the first row
+  std::string_view row[2];        // the first two
   int num_rows = 0;
 };
 
@@ -37,8 +52,7 @@ Preview look_at(std::string_view bytes) {
   while (preview.num_rows < 2 && lines.next(line)) {
     if (trim(line).empty()) continue;
     if (preview.num_rows == 0 && is_comment(line)) {
-      preview.comment = line.substr(1);
-      preview.comment_line = lines.line_number();
+      preview.comments.push_back({line.substr(1), lines.line_number()});
     } else {
       preview.row[preview.num_rows++] = line;
     }
@@ -46,17 +60,57 @@ Preview look_at(std::string_view bytes) {
   return preview;
 }
 
-/// Names of columns that stand in a comment, as some programs write them above rows of numbers alone.
+/// Names of columns that stand in a comment, as some programs write them above rows of numbers alone: "x y
+/// z", or behind a colon.
 std::vector<std::string> find_commented_names(Parser& parser, const Preview& preview) {
-  if (!parser.options.columns.empty() || preview.comment_line == 0 ||
+  if (!parser.options.columns.empty() ||
       std::count_if(parser.fields.begin(), parser.fields.end(), is_number) < 3)
     return {};
   std::vector<std::string> names;
-  const char separator = find_separator(preview.comment, preview.row[0]);
-  if (!split_record(preview.comment, separator, names) || names.size() != parser.fields.size()) return {};
-  parser.raw.notes.push_back("columns are named by the comment in line " +
-                             std::to_string(preview.comment_line));
-  return names;
+  for (auto comment = preview.comments.rbegin(); comment != preview.comments.rend(); ++comment) {
+    const std::string_view behind_colon = comment->text.substr(comment->text.rfind(':') + 1);
+    for (const std::string_view text : {comment->text, behind_colon}) {
+      const char separator = find_separator(text, preview.row[0]);
+      if (!split_record(text, separator, names) || names.size() != parser.fields.size() ||
+          !names_a_place(names))
+        continue;
+      parser.raw.notes.push_back("columns are named by the comment in line " + std::to_string(comment->line));
+      return names;
+    }
+  }
+  return {};
+}
+
+/// Refuses numbers that nothing names, with the names that they are likely to have: a time that grows, a
+/// place, and what has the length of a unit quaternion.
+[[noreturn]] void refuse_nameless(const Parser& parser, std::size_t line, const Preview& preview) {
+  constexpr double kMaxUnitError = 1e-3;
+  std::vector<double> number;
+  for (const std::string& field : parser.fields) number.push_back(find_number(field).value_or(0.0));
+  std::vector<std::string> next;
+  const bool has_next = preview.num_rows > 1 && split_record(preview.row[1], parser.separator, next);
+  const std::size_t count = number.size();
+  const auto ends_with_quaternion = [&](std::size_t before) {
+    double squares = 0.0;
+    for (std::size_t i = before; i < before + 4 && before + 4 <= count; ++i) squares += number[i] * number[i];
+    return std::abs(std::sqrt(squares) - 1.0) <= kMaxUnitError;
+  };
+  const bool has_time = count > 3 && has_next && find_number(next[0]).value_or(number[0]) > number[0] &&
+                        !(count == 7 && ends_with_quaternion(3));
+  std::string names = has_time ? R"("t", "x", "y", "z")" : R"("x", "y", "z")";
+  const bool has_quaternion = ends_with_quaternion(has_time ? 4 : 3);
+  if (has_quaternion) names += R"(, "qx", "qy", "qz", "qw")";
+  throw InputError(parser.file, parser.place(line),
+                   "no columns x, y, z: nothing names these " + std::to_string(count) + " numbers",
+                   "name them from the left by /trace/columns, for instance [" + names + "]" +
+                       (has_quaternion ? ", or with \"qw\" before \"qx\"" : ""));
+}
+
+/// Is the second row the one with the names? Some programs write above them which sensor they belong to.
+bool stands_above_names(const Parser& parser, const Preview& preview) {
+  if (!parser.options.columns.empty() || preview.num_rows < 2 || names_a_place(parser.fields)) return false;
+  std::vector<std::string> next;
+  return split_record(preview.row[1], parser.separator, next) && names_a_place(next);
 }
 
 /// Takes the first row: names of columns, or already a sample when the user or a comment named them.
@@ -70,6 +124,9 @@ void read_first_row(Parser& parser, std::size_t line, const Preview& preview) {
         std::to_string(columns.size()) + " columns are named but the row has " + std::to_string(parser.width),
         "name no more than there are");
   const std::vector<std::string> commented = find_commented_names(parser, preview);
+  const bool are_all_numbers = std::all_of(parser.fields.begin(), parser.fields.end(), is_number);
+  if (columns.empty() && commented.empty() && parser.width > 2 && are_all_numbers)
+    refuse_nameless(parser, line, preview);
   const std::vector<std::string>& names = !columns.empty()     ? columns
                                           : !commented.empty() ? commented
                                                                : parser.fields;
@@ -98,6 +155,12 @@ void note_reading(Parser& parser) {
     notes.push_back(note);
   }
   if (parser.comma_line != 0) notes.push_back("numbers have decimal commas");
+  if (parser.num_short > 0)
+    notes.push_back("rows that lack columns which are not used: " + std::to_string(parser.num_short) +
+                    ", the first in line " + std::to_string(parser.short_line));
+  if (parser.num_placeless > 0)
+    notes.push_back("rows without a place, left out: " + std::to_string(parser.num_placeless) +
+                    ", the first in line " + std::to_string(parser.placeless_line));
   parser.raw.ignored_columns = parser.layout.ignored;
 }
 
@@ -121,14 +184,20 @@ RawTrace parse_csv(const std::string& file, const std::string& text, const Trace
       read_header_line(parser, number, line.substr(1), ours);
       continue;
     }
+    if (!in_body && !ours && trim(line).empty()) continue;
     if (!in_body) check_body(parser, bytes.substr(lines.line_offset()));
     in_body = true;
     if (trim(line).empty()) continue;
     if (!split_record(line, parser.separator, parser.fields))
       throw InputError(file, parser.place(number), "a quoted field is not closed",
                        "close it, or remove the quotes");
-    if (parser.width == 0)
+    if (parser.width == 0 && stands_above_names(parser, preview))
+      parser.raw.notes.push_back("line " + std::to_string(number) +
+                                 " stands above the names, and is not used");
+    else if (parser.width == 0)
       read_first_row(parser, number, preview);
+    else if (is_second_header(parser))
+      parser.raw.notes.push_back("line " + std::to_string(number) + " holds names, and is not used");
     else if (!take_units_row(parser))
       read_sample(parser, number);
   }

@@ -21,8 +21,12 @@ struct Parser {
   Layout layout = {};
   std::size_t width = 0;
   char separator = ',';
-  std::size_t comma_line = 0;    // first line with a decimal comma; 0: none yet
-  std::size_t point_line = 0;    // with a decimal point
+  std::size_t comma_line = 0;     // first line with a decimal comma; 0: none yet
+  std::size_t point_line = 0;     // with a decimal point
+  std::size_t num_placeless = 0;  // rows whose x, y and z are empty
+  std::size_t placeless_line = 0;
+  std::size_t num_short = 0;  // rows that end before the last column, behind all that is read
+  std::size_t short_line = 0;
   std::string header_unit = {};  // of length, as our own header says; empty: not said
   bool is_calendar = false;      // times are dates or times of day
   double per_second = 1.0;       // of the numbers in the time column

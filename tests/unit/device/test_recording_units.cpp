@@ -179,7 +179,8 @@ TEST(RecordingPauses, AreBridgedAndSaidUpToALengthThatCanBeSet) {
   options.max_gap = 0.2;
   EXPECT_EQ(read(with_pause(0.11), options).notes.size(), 1U);
   options.max_gap = 0.011;
-  expect_refused(with_pause(0.012), "line 13", "or set /trace/max_gap_s to bridge it", options);
+  expect_refused(with_pause(0.012), "line 13",
+                 "or bridge it by a straight line by /trace/max_gap_s, for instance 0.012", options);
 }
 
 // A hand that goes straight on: the place in the middle of the pause is the middle one.

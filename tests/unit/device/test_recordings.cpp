@@ -77,6 +77,51 @@ TEST(Recordings, AreReadWithNamesInTheCommentAboveTheNumbers) {
   expect_refused("# made by hand\n0,1.5,-2,3\n0.5,4,5,0.25\n", "line 2", "no columns x, y, z");
 }
 
+TEST(Recordings, AreReadWithNamesBehindAColonInAnyCommentAbove) {
+  TraceOptions options;
+  options.default_rate_hz = 2.0;
+  const Trace trace = read(
+      "% Columns are: x(m) y(m) z(m) yaw(rad) pitch(rad) roll(rad)\n% made by hand\n\n%---\n1.5 -2 3 0 0 "
+      "0\n4 5 0.25 "
+      "0 0 0\n",
+      options);
+  expect_two_samples(trace, "behind a colon");
+  EXPECT_TRUE(has_note(trace, "named by the comment in line 1"));
+}
+
+/// What such numbers are, the user says; the message has what is likely, from how many they are, a first one
+/// that grows and four of unit length.
+TEST(Recordings, WithoutNamesAreRefusedWithLikelyOnes) {
+  const auto expect_likely = [](const std::string& text, const std::string& names) {
+    expect_refused(text, "line 1", "by /trace/columns, for instance [" + names + "]");
+  };
+  expect_likely("10.5 1 2 3 0 0 0.6 0.8\n10.6 1 2 3 0 0 0 1\n",
+                R"("t", "x", "y", "z", "qx", "qy", "qz", "qw")");
+  expect_likely("1 2 3 0 0 0.6 0.8\n2 2 3 0 0 0 1\n", R"("x", "y", "z", "qx", "qy", "qz", "qw")");
+  expect_likely("0,1,2,3\n0.1,1,2,3\n", R"("t", "x", "y", "z")");
+  expect_likely("1,2,3\n1,2,4\n", R"("x", "y", "z")");
+}
+
+/// Two sensors take turns in one table, with a row above the names that says which is which. Rows end where
+/// the sensor's cells do.
+TEST(Recordings, OfSeveralSensorsAreReadByTheColumnsThatTheMessageProposes) {
+  const std::string text =
+      ",a,a,a,b,b,b,\nTime (s),Pos_x (mm), Pos_y (mm), Pos_z (mm),Pos_x (mm), Pos_y (mm), Pos_z (mm),\n"
+      "0,1500,-2000,3000,\n0.25,,,,7,8,9,\n0.5,4000,5000,250,\n";
+  expect_refused(text, "line 2",
+                 R"~(for instance ["Time (s)", "Pos_x (mm)", "Pos_y (mm)", "Pos_z (mm)"])~");
+  TraceOptions options;
+  options.columns = {"Time (s)", "Pos_x (mm)", "Pos_y (mm)", "Pos_z (mm)"};
+  options.max_gap = 1.0;
+  const Trace trace = read(text, options);
+  expect_two_samples(trace, "two sensors");
+  EXPECT_TRUE(has_note(trace, "line 2 holds names"));
+  EXPECT_TRUE(has_note(trace, "rows without a place, left out: 1, the first in line 4"));
+  EXPECT_TRUE(has_note(trace, "rows that lack columns which are not used: 2, the first in line 3"));
+  // A row that was cut in what is read is no such row.
+  expect_refused(text + "0.75,1,2,3", "line 6", "4 fields, not 7", options);
+}
+
 TEST(Recordings, SpellQuaternionsInTheUsualWays) {
   // A quarter turn about x.
   for (const std::string names :

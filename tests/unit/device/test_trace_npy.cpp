@@ -82,7 +82,7 @@ TEST_F(Npy, WhatTheFileDoesNotSayAKeyDoes) {
   expect_refused(
       file,
       "hand.npy: no time column and no sampling rate; name a column t [s] or give the rate in Hz by "
-      "/trace/default_rate_hz");
+      "/trace/default_rate_hz, for instance 1000");
   options.default_rate_hz = 100.0;
   options.length_unit = LengthUnit::cm;
   const Trace trace = read(file);
