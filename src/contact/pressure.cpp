@@ -148,10 +148,10 @@ bool PressureContact::turns(const FacePiece& piece, const Vec3& centre) {
   });
 }
 
-/// Of the first pieces, beside which corners press. A face that stays flat takes pieces of a ball's depth as
-/// soon as they count at all, however small their part, and its corners come off it. So a part of them that
-/// grows from nothing would jump, the more the stiffer κ. What grows is how far they are below the plane of
-/// the corners' depths: κ has no say in it.
+/// Of the first pieces of a face that stays flat, beside which corners press. It takes pieces of a ball's
+/// depth as soon as they count at all, however small their part, and its corners come off it. So a part of
+/// them that grows from nothing would jump, the more the stiffer κ. What grows is how far they are below the
+/// plane of the corners' depths: κ has no say in it.
 PressureContact::PieceRule PressureContact::make_first_rule(const Face& face, double share,
                                                             double own_depth) const {
   PieceRule rule{share, own_depth};
@@ -234,7 +234,7 @@ void PressureContact::press_face(Face& face, double spacing, const Points& x, Co
   const double share = std::clamp((levels - level - 0.5) / passage + 0.5, 0.0, 1.0);
   // Beside corners the first pieces soon bear most: what they bear is no more than corners would, and comes
   // up to what pieces do.
-  const bool is_first = level == 0 && finds_near() && !is_rigid(face);
+  const bool is_first = level == 0 && finds_near() && m_stiffness.are_flat && !is_rigid(face);
   const double by_finer = is_first ? 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share) : share;
   face.cover = {};
   face.by_corners = 0.0;
@@ -346,6 +346,7 @@ void PressureContact::find_unpressed(const Points& x, const Pose& pose, Contacts
 /// Of the patch as large as it is at one time, from one that the tool's way draws out along the surface: of a
 /// disc of radius r, by w, to π r² + 2 r w.
 double PressureContact::find_radius_at_end(const Points& x) const {
+  if (m_places.size() < 2) return m_patch_radius;
   const Vec3 path = m_places.back().position - m_places.front().position;
   Vec3 normal = Vec3::Zero();
   for (const Face& face : m_faces)

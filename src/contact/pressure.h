@@ -20,6 +20,7 @@ struct SurfaceStiffness {
   Field modulus;   ///< E/(1 − ν²) [Pa] of the body under it, for a tool that it does not yield to
   std::vector<char> is_rigid = {};  ///< its corners cannot give way; empty: none of them is such
   Field cell = {};                  ///< edge of a regular tet as large as that under it [m]; empty: not known
+  bool are_flat = true;  ///< triangles stay flat as the body gives way, as those of four-node tets do
 };
 
 /// The same of one triangle.

@@ -54,6 +54,7 @@ contact::SurfaceStiffness SurfaceModuli::find_all() const {
     all.cell(triangle) = find_cell(tet);
     all.is_rigid[static_cast<std::size_t>(triangle)] = is_held(triangle) ? 1 : 0;
   }
+  all.are_flat = m_solid.model.elements.nodes_per_tet == 4;
   return all;
 }
 

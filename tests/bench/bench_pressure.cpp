@@ -1,9 +1,9 @@
-// What a tick's contact costs by the pressure law: the tool, the motion and the body of the dry
-// demonstration, whose places in 200 steps are kept and met again and again, with no step between.
-//   build/bin/bench_pressure
-// press: as it was · beside: the tool 1.5 mm farther out, so that it comes near and does not touch. Counters:
-// contacts, and points near the tool, of a tick; `mean_force`, equal before and after a change that is meant
-// to be faster.
+// What a tick's contact costs by pressure and by pairs, on the same places of a body under a tool: 200 ticks
+// are recorded, and met again and again with no step between.
+//   build/bin/bench_pressure --benchmark_enable_random_interleaving=true --benchmark_repetitions=9
+// tip: the dry demonstration · ball: the soft dinosaur on 5000 even tets · press: as it was · beside: the
+// tool 1.5 mm farther out, so that it comes near and does not touch. Counters: contacts, and points near the
+// tool, of a tick; `mean_force`, equal before and after a change that is meant to be faster.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -25,9 +25,8 @@ struct Scene {
   std::vector<scenario::Setting> settings = {};
 };
 const Scene kTip = {"demo_dino_dry.json", 0.45};
-const Scene kBall = {"study_soft_dino.json",
-                     0.55,
-                     {{"/body/cells/kind", "even"}, {"/body/shape/target_tets", "5000"}}};
+const Scene kBall = {
+    "study_soft_dino.json", 0.55, {{"/body/cells/kind", "even"}, {"/body/shape/target_tets", "5000"}}};
 
 constexpr Tick kTicksBefore = 300;  // then it presses
 constexpr int kTicks = 200;
@@ -93,8 +92,7 @@ class Playback {
  public:
   explicit Playback(Recorded& recorded, double gap) : m_recorded(recorded), m_gap(gap) {
     // The way out of the body, which the tool comes from.
-    const Vec3 out =
-        (recorded.pose_at(0).position - recorded.surface_at(0).rowwise().mean()).normalized();
+    const Vec3 out = (recorded.pose_at(0).position - recorded.surface_at(0).rowwise().mean()).normalized();
     m_out = Vec3(0.0, out.y() < 0.0 ? -1.0 : 1.0, 0.0);
     from = to = recorded.surface_at(0);
     begin = end = place(0);
