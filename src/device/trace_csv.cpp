@@ -24,14 +24,9 @@ struct Comment {
   std::size_t line = 0;
 };
 
-/// With columns named by the user, before the first sample: a row of words where the place should be.
+/// With columns named by the user, before the first sample: another row of names.
 bool is_second_header(const Parser& parser) {
-  if (parser.options.columns.empty() || !parser.raw.line.empty() || !is_header_row(parser)) return false;
-  for (const Role role : {kX, kY, kZ}) {
-    const auto column = static_cast<std::size_t>(parser.layout.column[role]);
-    if (column >= parser.fields.size() || trim(parser.fields[column]).empty()) return false;
-  }
-  return names_a_place(parser.fields) || parser.fields.size() == parser.width;
+  return !parser.options.columns.empty() && parser.raw.line.empty() && names_a_place(parser.fields);
 }
 
 /// The rows that say how a file is built.

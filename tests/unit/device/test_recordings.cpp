@@ -108,8 +108,7 @@ TEST(Recordings, OfSeveralSensorsAreReadByTheColumnsThatTheMessageProposes) {
   const std::string text =
       ",a,a,a,b,b,b,\nTime (s),Pos_x (mm), Pos_y (mm), Pos_z (mm),Pos_x (mm), Pos_y (mm), Pos_z (mm),\n"
       "0,1500,-2000,3000,\n0.25,,,,7,8,9,\n0.5,4000,5000,250,\n";
-  expect_refused(text, "line 2",
-                 R"~(for instance ["Time (s)", "Pos_x (mm)", "Pos_y (mm)", "Pos_z (mm)"])~");
+  expect_refused(text, "line 2", R"~(for instance ["Time (s)", "Pos_x (mm)", "Pos_y (mm)", "Pos_z (mm)"])~");
   TraceOptions options;
   options.columns = {"Time (s)", "Pos_x (mm)", "Pos_y (mm)", "Pos_z (mm)"};
   options.max_gap = 1.0;
@@ -120,6 +119,14 @@ TEST(Recordings, OfSeveralSensorsAreReadByTheColumnsThatTheMessageProposes) {
   EXPECT_TRUE(has_note(trace, "rows that lack columns which are not used: 2, the first in line 3"));
   // A row that was cut in what is read is no such row.
   expect_refused(text + "0.75,1,2,3", "line 6", "4 fields, not 7", options);
+}
+
+TEST(Recordings, WithColumnsNamedByTheUserStillTakeTheRowOfUnits) {
+  TraceOptions options;
+  options.columns = {"t", "x", "y", "z"};
+  options.max_gap = 1.0;
+  expect_two_samples(read("a,b,c,d\n(s),(mm),(mm),(mm)\n0,1500,-2000,3000\n0.5,4000,5000,250\n", options),
+                     "units");
 }
 
 TEST(Recordings, SpellQuaternionsInTheUsualWays) {
