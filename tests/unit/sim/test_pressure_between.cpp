@@ -319,6 +319,13 @@ TEST(PressureStiffness, ToolThatIsDrawnBackStaysInTouch) {
   for (std::size_t k = 0; k < fine.size(); ++k) ASSERT_LT((coarse[k] - fine[k]).norm(), 0.03 * peak) << k;
 }
 
+/// A ball of another radius so deep below the top of the block.
+device::DeviceSample press_with(double radius, double depth, double x = 0.0) {
+  device::DeviceSample sample = press_block(0.0, x);
+  sample.position.z() = test::kBlockHeight + radius - depth;
+  return sample;
+}
+
 /// A ball that slides, a sixth of a cell in a step, over the length of a cell: the mean over the way neither
 /// drives it nor holds it, what clay turns and stretches on the way is a part of the step's force with
 /// friction or without (0.0045 and 0.0042 else), and what presses behind alternates no more than what presses
@@ -330,11 +337,7 @@ TEST(PressureStiffness, SlideInLongStepsIsTheOneInShortSteps) {
     Vec3 mean = Vec3::Zero();
     double buzz = 0.0;  // root mean square of what goes back and forth [N]
   };
-  const auto hand = [](double depth, double x) {
-    device::DeviceSample sample = press_block(0.0, x);
-    sample.position.z() = test::kBlockHeight + kLarge - depth;
-    return sample;
-  };
+  const auto hand = [](double depth, double x) { return press_with(kLarge, depth, x); };
   const auto slide = [&](int period, double friction) {
     Params params = make_pressure_params(period);
     params.solid.solver.tolerance = 1e-6;
@@ -366,11 +369,7 @@ TEST(PressureStiffness, SlideInLongStepsIsTheOneInShortSteps) {
 TEST(PressureStiffness, DoubledChangesNoForceByAHundredth) {
   constexpr double kLarge = 0.016;
   constexpr double kDepth = 4e-3;
-  const auto hand = [](double depth) {
-    device::DeviceSample sample = press_block(0.0);
-    sample.position.z() = test::kBlockHeight + kLarge - depth;
-    return sample;
-  };
+  const auto hand = [](double depth) { return press_with(kLarge, depth); };
   std::vector<double> forces;
   double automatic = 0.0;
   for (const double factor : {0.0, 1.0, 2.0, 10.0, 100.0}) {
@@ -395,11 +394,7 @@ TEST(PressureStiffness, DoubledChangesNoForceByAHundredth) {
 TEST(PressureStiffness, DoubledChangesNoTickByAHundredth) {
   constexpr double kLarge = 0.03, kDepth = 6e-3, kCell = 4.5e-3;  // edge of a regular tet as large as a cell
   constexpr int kTicks = 140;
-  const auto hand = [](double depth) {
-    device::DeviceSample sample = press_block(0.0);
-    sample.position.z() = test::kBlockHeight + kLarge - depth;
-    return sample;
-  };
+  const auto hand = [](double depth) { return press_with(kLarge, depth); };
   std::vector<std::vector<Vec3>> forces;
   double automatic = 0.0;
   for (const double factor : {0.0, 2.0}) {
