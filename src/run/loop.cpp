@@ -143,7 +143,6 @@ Tick find_no_cells_until(const Snapshot& checkpoint) {
 
 LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, sim::Simulation& simulation,
                  FullModel* full, output::ResultFile& file, bool shows_progress, Tick no_cells_until) {
-  watch_signals();
   Progress progress(num_ticks, shows_progress);
   RecordedTicks ticks(s, simulation, full, file, !shows_progress);
   ticks.remesher().wait_until(no_cells_until);

@@ -72,8 +72,9 @@ struct LoopEnd {
 };
 
 /// Feeds the simulation the hand's motion from its present tick to `num_ticks`, with record and checkpoints.
-/// A signal ends it after the next physics step, with a checkpoint there. `full`, if any, goes beside.
-/// `no_cells_until`: what a checkpoint that it goes on from has of find_no_cells_until.
+/// A signal that is watched (interrupt.h) ends it after the next physics step, with a checkpoint there.
+/// `full`, if any, goes beside. `no_cells_until`: what a checkpoint that it goes on from has of
+/// find_no_cells_until.
 LoopEnd run_loop(const scenario::Scenario& s, Tick num_ticks, HandMotion& hand, sim::Simulation& simulation,
                  FullModel* full, output::ResultFile& file, bool shows_progress, Tick no_cells_until = -1);
 

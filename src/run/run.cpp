@@ -13,6 +13,7 @@
 #include "run/accuracy.h"
 #include "run/files.h"
 #include "run/identity.h"
+#include "run/interrupt.h"
 #include "run/loop.h"
 #include "run/ready_run.h"
 #include "run/replay.h"
@@ -208,6 +209,7 @@ RunEnd run_loaded(const scenario::Scenario& s, const RunOptions& options) {
     from.state.clear();
   }
   const Tick first = simulation.clock().tick;
+  watch_signals();  // before there is a file that is half made
   std::optional<output::ResultFile> file;
   if (from.kind == ResumePoint::Kind::checkpoint)
     file.emplace(result, first, count_frames(s, first), s.frame_precision);

@@ -274,6 +274,7 @@ class Runner {
     const std::string stem = part(job);
     fs::remove(stem + ".xdmf", error);  // it names a file that moves
     const std::string file = stem + ".h5";
+    fs::remove(file + ".part", error);  // of a run that was killed while it made the file
     if (!fs::exists(file)) {
       result.reason = leave_out_folder(read_last_words(log_of(job.place)), m_cases[job.place].scenario);
       return;

@@ -119,6 +119,28 @@ class Interrupt(unittest.TestCase):
         self.assertEqual(refused["outcome"], "refused")
         self.assertEqual({refused[name] for name in COSTS}, {""})  # unknown, not free
 
+    def test_a_run_told_to_end_while_it_makes_its_file_leaves_a_whole_one(self):
+        result = self.folder / "cut.h5"
+        part = self.folder / "cut.h5.part"
+        for _ in range(20):  # the file is made in a few ms, and may be missed
+            result.unlink(missing_ok=True)
+            with subprocess.Popen([ARGIL, "run", "scene.json", "-o", "cut.h5", "-q"], cwd=self.folder,
+                                  stderr=subprocess.PIPE, text=True) as run:
+                while not part.exists() and not result.exists() and run.poll() is None:
+                    pass
+                is_met = part.exists()
+                run.terminate()
+                error = run.communicate(timeout=60)[1]
+            if is_met:
+                break
+        self.assertTrue(is_met)
+        self.assertEqual(run.returncode, 130, error)
+        self.assertFalse(part.exists())
+        again = subprocess.run([ARGIL, "run", "scene.json", "-o", "cut.h5", "--resume"], cwd=self.folder, capture_output=True,
+                               text=True, timeout=300)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertIn("resumed after tick", again.stdout)
+
     def test_runs_of_minutes_end_at_once(self):
         write_press(self.folder / "press.csv", 600.0)
         words = self.write_map()
