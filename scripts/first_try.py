@@ -29,7 +29,7 @@ from table_file import write_table
 
 ROOT = Path(__file__).resolve().parent.parent
 MOTIONS = (".csv", ".tsv", ".txt", ".npy", ".h5", ".hdf5")
-MESHES = (".obj", ".stl", ".ply", ".msh", ".mesh", ".vtk", ".vtu", ".veg", ".node")
+MESHES = (".obj", ".off", ".stl", ".ply", ".msh", ".mesh", ".vtk", ".vtu", ".veg", ".node")
 TICKS, PATIENCE, MOST_REMEDIES = 50, 300, 5  # patience in seconds a command
 HOW = ("at first try", "by the remedy", "as its source tells", "refused", "failed")
 CUBE = [(x, y, z) for z in (0, 0.06) for y in (0, 0.06) for x in (0, 0.06)]

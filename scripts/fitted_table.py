@@ -86,7 +86,7 @@ def main():
         write_shapes(folder)
         surfaces = sorted(folder.glob("*.obj"))
         for other in options.folders:
-            surfaces += sorted(file for file in other.iterdir() if file.suffix.lower() in (".obj", ".ply", ".stl"))
+            surfaces += sorted(file for file in other.iterdir() if file.suffix.lower() in (".obj", ".off", ".ply", ".stl"))
         for surface in surfaces:
             for fit in ("surface", "enclose"):
                 for number in options.tets:

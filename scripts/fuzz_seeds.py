@@ -76,7 +76,7 @@ def tet_files():
 
 
 def surface_files():
-    """.obj .stl .ply"""
+    """.obj .stl .ply .off"""
     yield 0, lines(("v", *p) for p in POINTS[:4]) + lines(("f", *(v + 1 for v in f)) for f in FACES)
     yield 1, "solid x\n" + "".join("facet normal 0 0 0\nouter loop\n" + lines(("vertex", *POINTS[v]) for v in f) +
                                     "endloop\nendfacet\n" for f in FACES) + "endsolid x\n"
@@ -88,6 +88,7 @@ def surface_files():
     for name, order in (("binary_little_endian", "<"), ("binary_big_endian", ">")):
         yield 2, head.format(name).encode() + b"".join(struct.pack(order + "3f", *p) for p in POINTS[:4]) + \
             b"".join(struct.pack(order + "B3i", 3, *f) for f in FACES)
+    yield 3, "OFF\n4 4 6\n" + lines(POINTS[:4]) + lines((3, *f) for f in FACES)
 
 
 def json_files(pattern):
@@ -102,7 +103,7 @@ def head(file, size=4000):
 
 def shared_files(shared):
     """Small public files and beginnings of larger ones, by reader."""
-    endings = {"tets": [".msh", ".mesh", ".node", ".vtk", ".vtu", ".veg"], "surfaces": [".obj", ".stl", ".ply"]}
+    endings = {"tets": [".msh", ".mesh", ".node", ".vtk", ".vtu", ".veg"], "surfaces": [".obj", ".stl", ".ply", ".off"]}
     for name, folder in (("tets", "tets"), ("surfaces", "surface")):
         for file in sorted((shared / folder).glob("*")):
             if file.suffix in endings[name] and file.stat().st_size < 8000:

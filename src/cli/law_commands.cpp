@@ -28,7 +28,7 @@ struct Options {
   std::string first, second;
   double separation = 0.0;
   embed::CageOptions cage;
-  std::string fit = "enclose";
+  std::string fit = "surface";
   std::string motion;
   double near_size = 0.0;  // [m]
   double scale = 1.0;
@@ -96,11 +96,14 @@ void add_law_commands(CLI::App& app, int& code) {
   ccd->callback([o, &code] { code = print_times_of_impact(o->second, o->first, o->separation); });
 
   CLI::App* cage = app.add_subcommand("cage", "make a tetrahedral body of a surface");
-  cage->add_option("SURFACE", o->first, "OBJ, STL or PLY, clean or not")->required();
+  cage->add_option("SURFACE", o->first, "OBJ, OFF, PLY or STL, clean or not")->required();
   cage->add_option("-o,--output", o->second, "cage (Gmsh, .msh)")->required();
-  cage->add_option("--tets", o->cage.target_tets, "wanted number of tets")->check(CLI::Range(100, 5000000));
+  cage->add_option("--tets", o->cage.target_tets, "wanted number of tets")
+      ->check(CLI::Range(100, 5000000))
+      ->capture_default_str();
   cage->add_option("--fit", o->fit, "surface: the boundary lies on it; enclose: it is all inside")
-      ->check(CLI::IsMember({"surface", "enclose"}));
+      ->check(CLI::IsMember({"surface", "enclose"}))
+      ->capture_default_str();
   CLI::Option* near = cage->add_option("--near", o->motion, "trace: cells are small where it goes");
   CLI::Option* size = cage->add_option("--near-size", o->near_size, "their size there, in metres")
                           ->check(finite_number(false));

@@ -247,7 +247,7 @@ void add_run_commands(CLI::App& app, int& code) {
   });
 
   CLI::App* making = app.add_subcommand("new", "write a short scenario of a mesh and a recorded motion");
-  making->add_option("MESH", o->made.mesh, "surface (OBJ, STL, PLY) or tetrahedral mesh")->required();
+  making->add_option("MESH", o->made.mesh, "surface (OBJ, OFF, PLY, STL) or tetrahedral mesh")->required();
   making->add_option("TRACE", o->made.trace, "recorded motion")->required();
   making->add_option("-o,--output", o->made.output, "scenario (default: the mesh's name with .json)");
   making->add_option("--tool-radius", o->made.tool_radius, "of the ball [m] (default: by the body)")

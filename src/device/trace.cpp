@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/read_file.h"
+#include "base/text_encoding.h"
 #include "device/trace_checks.h"
 
 namespace argil::device {
@@ -97,7 +98,7 @@ Trace read_trace(const std::string& file, const TraceOptions& options) {
   const bool is_npy = bytes.starts_with("\x93NUMPY");
   RawTrace raw = is_hdf5  ? internal::read_hdf5(file, options)
                  : is_npy ? internal::parse_npy(file, bytes, options)
-                          : internal::parse_csv(file, bytes, options);
+                          : internal::parse_csv(file, to_utf8(bytes), options);
   fill_times(file, options, raw);
   internal::check_times(file, options, raw);
   const double scale = raw.device_to_world.scale * options.device_to_world.scale;

@@ -163,10 +163,7 @@ void note_reading(Parser& parser) {
 
 RawTrace parse_csv(const std::string& file, const std::string& text, const TraceOptions& options) {
   Parser parser{file, options};
-  std::string_view bytes = text;
-  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // byte order mark
-  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
-    throw InputError(file, "line 1", "the text is UTF-16", "save it as UTF-8");
+  const std::string_view bytes = text;
   const Preview preview = look_at(bytes);
   parser.separator = find_separator(preview.row[0], preview.row[1]);
   LineReader lines(bytes);

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/read_file.h"
+#include "base/text_encoding.h"
 
 namespace argil::mesh_files {
 namespace {
@@ -39,7 +40,7 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-FileCursor::FileCursor(const std::string& file) : m_file(file), m_bytes(read_file(file)) {}
+FileCursor::FileCursor(const std::string& file) : m_file(file), m_bytes(to_utf8(read_file(file))) {}
 
 void FileCursor::seek(std::size_t offset) {
   m_offset = m_last = std::min(offset, m_bytes.size());

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/lower_case.h"
+#include "mesh/topology.h"
 #include "mesh_files/surface_file.h"
 #include "mesh_files/tet_file.h"
 
@@ -34,6 +35,14 @@ void leave_out_unused(Points& vertices, Elements& elements, FileVertices* told) 
   if (told != nullptr) *told = std::move(made);
 }
 
+// Numbers every tet the other way round where all have a negative volume.
+bool turn_mirrored(mesh::TetMesh& mesh) {
+  const Field volumes = mesh::compute_volumes(mesh.vertices, mesh.tets);
+  if (!(volumes.maxCoeff() <= 0.0 && volumes.minCoeff() < 0.0)) return false;
+  mesh.tets.row(2).swap(mesh.tets.row(3));
+  return true;
+}
+
 // Ending of the name in small letters, with its dot.
 std::string find_ending(const std::string& file) {
   return to_lower_case(std::filesystem::path(file).extension().string());
@@ -54,10 +63,11 @@ mesh::TetMesh read_all_tets(const std::string& file, double scale) {
 mesh::TriangleMesh read_all_triangles(const std::string& file, double scale) {
   const std::string ending = find_ending(file);
   if (ending == ".obj") return read_obj(file, scale);
+  if (ending == ".off") return read_off(file, scale);
   if (ending == ".stl") return read_stl(file, scale);
   if (ending == ".ply") return read_ply(file, scale);
   throw InputError(file, "", "ending \"" + ending + "\" is no known surface format",
-                   "use .obj, .stl or .ply");
+                   "use .obj, .off, .ply or .stl");
 }
 
 }  // namespace
@@ -69,17 +79,24 @@ int FileVertices::find(int place) const {
 }
 
 std::string FileVertices::describe(const std::string& file, const std::string& element) const {
-  if (num_left_out() == 0) return "";
+  const std::string turned = is_mirrored
+                                 ? file + ": every " + element +
+                                       " is numbered the other way round, with a negative volume; two of its "
+                                       "corners are swapped"
+                                 : "";
+  if (num_left_out() == 0) return turned;
   int first = 0;
   while (find(first) >= 0) ++first;
   return file + ": " + std::to_string(num_left_out()) + " of " + std::to_string(num_in_file) +
          " vertices belong to no " + element + " and are left out, number " + std::to_string(first) +
-         " (from 0) the first";
+         " (from 0) the first" + (turned.empty() ? "" : "; " + turned);
 }
 
 mesh::TetMesh read_tet_mesh(const std::string& file, double scale, FileVertices* vertices) {
   mesh::TetMesh mesh = read_all_tets(file, scale);
   leave_out_unused(mesh.vertices, mesh.tets, vertices);
+  const bool is_mirrored = turn_mirrored(mesh);
+  if (vertices != nullptr) vertices->is_mirrored = is_mirrored;
   return mesh;
 }
 

@@ -27,6 +27,7 @@ mesh::TriangleMesh make_triangle_mesh(const SurfaceFile& file, const FileCursor&
 
 /// Readers of one format each. Throw InputError or IoError.
 mesh::TriangleMesh read_obj(const std::string& file, double scale);
+mesh::TriangleMesh read_off(const std::string& file, double scale);
 mesh::TriangleMesh read_stl(const std::string& file, double scale);
 mesh::TriangleMesh read_ply(const std::string& file, double scale);
 

@@ -45,7 +45,7 @@ double size_of(const mesh::Box& box) {
 
 bool is_surface(const std::string& file) {
   const std::string ending = to_lower_case(std::filesystem::path(file).extension().string());
-  return ending == ".obj" || ending == ".stl" || ending == ".ply";
+  return ending == ".obj" || ending == ".off" || ending == ".stl" || ending == ".ply";
 }
 
 mesh::Box read_box(const std::string& file) {

@@ -112,7 +112,7 @@ void bind_body(Binder& b, BodySpec& body, sim::Params& p, const std::string& fol
            "Height of one tet near the top as a share of what it was, to see what a bad tet does; 1: none.")
       .applies = only(BodyKind::shape);
   b.path("/body/surface/file", body.file, folder,
-         "Triangle surface (OBJ, STL, PLY); it becomes the skin in a cage.")
+         "Triangle surface (OBJ, OFF, PLY, STL); it becomes the skin in a cage.")
       .applies = only(BodyKind::surface);
   b.number("/body/surface/scale", body.scale, size_range(), "", "Metres per unit of the file.").applies =
       only(BodyKind::surface);

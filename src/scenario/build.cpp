@@ -99,7 +99,9 @@ void add_note(std::string note, Scene& scene) {
 /// The scenario's lists of vertices number those of this file.
 void add_note_of_lists(const std::string& file, Scene& scene) {
   const std::string note = scene.file_vertices.describe(file, "tet");
-  if (!note.empty()) scene.notes.push_back(note + "; lists of vertices go on counting them");
+  if (note.empty()) return;
+  const bool has_gaps = scene.file_vertices.num_left_out() > 0;
+  scene.notes.push_back(note + (has_gaps ? "; lists of vertices go on counting them" : ""));
 }
 
 mesh::TriangleMesh read_surface(const std::string& file, double scale, Scene& scene) {

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/read_file.h"
+#include "base/text_encoding.h"
 
 namespace argil::scenario {
 namespace {
@@ -133,7 +134,7 @@ Json read_json(const std::string& file) {
   if (missing) throw InputError(file, "", "cannot be read (" + missing.message() + ")", "check the path");
   if (size > kMaxBytes)
     throw InputError(file, "", "is larger than 64 MiB", "a scenario is small; is this the right file?");
-  return parse_json(read_file(file), file);
+  return parse_json(to_utf8(read_file(file)), file);
 }
 
 std::string find_nearest(const std::string& key, const std::vector<std::string>& keys) {

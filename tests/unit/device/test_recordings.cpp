@@ -155,8 +155,16 @@ TEST(Recordings, WithAPlainNameAndAnotherOfItsKindTakeThePlainOne) {
   expect_refused("t,X,pos_x,y,z\n0,0,0,0,0\n", "line 1", "two columns for 'pos_x': it and 'X'");
 }
 
-TEST(Recordings, InUtf16AreRefusedByName) {
-  expect_refused(std::string("\xFF\xFEt\0,\0x\0", 8), "line 1", "UTF-16");
+TEST(Recordings, InUtf16AreRead) {
+  const std::string text = "t,x,y,z\n0,1.5,-2,3\n0.5,4,5,0.25\n";
+  std::string little = "\xFF\xFE";
+  std::string big = "\xFE\xFF";
+  for (const char c : text) {
+    little += {c, '\0'};
+    big += {'\0', c};
+  }
+  expect_two_samples(read(little), "little");
+  expect_two_samples(read(big), "big");
 }
 
 }  // namespace

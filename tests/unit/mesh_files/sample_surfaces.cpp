@@ -95,12 +95,14 @@ std::string make_ply_binary(bool is_big) {
 }
 
 std::vector<SampleFile> make_surface_samples() {
-  return {{"text.obj", kObj, "", ""},
-          {"text.stl", make_stl_ascii(), "", ""},
-          {"binary.stl", make_stl_binary(), "", ""},
-          {"text.ply", kPlyAscii, "", ""},
-          {"little.ply", make_ply_binary(false), "", ""},
-          {"big.PLY", make_ply_binary(true), "", ""}};
+  return {
+      {"text.obj", kObj, "", ""},
+      {"text.stl", make_stl_ascii(), "", ""},
+      {"binary.stl", make_stl_binary(), "", ""},
+      {"text.ply", kPlyAscii, "", ""},
+      {"little.ply", make_ply_binary(false), "", ""},
+      {"big.PLY", make_ply_binary(true), "", ""},
+      {"text.off", "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n", "", ""}};
 }
 
 }  // namespace argil::test

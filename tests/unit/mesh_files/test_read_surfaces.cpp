@@ -96,6 +96,48 @@ TEST(ReadSurfaces, StlMergesEqualCornersOnly) {
   EXPECT_EQ(read("0 1.0000000000000002 0").num_vertices(), 5);  // one unit in the last place
 }
 
+// The marks of editors on Windows must not hide the first word, wherever a file is text.
+TEST(ReadSurfaces, AByteOrderMarkAndUtf16AreNoPartOfTheText) {
+  const test::TempFolder folder;
+  for (const SampleFile& sample : test::make_surface_samples()) {
+    if (sample.content.find('\0') != std::string::npos) continue;  // binary
+    expect_tetrahedron(read_text(folder, sample.name, "\xEF\xBB\xBF" + sample.content), sample.name);
+    std::string little = "\xFF\xFE";
+    std::string big = "\xFE\xFF";
+    for (const char c : sample.content) {
+      little += {c, '\0'};
+      big += {'\0', c};
+    }
+    expect_tetrahedron(read_text(folder, sample.name, little), sample.name);
+    expect_tetrahedron(read_text(folder, sample.name, big), sample.name);
+  }
+}
+
+TEST(ReadSurfaces, ABinaryStlMayBeginWithTheBytesOfAMark) {
+  const test::TempFolder folder;
+  for (const char* mark : {"\xEF\xBB\xBF", "\xFF\xFE", "\xFE\xFF"}) {
+    std::string content = test::make_stl_binary();
+    content.replace(0, std::string(mark).size(), mark);
+    expect_tetrahedron(read_text(folder, "p.stl", content), mark);
+  }
+}
+
+TEST(ReadSurfaces, OffIsReadInItsUsualForms) {
+  const test::TempFolder folder;
+  const std::string counts = "4 4 6\n";
+  const std::string bare = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  const std::string rich =
+      "0 0 0  1 0 0 0.5 0.5 0.5 1\n\n1 0 0  1 0 0 0 0 0 1 # second\n0 1 0  0 1 0 0 0 0 1\n0 0 1  0 0 1 0 0 0 "
+      "1\n"
+      "3 0 2 1  255 0 0\n3 0 1 3  0.1 0.2 0.3 1\n# between\n3 0 3 2\n3 1 2 3  7\n";
+  for (const std::string& text :
+       {"OFF\n" + counts + bare, "OFF " + counts + bare, "OFF" + counts + bare, counts + bare,
+        "# made\n#by hand\n\nNCOFF # all\n" + counts + rich, "OFF\r\n" + counts + bare})
+    expect_tetrahedron(read_text(folder, "p.off", text), text);
+  EXPECT_EQ(read_text(folder, "p.off", "OFF\n4 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n").num_triangles(),
+            2);
+}
+
 TEST(ReadSurfaces, SeveralSolidsOfAnStlAreOneSurface) {
   const test::TempFolder folder;
   const std::string content = test::make_surface_samples()[1].content;
@@ -151,7 +193,17 @@ TEST(RefuseSurfaces, EveryFormatSaysWhere) {
       {"a.ply", ply_z + "3 0 1.5 2\n", "line 13: a face's vertex number is not a whole number"},
       {"a.ply", ply_z + "3 0 1\n", "line 13: the file ends where a face's vertex number was expected"},
       {"a.ply", "ply\nelement vertex 0\nend_header\n", "the header has no format"},
-      {"a.off", "OFF\n", "ending \".off\" is no known surface format; use .obj, .stl or .ply"},
+      {"a.off", "OFF\n", "the file ends where the numbers of vertices, faces and edges was expected"},
+      {"a.off", "4OFF\n1 1 1\n", "line 1: keyword \"4OFF\"; save it with x, y and z"},
+      {"a.off", "OFF BINARY\n", "line 1: is a binary OFF"},
+      {"a.off", "OFF\n3 -1 0\n", "line 2: a count is -1"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "line 4: a vertex coordinate is \"\""},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+       "line 6: a face names vertex 3; vertices run from 0 to 2"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "line 6: a face of 2 vertices"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n900 0 1 2\n", "line 6: a face's vertex number is \"\""},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n", "the file ends where a face was expected"},
+      {"a.3ds", "x", "ending \".3ds\" is no known surface format; use .obj, .off, .ply or .stl"},
   };
   const test::TempFolder folder;
   for (const Refusal& refusal : refusals) {

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/rng.h"
+#include "mesh/topology.h"
 #include "mesh_files/readers.h"
 #include "sample_files.h"
 #include "support/temp_folder.h"
@@ -70,6 +71,42 @@ TEST(ReadTets, LineEndsOfOtherSystemsReadTheSame) {
     sample.content = content;
     expect_two_tets(read_sample(folder, sample), name);
   }
+}
+
+TEST(ReadTets, AByteOrderMarkIsNoPartOfTheText) {
+  const test::TempFolder folder;
+  for (const char* name :
+       {"22_ascii.msh", "41_ascii.msh", "medit.mesh", "vega.VEG", "version_4.vtk", "ascii.vtu"}) {
+    SampleFile sample = find_sample(name);
+    sample.content.insert(0, "\xEF\xBB\xBF");
+    expect_two_tets(read_sample(folder, sample), name);
+  }
+}
+
+// x, y and z of some programs make every tet's volume negative; one alone is a fault of the mesh.
+TEST(ReadTets, WhereAllAreMirroredTwoCornersAreSwappedAndTold) {
+  const test::TempFolder folder;
+  const auto read = [&](const std::string& tets, FileVertices& told) {
+    return read_tet_mesh(
+        folder.write("m.mesh",
+                     "MeshVersionFormatted 1\nDimension 3\nVertices\n5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
+                     "1 1 1 0\nTetrahedra\n2\n" +
+                         tets + "End\n"),
+        1.0, &told);
+  };
+  FileVertices told;
+  const mesh::TetMesh mirrored = read("1 3 2 4 0\n2 4 3 5 0\n", told);
+  EXPECT_TRUE(told.is_mirrored);
+  EXPECT_EQ(
+      told.describe("m", "tet"),
+      "m: every tet is numbered the other way round, with a negative volume; two of its corners are swapped");
+  const Field volumes = mesh::compute_volumes(mirrored.vertices, mirrored.tets);
+  EXPECT_NEAR(volumes(0), 1.0 / 6.0, 1e-15);
+  EXPECT_NEAR(volumes(1), 1.0 / 3.0, 1e-15);
+  const mesh::TetMesh one = read("1 3 2 4 0\n2 3 4 5 0\n", told);
+  EXPECT_FALSE(told.is_mirrored);
+  EXPECT_EQ(told.describe("m", "tet"), "");
+  EXPECT_LT(mesh::compute_volumes(one.vertices, one.tets)(0), 0.0);
 }
 
 TEST(ReadTets, NumbersPerTetBecomeCellFields) {
