@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """How well bodies follow the surfaces that they are made from: volume, distances, angles, time and memory of `argil cage`, fitted and
-enclosing, for plain shapes that this script writes and for the OBJ, PLY and STL files of folders.
+enclosing, for plain shapes that this script writes, argil's own creatures and the OBJ, OFF, PLY and STL files of folders.
 
 Usage: fitted_table.py ARGIL [FOLDER …] [--tets 2000 10000 50000] [-o FILE.csv]      writes results/fitted/fitted.csv
 """
 import argparse
+import json
 import re
 import resource
 import subprocess
@@ -56,15 +57,27 @@ def write_shapes(folder):
     write_prism(folder / "thin_sheet.obj", [(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)], 0.004)
 
 
+def write_creature(file, kind):
+    """A scenario with one of the creatures that argil makes, to be pressed by nothing."""
+    file.with_suffix(".csv").write_text("t,x,y,z\n0,0,0,1\n0.001,0,0,1\n", encoding="utf-8")
+    file.write_text(json.dumps({
+        "about": "a creature in cells", "body": {"shape": {"kind": kind, "size_m": 0.1, "skin_triangles": 20000}, "cells": {"kind": "even"},
+                                                 "fixed": [{"kind": "box", "lower_m": [-1, -1, -1], "upper_m": [1, 1, 0.005]}]},
+        "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3, "plasticity": {"strength_Pa": 1500}},
+        "tool": {"shape": {"kind": "sphere", "radius_m": 0.005}}, "trace": {"file": file.with_suffix(".csv").name}}), encoding="utf-8")
+
+
 def measure(argil, surface, number, fit, folder):
+    words = ["cage", surface, "-o", folder / "cage.msh", "--tets", str(number), "--fit", fit]
+    if surface.suffix == ".json":
+        words = ["run", surface, "--dry-run", "--set", f"/body/shape/target_tets={number}", "--set", f'/body/shape/fit="{fit}"']
     start = time.monotonic()
     try:
-        done = subprocess.run([argil, "cage", surface, "-o", folder / "cage.msh", "--tets", str(number), "--fit", fit],
-                              capture_output=True, text=True, timeout=LONGEST)
+        done = subprocess.run([argil, *words], capture_output=True, text=True, timeout=LONGEST)
     except subprocess.TimeoutExpired:
         return [f"not within {LONGEST} s"]
     seconds = time.monotonic() - start
-    found = PATTERN.search(done.stdout)
+    found = PATTERN.search(done.stdout + done.stderr)
     if not found:
         return [done.stderr.strip().rsplit(": ", 1)[-1]]
     tets, cell, ratio, median, most, skin, _, _, smallest, largest = found.groups()
@@ -84,7 +97,9 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_shapes(folder)
-        surfaces = sorted(folder.glob("*.obj"))
+        for kind in ("dinosaur", "figure"):
+            write_creature(folder / f"{kind}.json", kind)
+        surfaces = sorted([*folder.glob("*.obj"), *folder.glob("*.json")])
         for other in options.folders:
             surfaces += sorted(file for file in other.iterdir() if file.suffix.lower() in (".obj", ".off", ".ply", ".stl"))
         for surface in surfaces:

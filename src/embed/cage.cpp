@@ -81,7 +81,7 @@ double compute_fitted(const TriangleTree& tree, const Vec3& x, double cell_size,
   const double distance = tree.compute_distance(x, kBand * cell_size);
   if (distance < 0.0) return distance;
   const bool is_inside =
-      std::abs(tree.compute_winding_number(x)) > 0.5 && !(find_distance_to_box(x, lower, upper) > 0.0);
+      !(find_distance_to_box(x, lower, upper) > 0.0) && std::abs(tree.compute_winding_number(x)) > 0.5;
   return is_inside ? -tree.find_nearest(x, kBand * cell_size).distance : distance;
 }
 
