@@ -101,7 +101,8 @@ Trace read_trace(const std::string& file, const TraceOptions& options) {
                           : internal::parse_csv(file, to_utf8(bytes), options);
   fill_times(file, options, raw);
   internal::check_times(file, options, raw);
-  const double scale = raw.device_to_world.scale * options.device_to_world.scale;
+  const DeviceToWorld to_world = raw.is_in_world ? DeviceToWorld{} : options.device_to_world;
+  const double scale = raw.device_to_world.scale * to_world.scale;
   internal::note_steps(raw, raw.metres_per_unit * scale, raw.notes);
   Trace trace;
   trace.file = file;
@@ -109,6 +110,12 @@ Trace read_trace(const std::string& file, const TraceOptions& options) {
   trace.sha256 = Sha256().add(bytes).hex_digest();
   trace.ignored_columns = raw.ignored_columns;
   trace.notes = raw.notes;
+  trace.is_in_world = raw.is_in_world;
+  if (raw.is_in_world &&
+      (!is_identity(options.device_to_world) || options.length_unit != LengthUnit::automatic))
+    trace.notes.emplace_back(
+        "it is a result, whose places are the tool's in the world: /trace/length_unit and "
+        "/trace/device_to_world are not applied to them again");
   trace.time = raw.time;
   trace.samples.reserve(raw.position.size());
   for (std::size_t i = 0; i < raw.position.size(); ++i) {
@@ -121,7 +128,7 @@ Trace read_trace(const std::string& file, const TraceOptions& options) {
     sample.mode = raw.mode.empty() ? options.default_mode : raw.mode[i];
     move_to_world(raw.device_to_world, sample);
     if (!is_within_reach(sample.position)) refuse_far_place(file, raw, i, sample.position);
-    move_to_world(options.device_to_world, sample);
+    move_to_world(to_world, sample);
     trace.samples.push_back(sample);
   }
   trace.is_length_assumed = !raw.is_length_given && scale == 1.0;

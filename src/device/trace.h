@@ -28,7 +28,7 @@ enum class AngleOrder { none, xyz, xzy, yxz, yzx, zxy, zyx, XYZ, XZY, YXZ, YZX, 
 
 /// How a trace file is read when its header does not say.
 struct TraceOptions {
-  DeviceToWorld device_to_world;           ///< applied after the header's own transform
+  DeviceToWorld device_to_world;           ///< applied after the header's own transform; not to a result
   ToolMode default_mode = ToolMode::push;  ///< when the file has no mode column
   double default_rate_hz = 0.0;  ///< > 0: sampling rate when the file has neither a time column nor a rate
   /// CSV, NPY: names of the columns from the left, in place of the file's header row; "" or "-" leaves a
@@ -54,7 +54,8 @@ struct Trace {
   std::string sha256;                        ///< of the file's bytes
   std::vector<std::string> ignored_columns;  ///< columns that were not used (velocity, force, …)
   std::vector<std::string> notes;            ///< for the user: what was done to the file's data
-  bool is_length_assumed = false;            ///< neither file, options nor a scale say the unit of places
+  bool is_in_world = false;  ///< it is a result's: keys that place a recording were applied to it before
+  bool is_length_assumed = false;  ///< neither file, options nor a scale say the unit of places
   double duration() const { return time.back() - time.front(); }
 };
 
@@ -74,10 +75,10 @@ class UnlikelyUnit : public InputError {
   std::string m_likely;
 };
 
-/// Reads a CSV (header row names columns), NPY (options name them) or HDF5 trace; the formats are in this folder's README. Throws
-/// InputError (file, line, value, remedy) for long pauses, unsorted times, NaN, places beyond kFarthestPlace
-/// before device_to_world of the options, zero quaternions, unknown modes, and UnlikelyUnit; IoError when the
-/// file cannot be read.
+/// Reads a CSV (header row names columns), NPY (options name them) or HDF5 trace; the formats are in this
+/// folder's README. Throws InputError (file, line, value, remedy) for long pauses, unsorted times, NaN,
+/// places beyond kFarthestPlace before device_to_world of the options, zero quaternions, unknown modes, and
+/// UnlikelyUnit; IoError when the file cannot be read.
 Trace read_trace(const std::string& file, const TraceOptions& options);
 
 /// The sample at `time` seconds after the trace's first: position linear, orientation slerp along the shorter

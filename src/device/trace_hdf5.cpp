@@ -44,12 +44,12 @@ std::optional<double> choose_unit(const Dataset& data, bool has_key, double of_k
 }
 
 void choose_units(const Dataset& time, const Dataset& position, const TraceOptions& options, RawTrace& raw) {
-  const bool has_length = options.length_unit != LengthUnit::automatic;
+  const bool has_length = !raw.is_in_world && options.length_unit != LengthUnit::automatic;
   const auto metres = choose_unit(position, has_length, has_length ? metres_per(options.length_unit) : 1.0,
                                   find_length_unit, "use m, cm, mm or um");
   raw.metres_per_unit = metres.value_or(1.0);
   raw.is_length_given = metres.has_value();
-  const bool has_time = options.time_unit != TimeUnit::automatic;
+  const bool has_time = !raw.is_in_world && options.time_unit != TimeUnit::automatic;
   const auto second = choose_unit(time, has_time, has_time ? per_second(options.time_unit) : 1.0,
                                   find_time_unit, "use s, ms, us or ns");
   raw.is_time_given = second.has_value();
@@ -109,7 +109,8 @@ RawTrace read_hdf5(const std::string& file, const TraceOptions& options) {
     throw InputError(file, group.path(), std::string("has no time and ") + names.position,
                      "a trace has /time, /position, /orientation, /mode; a result file has them in /haptic");
   RawTrace raw;
-  read_transform(root, raw);
+  raw.is_in_world = is_result;
+  if (!is_result) read_transform(root, raw);
   raw.time = group.open_dataset("time").read<double>();
   const std::uint64_t rows = raw.time.size();
   choose_units(group.open_dataset("time"), group.open_dataset(names.position), options, raw);

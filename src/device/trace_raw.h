@@ -15,7 +15,9 @@ struct RawTrace {
   double metres_per_unit = 1.0;   ///< of the position columns
   bool is_length_given = false;   ///< the file or the options say that unit
   bool is_time_given = false;     ///< and that of the times
-  double rate_hz = 0.0;           ///< from the header; 0: not stated
+  bool is_in_world =
+      false;             ///< places are the tool's in a result: no unit, transform or turn is left to apply
+  double rate_hz = 0.0;  ///< from the header; 0: not stated
   std::string device;
   std::vector<double> time;  ///< [s]; empty without a time column
   std::vector<Vec3> position;

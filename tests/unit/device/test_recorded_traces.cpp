@@ -103,6 +103,25 @@ TEST(ReadTraceHdf5, ReadsATraceFileAndAResultFileToTheBit) {
   expect_same_motion(trace, read_trace(folder / "r.h5", {}));
 }
 
+// A result has the tool's places, to which the scenario's keys were applied when it was made.
+TEST(ReadTraceHdf5, AResultIsNotPlacedAgain) {
+  const TempFolder folder;
+  const Trace trace = random_trace(50);
+  write_hdf5(folder / "r.h5", trace, "haptic", "tool_");
+  TraceOptions options;
+  options.length_unit = LengthUnit::mm;
+  options.time_unit = TimeUnit::ms;
+  options.device_to_world.scale = 0.5;
+  options.device_to_world.translation = Vec3(1, 2, 3);
+  options.device_to_world.tool_rotation = Quat(0.0, 1.0, 0.0, 0.0);
+  const Trace read = read_trace(folder / "r.h5", options);
+  expect_same_motion(trace, read);
+  EXPECT_TRUE(read.is_in_world);
+  ASSERT_EQ(read.notes.size(), 1U);
+  EXPECT_NE(read.notes[0].find("/trace/device_to_world are not applied to them again"), std::string::npos);
+  EXPECT_TRUE(read_trace(folder / "r.h5", {}).notes.empty());
+}
+
 TEST(ReadTraceHdf5, AppliesUnitsAndTransform) {
   const TempFolder folder;
   const Trace trace = random_trace(4);
