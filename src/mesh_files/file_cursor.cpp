@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "base/error.h"
+#include "base/lower_case.h"
 #include "base/read_file.h"
 #include "base/text_encoding.h"
 
@@ -18,18 +21,37 @@ constexpr bool is_blank(char c) {
   return kBlanks.find(c) != std::string_view::npos;
 }
 
-// A word as a message shows it: cut, and without bytes that would spoil a terminal.
+// A word as a message shows it.
 std::string quote(std::string_view word) {
-  std::string text(word.substr(0, kQuotedLength));
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return "\"" + text + (word.size() > kQuotedLength ? "…\"" : "\"");
+  return "\"" + std::string(word.substr(0, kQuotedLength)) + (word.size() > kQuotedLength ? "…\"" : "\"");
 }
 
 // std::from_chars knows no plus sign. "+-1" stays as it is, which is no number.
 std::string_view drop_plus(std::string_view word) {
   const bool is_positive = word.starts_with('+') && !word.starts_with("+-");
   return is_positive ? word.substr(1) : word;
+}
+
+// Whether the whole word spells a number, and whether double precision holds it. Microsoft's C library used
+// to write "1.#QNAN", "-1.#IND" and "1.#INF".
+std::errc parse(std::string_view word, double& value) {
+  const std::string_view digits = drop_plus(word);
+  const bool is_negative = digits.starts_with('-');
+  if (const std::string_view size = digits.substr(is_negative ? 1 : 0); size.starts_with("1.#")) {
+    const double special = size.starts_with("1.#INF") ? std::numeric_limits<double>::infinity()
+                                                      : std::numeric_limits<double>::quiet_NaN();
+    value = is_negative ? -special : special;
+    return {};
+  }
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  return end == digits.data() + digits.size() ? error : std::errc::invalid_argument;
+}
+
+// The shortest digits that give the same number.
+std::string to_text(double value) {
+  char digits[32];
+  const auto [end, error] = std::to_chars(std::begin(digits), std::end(digits), value);
+  return {std::begin(digits), end};
 }
 
 }  // namespace
@@ -40,7 +62,22 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-FileCursor::FileCursor(const std::string& file) : m_file(file), m_bytes(to_utf8(read_file(file))) {}
+std::string_view drop_comment(std::string_view line) {
+  std::size_t at = line.find('#');
+  while (at != std::string_view::npos && at > 0 && line[at - 1] == '.') at = line.find('#', at + 1);
+  return line.substr(0, at);
+}
+
+std::optional<double> find_number(std::string_view word) {
+  double value = 0.0;
+  return parse(word, value) == std::errc() ? std::optional(value) : std::nullopt;
+}
+
+FileCursor::FileCursor(const std::string& file)
+    : m_file(file), m_bytes(to_line_feeds(to_utf8(read_file(file)))) {
+  if (looks_like_utf16(m_bytes))
+    throw InputError(file, "", "is text in UTF-16, without a byte order mark or cut", "save it as UTF-8");
+}
 
 void FileCursor::seek(std::size_t offset) {
   m_offset = m_last = std::min(offset, m_bytes.size());
@@ -88,6 +125,16 @@ void FileCursor::expect_word(std::string_view expected) {
          "check the counts above this place, or write the file again");
 }
 
+void FileCursor::expect_keyword(std::string_view expected) {
+  const std::string found(peek_word().value_or(""));
+  if (to_lower_case(found) != expected) expect_word(expected);
+  find_word();
+}
+
+double FileCursor::any_number(std::string_view what) {
+  return parse_any_number(word(what), what);
+}
+
 double FileCursor::number(std::string_view what) {
   return parse_number(word(what), what);
 }
@@ -117,12 +164,6 @@ std::string_view FileCursor::take(std::size_t size, std::string_view what) {
   return bytes().substr(m_last, size);
 }
 
-double FileCursor::binary_number(std::string_view what) {
-  const double value = binary<double>(what);
-  if (!std::isfinite(value)) fail(std::string(what) + " is not finite", "give a finite number");
-  return value;
-}
-
 void FileCursor::require_room(std::int64_t count, std::size_t bytes_each, std::string_view what) const {
   if (count < 0) fail(std::string(what) + " is " + std::to_string(count), "a count is 0 or more");
   if (static_cast<std::uint64_t>(count) > remaining() / bytes_each)
@@ -136,7 +177,7 @@ void FileCursor::fail(std::string_view problem, std::string_view remedy) const {
 }
 
 void FileCursor::fail_at(std::size_t offset, std::string_view problem, std::string_view remedy) const {
-  throw InputError(m_file, place(offset), problem, remedy);
+  throw InputError(m_file, place(offset), to_printable(problem), remedy);
 }
 
 void FileCursor::fail_truncated(std::string_view what) const {
@@ -144,17 +185,35 @@ void FileCursor::fail_truncated(std::string_view what) const {
           "it is truncated; write or copy it again");
 }
 
+void FileCursor::fail_at_vertex(std::int64_t vertex, const double* coordinates,
+                                std::optional<std::size_t> offset) const {
+  const std::string name = "vertex " + std::to_string(vertex);
+  const double* const odd =
+      std::find_if(coordinates, coordinates + 3, [](double x) { return !std::isfinite(x); });
+  std::string problem = "a coordinate is not finite in metres";
+  const char* remedy = "give finite coordinates and check the unit's scale";
+  if (odd != coordinates + 3) {
+    problem = std::string(1, "xyz"[odd - coordinates]) + " is " + to_text(*odd);
+    remedy = "give a finite number";
+  }
+  if (offset) fail_at(*offset, name + ": " + problem, remedy);
+  throw InputError(m_file, name, problem, remedy);
+}
+
 double FileCursor::parse_number(std::string_view word, std::string_view what) const {
-  const std::string_view digits = drop_plus(word);
+  const double value = parse_any_number(word, what);
+  if (!std::isfinite(value)) fail(std::string(what) + " is " + quote(word), "give a finite number");
+  return value;
+}
+
+double FileCursor::parse_any_number(std::string_view word, std::string_view what) const {
   double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  const bool is_whole_word = end == digits.data() + digits.size();
-  if (error == std::errc::result_out_of_range && is_whole_word)
+  const std::errc error = parse(word, value);
+  if (error == std::errc::result_out_of_range)
     fail(std::string(what) + " is " + quote(word) + ", outside the range of double precision",
          "give a number between 1e-307 and 1e308 in magnitude, or 0");
-  if (error != std::errc() || !is_whole_word)
+  if (error != std::errc())
     fail(std::string(what) + " is " + quote(word) + ", not a number", "give a decimal number such as 0.25");
-  if (!std::isfinite(value)) fail(std::string(what) + " is " + quote(word), "give a finite number");
   return value;
 }
 

@@ -12,6 +12,12 @@ namespace argil::mesh_files {
 /// `text` without blanks and carriage returns at both ends.
 std::string_view trim(std::string_view text);
 
+/// `line` up to its comment. The # of "1.#IND" begins none.
+std::string_view drop_comment(std::string_view line);
+
+/// The number that the whole word spells, which may be NaN or infinite; nothing where it spells none.
+std::optional<double> find_number(std::string_view word);
+
 /// The same number with its bytes in the order of this machine, read from `bytes` in order `order`.
 template <class T>
 T load_bytes(const char* bytes, std::endian order) {
@@ -28,7 +34,8 @@ T load_bytes(const char* bytes, std::endian order) {
 /// on the locale.
 class FileCursor {
  public:
-  /// Throws IoError when the file cannot be read.
+  /// Throws IoError when the file cannot be read, InputError where it is in UTF-16 that cannot be told
+  /// surely.
   explicit FileCursor(const std::string& file);
 
   const std::string& file() const { return m_file; }
@@ -52,8 +59,12 @@ class FileCursor {
   std::string_view word(std::string_view what);
   /// Next word, which must be exactly `expected`.
   void expect_word(std::string_view expected);
+  /// The same in letters of either case; `expected` is in small ones.
+  void expect_keyword(std::string_view expected);
   /// Next word as a finite number.
   double number(std::string_view what);
+  /// Next word as a number that may be NaN or infinite, for what nothing may come to use.
+  double any_number(std::string_view what);
   /// Next word as a whole number.
   std::int64_t integer(std::string_view what);
   /// Next word as a number of things, not negative, each of which takes at least `bytes_each` bytes of what
@@ -68,8 +79,6 @@ class FileCursor {
   T binary(std::string_view what, std::endian order = std::endian::little) {
     return load_bytes<T>(take(sizeof(T), what).data(), order);
   }
-  /// The next eight bytes as a finite number.
-  double binary_number(std::string_view what);
   /// Refuses a number of things that is negative or needs more than what is left of the file.
   void require_room(std::int64_t count, std::size_t bytes_each, std::string_view what) const;
 
@@ -77,9 +86,14 @@ class FileCursor {
   [[noreturn]] void fail(std::string_view problem, std::string_view remedy) const;
   [[noreturn]] void fail_at(std::size_t offset, std::string_view problem, std::string_view remedy) const;
   [[noreturn]] void fail_truncated(std::string_view what) const;
+  /// Refuses a vertex in use whose three coordinates are not finite in metres. `offset`: where it stands, if
+  /// that is known.
+  [[noreturn]] void fail_at_vertex(std::int64_t vertex, const double* coordinates,
+                                   std::optional<std::size_t> offset = std::nullopt) const;
 
   /// Numbers of a word that belongs to this file; for readers that split lines themselves.
   double parse_number(std::string_view word, std::string_view what) const;
+  double parse_any_number(std::string_view word, std::string_view what) const;
   std::int64_t parse_integer(std::string_view word, std::string_view what) const;
 
  private:

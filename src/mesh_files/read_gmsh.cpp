@@ -92,7 +92,8 @@ class GmshCursor : public FileCursor {
   }
   /// Tags of nodes and elements: size_t since 4.
   std::int64_t tag(std::string_view what) { return m_is_4 ? large(what) : small(what); }
-  double real(std::string_view what) { return m_is_binary ? binary_number(what) : number(what); }
+  /// It may be NaN or infinite.
+  double real(std::string_view what) { return m_is_binary ? binary<double>(what) : any_number(what); }
   /// Refuses `count` things of `numbers` numbers each that do not fit into what is left of the file. `bytes`
   /// is what one such thing takes in the binary form.
   void require_items(std::int64_t count, std::int64_t numbers, std::int64_t bytes,
@@ -246,7 +247,8 @@ void read_element_data(GmshCursor& cursor, TetFile& out) {
     if (!line) cursor.fail_truncated("a field's name");
     if (i == 0) name = unquote(*line);
   }
-  for (std::int64_t i = cursor.count("the number of real tags", 1); i > 0; --i) cursor.number("a real tag");
+  for (std::int64_t i = cursor.count("the number of real tags", 1); i > 0; --i)
+    cursor.any_number("a real tag");
   const std::int64_t num_tags = cursor.count("the number of integer tags", 1);
   if (num_tags < 3)
     cursor.fail(std::to_string(num_tags) + " integer tags", "step, components, elements are needed");

@@ -17,7 +17,7 @@ void read_vertices(FileCursor& cursor, TetFile& out) {
   if (!out.vertex_labels.empty()) cursor.fail("a second section Vertices", "keep one");
   const std::int64_t count = cursor.count("the number of vertices", 8);  // "0 0 0 0" and a blank
   for (std::int64_t i = 1; i <= count; ++i) {
-    for (int c = 0; c < 3; ++c) out.coordinates.push_back(cursor.number("a vertex coordinate"));
+    for (int c = 0; c < 3; ++c) out.coordinates.push_back(cursor.any_number("a vertex coordinate"));
     cursor.integer("a vertex reference");
     out.vertex_labels.push_back(i);
   }

@@ -26,6 +26,8 @@ mesh::TriangleMesh read_obj(const std::string& file, double scale) {
   std::string joined;
   while (const auto line = cursor.find_line()) {
     const std::size_t offset = cursor.last_offset();
+    if (line->find('\r') != std::string_view::npos)
+      cursor.fail("a carriage return stands within the line", "save it with one kind of line end");
     joined = *line;
     while (joined.ends_with('\\')) {  // the line goes on in the next one
       joined.back() = ' ';
@@ -33,13 +35,14 @@ mesh::TriangleMesh read_obj(const std::string& file, double scale) {
       if (!more) break;
       joined += *more;
     }
-    WordsOf words(std::string_view(joined).substr(0, joined.find('#')));
+    WordsOf words(drop_comment(joined));
     const std::string_view keyword = words.next();
     if (keyword == "v") {
+      out.vertex_offsets.push_back(offset);
       for (int c = 0; c < 3; ++c) {
         const std::string_view word = words.next();
         if (word.empty()) cursor.fail("a vertex of " + std::to_string(c) + " coordinates", "give x, y and z");
-        out.coordinates.push_back(cursor.parse_number(word, "a vertex coordinate"));
+        out.coordinates.push_back(cursor.parse_any_number(word, "a vertex coordinate"));
       }
     } else if (keyword == "f") {
       polygon.clear();

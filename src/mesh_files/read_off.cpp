@@ -9,7 +9,7 @@ namespace {
 // Next line that says something, without its comment.
 std::string_view next_line(FileCursor& cursor, std::string_view what) {
   while (const auto line = cursor.find_line()) {
-    const std::string_view text = trim(line->substr(0, line->find('#')));
+    const std::string_view text = trim(drop_comment(*line));
     if (!text.empty()) return text;
   }
   cursor.fail_truncated(what);
@@ -45,8 +45,9 @@ mesh::TriangleMesh read_off(const std::string& file, double scale) {
   const auto [num_vertices, num_faces] = read_counts(cursor);
   for (std::int64_t v = 0; v < num_vertices; ++v) {
     WordsOf words(next_line(cursor, "a vertex"));
+    out.vertex_offsets.push_back(cursor.last_offset());
     for (int c = 0; c < 3; ++c)
-      out.coordinates.push_back(cursor.parse_number(words.next(), "a vertex coordinate"));
+      out.coordinates.push_back(cursor.parse_any_number(words.next(), "a vertex coordinate"));
   }
   std::vector<std::int64_t> polygon;
   for (std::int64_t f = 0; f < num_faces; ++f) {

@@ -52,6 +52,7 @@ class PlyReader {
   void read_format(WordsOf& words);
   NumberType parse_type(std::string_view word) const;
   double value(NumberType type, std::string_view what);
+  void skip(NumberType type, std::string_view what);
   std::int64_t whole(NumberType type, std::string_view what);
   void read_vertex(const Element& element, SurfaceFile& out);
   void read_other(const Element& element, SurfaceFile& out);
@@ -117,10 +118,13 @@ void PlyReader::read_header() {
 }
 
 double PlyReader::value(NumberType type, std::string_view what) {
-  if (!m_is_binary) return m_cursor.number(what);
-  const double number = load_number(m_cursor.take(size_of(type), what).data(), type, m_order);
-  if (!std::isfinite(number)) m_cursor.fail(std::string(what) + " is not finite", "give a finite number");
-  return number;
+  if (!m_is_binary) return m_cursor.any_number(what);
+  return load_number(m_cursor.take(size_of(type), what).data(), type, m_order);
+}
+
+// What nothing uses may be anything.
+void PlyReader::skip(NumberType type, std::string_view what) {
+  m_is_binary ? m_cursor.take(size_of(type), what) : m_cursor.word(what);
 }
 
 std::int64_t PlyReader::whole(NumberType type, std::string_view what) {
@@ -135,13 +139,17 @@ void PlyReader::read_vertex(const Element& element, SurfaceFile& out) {
   for (const Property& property : element.properties) {
     const std::int64_t length = property.is_list ? whole(property.length_type, "a list's length") : 1;
     m_cursor.require_room(length, 1, "a list's length");
+    const bool is_coordinate = property.name.size() == 1 && property.name >= "x" && property.name <= "z";
     for (std::int64_t i = 0; i < length; ++i) {
-      const double number = value(property.type, "a vertex property");
-      if (property.name.size() == 1 && property.name >= "x" && property.name <= "z")
-        x[static_cast<std::size_t>(property.name[0] - 'x')] = number;
+      if (is_coordinate) {
+        x[static_cast<std::size_t>(property.name[0] - 'x')] = value(property.type, "a vertex coordinate");
+      } else {
+        skip(property.type, "a vertex property");
+      }
     }
   }
   out.coordinates.insert(out.coordinates.end(), x.begin(), x.end());
+  out.vertex_offsets.push_back(m_cursor.last_offset());
 }
 
 // A face, or an element that is not wanted.
@@ -160,7 +168,7 @@ void PlyReader::read_other(const Element& element, SurfaceFile& out) {
       if (is_polygon) {
         polygon.push_back(whole(property.type, "a face's vertex number"));
       } else {
-        value(property.type, "a property");
+        skip(property.type, "a property");
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/lower_case.h"
 #include "mesh_files/surface_file.h"
 
 namespace argil::mesh_files {
@@ -43,30 +44,33 @@ void merge_equal(SurfaceFile& file) {
   file.coordinates = std::move(coordinates);
 }
 
-// facet normal x y z / outer loop / vertex x y z (3) / endloop / endfacet; several solids may follow each
-// other.
+// solid name / facet normal x y z / outer loop / vertex x y z (3) / endloop / endfacet / endsolid name, in
+// letters of either case; several solids may follow each other.
 void read_ascii(FileCursor& cursor, SurfaceFile& out) {
   bool is_open = false;
+  bool has_begun = false;
   while (const auto word = cursor.find_word()) {
-    const std::string keyword(*word);
+    const std::string keyword = to_lower_case(*word);
     const std::size_t offset = cursor.last_offset();
-    if (keyword == "solid" || keyword == "endsolid") {
+    if (keyword == "solid" || (has_begun && keyword == "endsolid")) {
+      has_begun = true;
       is_open = keyword == "solid";
       cursor.find_line();
-    } else if (keyword == "facet") {
-      cursor.expect_word("normal");
+    } else if (has_begun && keyword == "facet") {
+      cursor.expect_keyword("normal");
       for (int c = 0; c < 3; ++c) cursor.word("a facet's normal");  // may be anything; the corners decide
-      cursor.expect_word("outer");
-      cursor.expect_word("loop");
+      cursor.expect_keyword("outer");
+      cursor.expect_keyword("loop");
       for (int v = 0; v < 3; ++v) {
-        cursor.expect_word("vertex");
+        cursor.expect_keyword("vertex");
         for (int c = 0; c < 3; ++c) out.coordinates.push_back(cursor.number("a corner's coordinate"));
       }
-      cursor.expect_word("endloop");
-      cursor.expect_word("endfacet");
+      cursor.expect_keyword("endloop");
+      cursor.expect_keyword("endfacet");
       add_triangle(offset, out);
     } else {
-      cursor.fail("\"" + keyword.substr(0, 40) + "\" where facet or endsolid was expected",
+      cursor.fail("\"" + std::string(word->substr(0, 40)) + "\" where " +
+                      (has_begun ? "facet or endsolid" : "solid") + " was expected",
                   "write the file again");
     }
   }
@@ -95,14 +99,19 @@ void read_binary(FileCursor& cursor, SurfaceFile& out) {
   }
 }
 
-// Binary headers may begin with "solid" too, so the size decides before the word.
+// Binary headers may begin with "solid" too, and a text may by chance have the size that its bytes 80 to 83
+// announce. But a text holds no zero, and the count of a binary one does.
 bool is_binary_stl(FileCursor& cursor) {
   const std::string_view bytes = cursor.bytes();
+  const std::string_view head = bytes.substr(0, 1024);
+  if (head.find('\0') == std::string_view::npos) return false;
   if (bytes.size() >= kHeader + 4) {
     const auto count = load_bytes<std::uint32_t>(bytes.data() + kHeader, std::endian::little);
     if (bytes.size() - kHeader - 4 == count * kTriangle) return true;
   }
-  return cursor.peek_word() != "solid";
+  // A text in whose head stands a stray zero.
+  const bool is_solid = to_lower_case(cursor.peek_word().value_or("")) == "solid";
+  return !(is_solid && to_lower_case(head).find("facet") != std::string::npos);
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ void read_vertex_lines(FileCursor& cursor, TetFile& out) {
   cursor.require_room(count, bytes_each, "the number of vertices");
   for (std::int64_t i = 0; i < count; ++i) {
     out.vertex_labels.push_back(cursor.integer("a vertex number"));
-    for (int c = 0; c < 3; ++c) out.coordinates.push_back(cursor.number("a vertex coordinate"));
-    for (std::int64_t c = 0; c < attributes + markers; ++c) cursor.number("a vertex attribute");
+    for (int c = 0; c < 3; ++c) out.coordinates.push_back(cursor.any_number("a vertex coordinate"));
+    for (std::int64_t c = 0; c < attributes + markers; ++c) cursor.any_number("a vertex attribute");
   }
 }
 
@@ -40,7 +40,7 @@ void read_tet_lines(FileCursor& cursor, TetFile& out) {
     out.tet_labels.push_back(cursor.integer("a tet number"));
     out.tet_offsets.push_back(cursor.last_offset());
     for (int c = 0; c < 4; ++c) out.corners.push_back(cursor.integer("a tet's vertex"));
-    for (Field& field : values) field(i) = cursor.number("a tet attribute");
+    for (Field& field : values) field(i) = cursor.any_number("a tet attribute");
   }
   for (std::size_t a = 0; a < values.size(); ++a)
     add_cell_field(out.cell_fields, "attribute " + std::to_string(a + 1), std::move(values[a]), cursor);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/lower_case.h"
@@ -28,6 +29,13 @@ constexpr std::array<std::pair<std::string_view, NumberType>, 13> kTypes = {{
     {"double", NumberType::float64},
 }};
 
+std::optional<NumberType> find_type(std::string_view word) {
+  const std::string name = to_lower_case(word);
+  const auto type =
+      std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& known) { return known.first == name; });
+  return type == kTypes.end() ? std::nullopt : std::optional(type->second);
+}
+
 class LegacyReader {
  public:
   explicit LegacyReader(const std::string& file) : m_cursor(file) {}
@@ -43,10 +51,13 @@ class LegacyReader {
   void read_field();
   void skip_metadata();
   NumberType number_type();
+  void skip_strings(std::int64_t count, bool are_lines);
+  std::vector<double> bits(std::int64_t count, std::string_view what);
+  void read_array(const std::string& name, const std::string& type, std::int64_t tuples,
+                  std::int64_t components, std::string_view what, bool is_wanted);
   std::vector<double> numbers(std::int64_t tuples, std::int64_t components, NumberType type,
                               std::string_view what, bool is_wanted = true);
   bool is_kept(std::int64_t components) const { return m_data == Data::cell && components == 1; }
-  void keep(const std::string& name, std::int64_t components, std::vector<double> values);
 
   FileCursor m_cursor;
   bool m_is_binary = false;
@@ -75,13 +86,10 @@ void LegacyReader::read_header() {
 }
 
 NumberType LegacyReader::number_type() {
-  const std::string name = to_lower_case(m_cursor.word("a number type"));
-  const auto type =
-      std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& known) { return known.first == name; });
-  if (type == kTypes.end())
-    m_cursor.fail("number type \"" + name.substr(0, 40) + "\" is not known",
-                  "use int, float, double or vtktypeint64");
-  return type->second;
+  const std::string_view word = m_cursor.word("a number type");
+  if (const auto type = find_type(word)) return *type;
+  m_cursor.fail("number type \"" + std::string(word.substr(0, 40)) + "\" is not known",
+                "use int, float, double or vtktypeint64");
 }
 
 // Array of a known length; in the binary form it begins on a line of its own. Numbers that are not wanted may
@@ -95,7 +103,7 @@ std::vector<double> LegacyReader::numbers(std::int64_t tuples, std::int64_t comp
     m_cursor.require_room(count, 1, what);
     for (std::int64_t i = 0; i < count; ++i) {
       const std::string_view word = m_cursor.word(what);
-      if (is_wanted) values.push_back(m_cursor.parse_number(word, what));
+      if (is_wanted) values.push_back(m_cursor.parse_any_number(word, what));
     }
     return values;
   }
@@ -106,6 +114,56 @@ std::vector<double> LegacyReader::numbers(std::int64_t tuples, std::int64_t comp
   for (std::size_t at = 0; is_wanted && at < bytes.size(); at += size)
     values.push_back(load_number(bytes.data() + at, type, std::endian::big));
   return values;
+}
+
+// Strings: one a line, or each after its length, whose first two bits say in how many bytes it stands.
+void LegacyReader::skip_strings(std::int64_t count, bool are_lines) {
+  m_cursor.find_line();  // the rest of the array's head
+  m_cursor.require_room(count, 1, "the number of strings");
+  for (std::int64_t i = 0; i < count; ++i) {
+    if (are_lines) {
+      if (!m_cursor.find_line()) m_cursor.fail_truncated("a string");
+      continue;
+    }
+    const auto first = m_cursor.binary<std::uint8_t>("a string's length");
+    constexpr std::array<int, 4> kMore = {7, 3, 1, 0};
+    std::uint64_t length = first & 0x3FU;
+    for (int more = kMore[first >> 6U]; more > 0; --more)
+      length = length << 8U | m_cursor.binary<std::uint8_t>("a string's length");
+    m_cursor.take(length, "a string");
+  }
+}
+
+// Numbers 0 and 1; in the binary form eight a byte, the first highest.
+std::vector<double> LegacyReader::bits(std::int64_t count, std::string_view what) {
+  if (!m_is_binary) return numbers(count, 1, NumberType::uint8, what);
+  m_cursor.find_line();
+  m_cursor.require_room(count / 8, 1, what);
+  const std::string_view bytes = m_cursor.take(static_cast<std::size_t>((count + 7) / 8), what);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+    values.push_back(static_cast<std::uint8_t>(bytes[i / 8]) >> (7 - i % 8) & 1);
+  return values;
+}
+
+// The values after an array's head. Strings and variants (a type and a string, always one a line) are passed
+// over.
+void LegacyReader::read_array(const std::string& name, const std::string& type, std::int64_t tuples,
+                              std::int64_t components, std::string_view what, bool is_wanted) {
+  m_cursor.require_room(tuples / 8, static_cast<std::size_t>(std::max<std::int64_t>(components, 1)), what);
+  const std::string kind = to_lower_case(type);
+  std::vector<double> values;
+  if (kind == "string" || kind == "utf8_string") return skip_strings(tuples * components, !m_is_binary);
+  if (kind == "variant") return skip_strings(tuples * components, true);
+  if (kind == "bit") {
+    values = bits(tuples * components, what);
+  } else if (const auto number = find_type(kind)) {
+    values = numbers(tuples, components, *number, what, is_wanted);
+  } else {
+    m_cursor.fail("array \"" + name + "\" of type \"" + type.substr(0, 40) + "\"",
+                  "use int, float, double or string");
+  }
+  if (is_wanted) m_grid.cell_arrays.push_back({name, std::move(values)});
 }
 
 void LegacyReader::read_cells() {
@@ -158,10 +216,6 @@ std::string decode_name(std::string_view text) {
   return name;
 }
 
-void LegacyReader::keep(const std::string& name, std::int64_t components, std::vector<double> values) {
-  if (is_kept(components)) m_grid.cell_arrays.push_back({name, std::move(values)});
-}
-
 // SCALARS name type [components] / LOOKUP_TABLE name / values
 void LegacyReader::read_scalars() {
   const auto line = m_cursor.find_line();
@@ -176,17 +230,13 @@ void LegacyReader::read_scalars() {
       components_word.empty() ? 1 : m_cursor.parse_integer(components_word, "the number of components");
   if (components < 1 || components > 4)
     m_cursor.fail("SCALARS of " + std::to_string(components) + " components", "scalars have 1 to 4");
-  const auto type =
-      std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return t.first == type_word; });
-  if (type == kTypes.end())
-    m_cursor.fail("SCALARS of type \"" + type_word.substr(0, 40) + "\"", "use int, float or double");
   if (m_cursor.peek_word() == "LOOKUP_TABLE") {
     m_cursor.find_word();
     m_cursor.word("the name of a lookup table");
   } else {
     m_cursor.seek(end_of_line);
   }
-  keep(name, components, numbers(m_data_count, components, type->second, "a scalar", is_kept(components)));
+  read_array(name, type_word, m_data_count, components, "a scalar", is_kept(components));
 }
 
 void LegacyReader::read_field() {
@@ -200,11 +250,8 @@ void LegacyReader::read_field() {
     const std::string name = decode_name(m_cursor.word("an array's name"));
     const std::int64_t components = m_cursor.count("the number of components", 1);
     const std::int64_t count = m_cursor.count("the number of tuples", 1);
-    const std::string type(m_cursor.peek_word().value_or(""));
-    if (type == "string" || type == "bit" || type == "variant")
-      m_cursor.fail("array \"" + name + "\" of type " + type, "leave it out; only numbers are read");
-    const NumberType number = number_type();
-    keep(name, components, numbers(count, components, number, "an array's value", is_kept(components)));
+    const std::string type(m_cursor.word("the type of an array"));
+    read_array(name, type, count, components, "an array's value", is_kept(components));
   }
 }
 
@@ -231,9 +278,9 @@ bool LegacyReader::read_attribute(const std::string& keyword) {
     const NumberType type = number_type();
     numbers(m_data_count, components, type, "a texture coordinate", false);
   } else if (keyword == "GLOBAL_IDS" || keyword == "PEDIGREE_IDS") {
-    m_cursor.word("a name");
-    const NumberType type = number_type();
-    numbers(m_data_count, 1, type, "a number", false);
+    const std::string name = decode_name(m_cursor.word("a name"));
+    const std::string type(m_cursor.word("the type of an array"));
+    read_array(name, type, m_data_count, 1, "a number", false);
   } else if (keyword == "COLOR_SCALARS") {
     m_cursor.word("a name");
     const std::int64_t components = m_cursor.count("the number of components", 1);

@@ -213,8 +213,8 @@ std::vector<double> VtuReader::decode(const DataArray& array) const {
     std::vector<double> values;
     WordsOf words(text);
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-      const std::optional<double> value = find_finite_number(word);
-      if (!value) fail("\"" + std::string(word.substr(0, 40)) + "\" is not a finite number");
+      const std::optional<double> value = find_number(word);
+      if (!value) fail("\"" + std::string(word.substr(0, 40)) + "\" is not a number");
       values.push_back(*value);
     }
     return values;
@@ -265,7 +265,8 @@ VtkGrid VtuReader::read() {
   grid.ends = decode_named("Cells", "offsets");
   grid.types = decode_named("Cells", "types");
   for (const DataArray& array : m_arrays) {
-    if (array.section != "CellData" || array.components != 1) continue;
+    const std::string type = array.tag.attribute("type");
+    if (array.section != "CellData" || array.components != 1 || type == "String" || type == "Bit") continue;
     grid.cell_arrays.push_back({array.name, decode(array)});
     require_size(array, grid.cell_arrays.back().values, m_num_cells);
   }

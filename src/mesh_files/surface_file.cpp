@@ -28,14 +28,8 @@ mesh::TriangleMesh make_triangle_mesh(const SurfaceFile& file, const FileCursor&
         "at most " + std::to_string(kMost) + " of each can be numbered");
   mesh::TriangleMesh mesh;
   mesh.vertices.resize(3, num_vertices);
-  for (std::size_t i = 0; i < file.coordinates.size(); ++i) {
-    const double value = scale * file.coordinates[i];
-    if (!std::isfinite(value))
-      throw InputError(
-          cursor.file(), "vertex " + std::to_string(static_cast<std::int64_t>(i / 3) + file.first_number),
-          "a coordinate is not finite in metres", "give finite coordinates and check the unit's scale");
-    mesh.vertices.data()[i] = value;
-  }
+  for (std::size_t i = 0; i < file.coordinates.size(); ++i)
+    mesh.vertices.data()[i] = scale * file.coordinates[i];
   mesh.triangles.resize(3, static_cast<Eigen::Index>(file.offsets.size()));
   for (std::size_t i = 0; i < file.corners.size(); ++i) {
     const std::int64_t vertex = file.corners[i];
@@ -45,6 +39,11 @@ mesh::TriangleMesh make_triangle_mesh(const SurfaceFile& file, const FileCursor&
                          "; vertices run from " + std::to_string(file.first_number) + " to " +
                          std::to_string(num_vertices - 1 + file.first_number),
                      "correct the number or add the vertex");
+    const auto v = static_cast<std::size_t>(vertex);
+    if (!mesh.vertices.col(vertex).allFinite())
+      cursor.fail_at_vertex(
+          vertex + file.first_number, &file.coordinates[3 * v],
+          file.vertex_offsets.empty() ? std::nullopt : std::optional(file.vertex_offsets[v]));
     mesh.triangles.data()[i] = static_cast<int>(vertex);
   }
   return mesh;

@@ -71,19 +71,15 @@ mesh::TetMesh make_tet_mesh(const TetFile& file, const FileCursor& cursor, doubl
 
   mesh::TetMesh mesh;
   mesh.vertices.resize(3, static_cast<Eigen::Index>(num_vertices));
-  for (std::size_t i = 0; i < file.coordinates.size(); ++i) {
-    const double value = scale * file.coordinates[i];
-    if (!std::isfinite(value))
-      throw InputError(cursor.file(), "vertex " + std::to_string(file.vertex_labels[i / 3]),
-                       "a coordinate is not finite in metres",
-                       "give finite coordinates and check the unit's scale");
-    mesh.vertices.data()[i] = value;
-  }
+  for (std::size_t i = 0; i < file.coordinates.size(); ++i)
+    mesh.vertices.data()[i] = scale * file.coordinates[i];
   const LabelIndex index(file.vertex_labels, cursor, "vertex");
   mesh.tets.resize(4, static_cast<Eigen::Index>(num_tets));
   for (std::size_t i = 0; i < file.corners.size(); ++i) {
     const int vertex = index.find(file.corners[i]);
     if (vertex < 0) fail_at_tet(file, cursor, i / 4, file.corners[i], index.range());
+    if (!mesh.vertices.col(vertex).allFinite())
+      cursor.fail_at_vertex(file.corners[i], &file.coordinates[3 * static_cast<std::size_t>(vertex)]);
     mesh.tets.data()[i] = vertex;
   }
   mesh.cell_fields = file.cell_fields;

@@ -21,8 +21,9 @@ struct TetFile {
 };
 
 /// Numbers vertices from 0 in the file's order, multiplies coordinates by `scale` and checks what every
-/// format has in common: at least one tet, distinct labels, vertex labels in range, finite coordinates.
-/// Vertices that no tet uses stay. `cursor` is the file that holds the tets. Throws InputError.
+/// format has in common: at least one tet, distinct labels, vertex labels in range, finite coordinates of
+/// the vertices in use. The others stay, as they are. `cursor` is the file that holds the tets. Throws
+/// InputError.
 mesh::TetMesh make_tet_mesh(const TetFile& file, const FileCursor& cursor, double scale);
 
 /// Finds where a label stands in a list: label − first when they run without gaps, a binary search otherwise.

@@ -2,8 +2,6 @@
 
 #include <zlib.h>
 
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 
 #include "mesh_files/file_cursor.h"
@@ -87,14 +85,6 @@ std::optional<NumberType> find_number_type(std::string_view name) {
   for (const auto& [known, type] : kTypes)
     if (known == name) return type;
   return std::nullopt;
-}
-
-std::optional<double> find_finite_number(std::string_view word) {
-  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
 }
 
 std::string decode_base64(std::string_view text) {

@@ -19,9 +19,6 @@ struct ArrayEncoding {
 /// Number type of a name such as "Float64".
 std::optional<NumberType> find_number_type(std::string_view name);
 
-/// The finite number that the whole word spells.
-std::optional<double> find_finite_number(std::string_view word);
-
 /// Bytes of base64 text, group by group, so that padding within the text ends one run and begins the next.
 /// Stops at the first character that is neither base64 nor blank.
 std::string decode_base64(std::string_view text);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text_encoding.h"
 
 namespace argil::mesh_files {
 namespace {
@@ -38,7 +39,7 @@ const char* name_of(int type) {
 
 [[noreturn]] void refuse(const FileCursor& cursor, const std::string& place, const std::string& problem,
                          const char* remedy = "write the file again") {
-  throw InputError(cursor.file(), place, problem, remedy);
+  throw InputError(cursor.file(), to_printable(place), problem, remedy);
 }
 
 std::string cell_place(std::size_t cell) {
@@ -99,12 +100,8 @@ mesh::TetMesh make_tet_mesh(const VtkGrid& grid, const FileCursor& cursor, doubl
              std::to_string(array.values.size()) + " values for " + std::to_string(grid.types.size()) +
                  " cells");
     Field values(static_cast<Eigen::Index>(tets.size()));
-    for (std::size_t t = 0; t < tets.size(); ++t) {
+    for (std::size_t t = 0; t < tets.size(); ++t)
       values(static_cast<Eigen::Index>(t)) = array.values[tets[t]];
-      if (!std::isfinite(array.values[tets[t]]))
-        refuse(cursor, cell_place(tets[t]), "\"" + array.name + "\" is not finite",
-               "give every tet a finite value");
-    }
     add_cell_field(out.cell_fields, array.name, std::move(values), cursor);
   }
   return make_tet_mesh(out, cursor, scale);

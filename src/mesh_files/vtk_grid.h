@@ -22,8 +22,8 @@ struct VtkGrid {
   std::vector<CellArray> cell_arrays;
 };
 
-/// The tets of a grid; vertices, edges and faces are left out. Refuses other volume cells, points and values
-/// that are not finite, and arrays whose lengths disagree. Errors count points and cells from 0.
+/// The tets of a grid; vertices, edges and faces are left out. Refuses other volume cells, tets whose
+/// points are not finite, and arrays whose lengths disagree. Errors count points and cells from 0.
 mesh::TetMesh make_tet_mesh(const VtkGrid& grid, const FileCursor& cursor, double scale);
 
 }  // namespace argil::mesh_files

@@ -1,6 +1,7 @@
 // Surface formats: each reads a tetrahedron's surface known beforehand and refuses what it must.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "base/error.h"
@@ -122,6 +123,93 @@ TEST(ReadSurfaces, ABinaryStlMayBeginWithTheBytesOfAMark) {
   }
 }
 
+// As on Macs before 2001.
+TEST(ReadSurfaces, LinesMayEndWithCarriageReturnsAlone) {
+  const test::TempFolder folder;
+  for (SampleFile sample : test::make_surface_samples()) {
+    if (sample.content.find('\0') != std::string::npos) continue;  // binary
+    std::replace(sample.content.begin(), sample.content.end(), '\n', '\r');
+    expect_tetrahedron(read_text(folder, sample.name, sample.content), sample.name);
+  }
+}
+
+TEST(RefuseSurfaces, Utf16WithoutAMarkIsNamed) {
+  const test::TempFolder folder;
+  for (const SampleFile& sample : test::make_surface_samples()) {
+    if (sample.content.find('\0') != std::string::npos) continue;  // binary
+    std::string little;
+    std::string big;
+    for (const char c : sample.content) {
+      little += {c, '\0'};
+      big += {'\0', c};
+    }
+    for (const std::string& wide : {little, big, "\xFF\xFE" + little.substr(0, little.size() - 1)})
+      ARGIL_EXPECT_THROW_WITH(
+          read_text(folder, sample.name, wide), InputError,
+          sample.name + ": is text in UTF-16, without a byte order mark or cut; save it as UTF-8");
+  }
+}
+
+TEST(ReadSurfaces, KeywordsOfAnAsciiStlMayBeInEitherCase) {
+  const test::TempFolder folder;
+  const std::string content = test::make_surface_samples()[1].content;
+  std::string upper = content;
+  for (char& c : upper)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  expect_tetrahedron(read_text(folder, "p.stl", upper), "upper");
+  std::string mixed = content;
+  for (std::size_t i = 0; i + 1 < mixed.size(); ++i)
+    if (mixed[i] == ' ' || mixed[i] == '\n') mixed[i + 1] = upper[i + 1];
+  expect_tetrahedron(read_text(folder, "p.stl", mixed), "mixed");
+}
+
+TEST(ReadSurfaces, TheNameOfASolidMayHoldAnyWord) {
+  const test::TempFolder folder;
+  const std::string content = test::make_surface_samples()[1].content;
+  for (const std::string name : {"facet normal", "endsolid solid", "vertex 1 2 3"}) {
+    std::string named = "solid " + name + content.substr(content.find('\n'));
+    named.resize(named.rfind("endsolid"));
+    expect_tetrahedron(read_text(folder, "p.stl", named + "endsolid " + name + "\n"), name);
+  }
+}
+
+// A header of 80 bytes that begins as a text does; a zero in a text that does not.
+TEST(ReadSurfaces, ABinaryStlIsKnownByItsZeros) {
+  const test::TempFolder folder;
+  ARGIL_EXPECT_THROW_WITH(read_text(folder, "p.stl", "solid" + test::make_stl_binary().substr(5) + "x"),
+                          InputError, "4 triangles take 200 bytes, but 201 follow");
+  std::string text = test::make_surface_samples()[1].content;
+  text.insert(7, 1, '\0');
+  expect_tetrahedron(read_text(folder, "p.stl", text), "a zero in the name");
+}
+
+TEST(ReadSurfaces, WhatNothingUsesMayBeNotFinite) {
+  const test::TempFolder folder;
+  FileVertices told;
+  const mesh::TriangleMesh obj = read_triangle_mesh(
+      folder.write("p.obj", "v 0 0 0\nv nan -inf 1.#QNAN # none\nv 1 0 0\nv 0 1 0\nf 1 3 4\n"), 1.0, &told);
+  EXPECT_TRUE(obj.vertices == (Points(3, 3) << 0, 1, 0, 0, 0, 1, 0, 0, 0).finished());
+  EXPECT_EQ(told.kept, (std::vector<int>{0, 2, 3}));
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty list uchar float w\nelement face 1\nproperty float quality\n"
+      "property list uchar int vertex_indices\nend_header\n"
+      "0 0 0 nan 1 -nan\n1 0 0 -nan(ind) 0\n0 1 0 1.#IND 2 inf inf\n-inf nan 0 0 0\nnan 3 0 1 2\n";
+  EXPECT_TRUE(read_text(folder, "p.ply", ply).vertices == obj.vertices);
+  EXPECT_TRUE(
+      read_text(folder, "p.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n1.#QNAN 0 inf\n3 0 1 2\n").vertices ==
+      obj.vertices);
+  std::string binary = test::make_ply_binary(false);
+  const std::string red = "property uchar red\n";
+  binary.replace(binary.find(red), red.size(), "property float nx\n");
+  for (std::size_t v = 0, at = binary.find("end_header\n") + 11 + 12; v < 4; ++v, at += 16) {
+    std::string nan;
+    test::append_bytes(nan, std::numeric_limits<float>::quiet_NaN());
+    binary.replace(at, 1, nan);
+  }
+  expect_tetrahedron(read_text(folder, "p.ply", binary), "binary");
+}
+
 TEST(ReadSurfaces, OffIsReadInItsUsualForms) {
   const test::TempFolder folder;
   const std::string counts = "4 4 6\n";
@@ -165,7 +253,12 @@ TEST(RefuseSurfaces, EveryFormatSaysWhere) {
       {"a.obj", v3 + "f 1 2 x/1\n", "line 4: a face's vertex number is \"x\""},
       {"a.obj", v3 + "f 1 2 /1\n", "line 4: a face's vertex number is \"\""},
       {"a.obj", v3 + "v 0 0\nf 1 2 3\n", "line 4: a vertex of 2 coordinates"},
-      {"a.obj", v3 + "v 0 0 nan\nf 1 2 3\n", "line 4: a vertex coordinate is \"nan\""},
+      {"a.obj", v3 + "v 0 0 nan\nf 1 2 4\n", "a.obj: line 4: vertex 4: z is nan; give a finite number"},
+      {"a.obj", v3 + "v 0 0 1.#INF\nf 1 2 4\n", "line 4: vertex 4: z is inf; give a finite number"},
+      {"a.obj", v3 + "v 0 0 none\nf 1 2 3\n", "line 4: a vertex coordinate is \"none\", not a number"},
+      {"a.obj", "v 0 0 0\rv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+       "line 1: a carriage return stands within the line; save it with one kind of line end"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 -inf\n0 1 0\n3 0 1 2\n", "line 4: vertex 1: z is -inf"},
       {"a.obj", v3, "holds no faces"},
       {"a.stl", "solid\nendsolid\n", "holds no faces"},
       {"a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 inf\n",
@@ -175,9 +268,13 @@ TEST(RefuseSurfaces, EveryFormatSaysWhere) {
       {"a.stl", "solid\nhello\n", "line 2: \"hello\" where facet or endsolid was expected"},
       {"a.stl", "solid\n", "the file ends where endsolid was expected"},
       {"a.stl", test::make_stl_binary() + "x", "4 triangles take 200 bytes, but 201 follow"},
-      {"a.stl", std::string(80, ' ') + "\xff\xff\xff\xff",
-       "the number of triangles is 4294967295, more than"},
-      {"a.stl", "short", "the file ends where the header was expected"},
+      {"a.stl", std::string(80, ' ') + "\xff\xff\xff" + '\0',
+       "byte 80: the number of triangles is 16777215, more than"},
+      {"a.stl", std::string("short\0", 6), "byte 6: the file ends where the header was expected"},
+      {"a.stl", "short", "line 1: \"short\" where solid was expected"},
+      {"a.stl", "\nfacet normal 0 0 1\n", "line 2: \"facet\" where solid was expected"},
+      {"a.stl", "solid\nFacet Normal 0 0 1\nOUTER LOPP\n", "line 3: \"LOPP\" where loop was expected"},
+      {"a.stl", "solid\n\x1b[31m\n", "line 2: \"?[31m\" where facet"},
       {"a.ply", "PLY\n", "line 1: does not begin with \"ply\""},
       {"a.ply", "ply\nformat text 1.0\n", "line 2: format \"text\""},
       {"a.ply", "ply\nformat ascii 1.0\nelement vertex 99999\n",
@@ -222,7 +319,8 @@ TEST(RefuseSurfaces, BinaryNumbersThatAreNotFinite) {
     test::append_bytes(nan, std::numeric_limits<float>::quiet_NaN(), is_big);
     std::string ply = test::make_ply_binary(is_big);
     ply.replace(ply.find(one), 4, nan);
-    ARGIL_EXPECT_THROW_WITH(read_text(folder, "a.ply", ply), InputError, "a vertex property is not finite");
+    ARGIL_EXPECT_THROW_WITH(read_text(folder, "a.ply", ply), InputError,
+                            "vertex 1: x is nan; give a finite number");
     if (is_big) continue;
     std::string stl = test::make_stl_binary();
     stl.replace(stl.find(one), 4, nan);

@@ -3,6 +3,8 @@
 // layouts follow the formats' own manuals (sources in src/mesh/read_*.cpp).
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/error.h"
@@ -73,6 +75,34 @@ TEST(ReadTets, LineEndsOfOtherSystemsReadTheSame) {
   }
 }
 
+// As on Macs before 2001.
+TEST(ReadTets, LinesMayEndWithCarriageReturnsAlone) {
+  const test::TempFolder folder;
+  for (SampleFile sample : test::make_tet_samples()) {
+    if (sample.content.find('\0') != std::string::npos) continue;  // binary
+    for (std::string* text : {&sample.content, &sample.beside_content})
+      std::replace(text->begin(), text->end(), '\n', '\r');
+    expect_two_tets(read_sample(folder, sample), sample.name);
+  }
+}
+
+TEST(RefuseTets, Utf16WithoutAMarkIsNamed) {
+  const test::TempFolder folder;
+  for (const SampleFile& sample : test::make_tet_samples()) {
+    if (sample.content.find('\0') != std::string::npos) continue;  // binary
+    SampleFile little{sample.name, "", sample.beside, sample.beside_content};
+    SampleFile big = little;
+    for (const char c : sample.content) {
+      little.content += {c, '\0'};
+      big.content += {'\0', c};
+    }
+    for (const SampleFile& wide : {little, big})
+      ARGIL_EXPECT_THROW_WITH(
+          read_sample(folder, wide), InputError,
+          sample.name + ": is text in UTF-16, without a byte order mark or cut; save it as UTF-8");
+  }
+}
+
 TEST(ReadTets, AByteOrderMarkIsNoPartOfTheText) {
   const test::TempFolder folder;
   for (const char* name :
@@ -122,6 +152,97 @@ TEST(ReadTets, NumbersPerTetBecomeCellFields) {
   expect_field(read("ascii.vtu"), "E <Pa>", 0.1, 2e5);
   for (const char* name : {"version_5.vtk", "base64.vtu", "zlib.vtu", "appended.vtu"})
     expect_field(read(name), "region", 3, 4);
+}
+
+void replace_once(std::string& text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+}
+
+// "VTK File Formats" gives strings no form; this is what the writer of VTK makes of them (vtkDataWriter): one
+// a line with percent signs, and after a length of 1, 2, 4 or 8 bytes in the binary form. Variants are lines
+// in both, and a byte holds eight bits, the first highest.
+TEST(ReadTets, LegacyVtkStringsArePassedOver) {
+  const test::TempFolder folder;
+  SampleFile text = find_sample("version_4.vtk");
+  replace_once(text.content, "POINTS", "FIELD FieldData 1\nmaterial 1 1 string\nsoft clay\nPOINTS");
+  replace_once(text.content, "FIELD FieldData 2\nyoung",
+               "SCALARS name string 1\nLOOKUP_TABLE default\nclay\nSCALARS\n\n"
+               "PEDIGREE_IDS id string\na\nb\nc\n"
+               "FIELD FieldData 5\nlabel 2 3 string\na%20b\n\nMETADATA\nPOINTS 5\n1\n\n"
+               "METADATA\nCOMPONENT_NAMES\none\ntwo\n\nany 1 3 variant\n13 clay\n10 2\n13 \n"
+               "wet 1 3 bit\n1 0 1\nyoung");
+  const mesh::TetMesh mesh = read_sample(folder, text);
+  expect_two_tets(mesh, "text");
+  expect_field(mesh, "young modulus", 0.1, 2e5);
+  expect_field(mesh, "region", 3, 4);
+  expect_field(mesh, "wet", 1, 0);
+  EXPECT_EQ(mesh.cell_fields.size(), 3U);
+  text.content.resize(text.content.find("a%20b"));
+  ARGIL_EXPECT_THROW_WITH(read_sample(folder, text), InputError, "more than the 0 bytes left of the file");
+}
+
+TEST(ReadTets, LegacyVtkBinaryStringsArePassedOver) {
+  const test::TempFolder folder;
+  SampleFile sample = find_sample("binary.vtk");
+  const std::string strings =
+      "\xC4"
+      "clay" +
+      std::string("\x80\x46") + std::string(70, '\n') + std::string("\x40\0\x40\0", 4) +
+      std::string(0x4000, 'x');
+  const std::string long_one = std::string("\0\0\0\0\0\0\0\3abc", 11);  // as no writer needs it
+  replace_once(sample.content, "SCALARS E",
+               "FIELD f 4\nname 1 3 string\n" + strings + "\nfew 1 2 utf8_string\n" + long_one +
+                   "\xC0\nany 1 2 variant\n13 clay\n10 2\nwet 1 3 bit\n\x5F\nSCALARS E");
+  const mesh::TetMesh mesh = read_sample(folder, sample);
+  expect_two_tets(mesh, "binary");
+  expect_field(mesh, "E", 1e5, 2.5e5);
+  expect_field(mesh, "wet", 0, 1);
+  replace_once(sample.content, std::string("\x40\0\x40\0", 4), std::string("\x7F\0\x40\0", 4));
+  ARGIL_EXPECT_THROW_WITH(read_sample(folder, sample), InputError,
+                          "the file ends where a string was expected");
+}
+
+TEST(ReadTets, XmlVtkStringsArePassedOver) {
+  const test::TempFolder folder;
+  SampleFile sample = find_sample("ascii.vtu");
+  replace_once(
+      sample.content, "<CellData Scalars=\"region\">",
+      "<CellData><DataArray type=\"String\" Name=\"name\" format=\"ascii\">97 0 98 0 99 0 </DataArray>"
+      "<Array type=\"String\" Name=\"other\" format=\"ascii\">97 0 98 0 99 0</Array>");
+  const mesh::TetMesh mesh = read_sample(folder, sample);
+  expect_field(mesh, "E <Pa>", 0.1, 2e5);
+  EXPECT_EQ(mesh.cell_fields.size(), 1U);
+}
+
+// Numbers that nothing uses yet: a scenario that names the field refuses them.
+TEST(ReadTets, ACellFieldMayHoldWhatIsNotFinite) {
+  const test::TempFolder folder;
+  const auto read = [&](const char* name, const std::string& from, const std::string& to) {
+    SampleFile sample = find_sample(name);
+    replace_once(sample.content.find(from) == std::string::npos ? sample.beside_content : sample.content,
+                 from, to);
+    return read_sample(folder, sample);
+  };
+  const auto expect = [](const mesh::TetMesh& mesh, const std::string& name, double second) {
+    ASSERT_TRUE(mesh.cell_fields.contains(name)) << name;
+    EXPECT_TRUE(std::isnan(mesh.cell_fields.at(name)(0))) << name;
+    EXPECT_EQ(mesh.cell_fields.at(name)(1), second) << name;
+  };
+  expect(read("22_ascii.msh", "2 1e5", "2 nan"), "E [Pa] of \"clay\"", 2.5e5);
+  expect(read("22_ascii.msh", "2 1e5\n3 +2.5e5", "2 1.#QNAN\n3 -1.#INF"), "E [Pa] of \"clay\"", -HUGE_VAL);
+  expect(read("version_4.vtk", "0.1 200000", "-nan(ind) +inf"), "young modulus", HUGE_VAL);
+  expect(read("ascii.vtu", "0.1 200000", "NaN 200000"), "E <Pa>", 2e5);
+  expect(read("from_1.ele", "4 1e5", "4 -1.#IND"), "attribute 1", 2e5);
+  for (const char* name : {"22_binary.msh", "binary.vtk"}) {
+    const bool is_big = std::string(name) == "binary.vtk";
+    std::string one;
+    test::append_bytes(one, 1e5, is_big);
+    std::string nan;
+    test::append_bytes(nan, std::numeric_limits<double>::quiet_NaN(), is_big);
+    expect(read(name, one, nan), "E", 2.5e5);
+  }
 }
 
 TEST(ReadTets, VectorsAndPointDataAreNoCellFields) {
@@ -235,8 +356,8 @@ TEST(RefuseTets, GmshSaysWhere) {
       {"41_ascii.msh", "4.1 0", "4 0", "line 2: format version \"4\""},
       {"22_ascii.msh", "0 8", "0 4", "line 2: data size 4"},
       {"22_ascii.msh", "2.2 0", "2.2 5", "line 2: file type 5"},
-      {"22_ascii.msh", "2 1 0 0", "2 nan 0 0", "line 11: a node coordinate is \"nan\"; give a finite number"},
-      {"22_ascii.msh", "2 1 0 0", "2 -inf 0 0", "line 11: a node coordinate is \"-inf\""},
+      {"22_ascii.msh", "2 1 0 0", "2 nan 0 0", "22_ascii.msh: vertex 2: x is nan; give a finite number"},
+      {"22_ascii.msh", "2 1 0 0", "2 -inf 0 0", "22_ascii.msh: vertex 2: x is -inf; give a finite number"},
       {"22_ascii.msh", "2 1 0 0", "2 1e999 0 0",
        "line 11: a node coordinate is \"1e999\", outside the range"},
       {"22_ascii.msh", "2 1 0 0", "2 1,5 0 0", "line 11: a node coordinate is \"1,5\", not a number"},
@@ -255,7 +376,7 @@ TEST(RefuseTets, GmshSaysWhere) {
        "line 21: element type 5 (8-node hexahedron)"},
       {"22_ascii.msh", "3 4 2 1 1 2 3 5 9", "3 77 2 1 1 2 3 5 9", "line 21: element type 77 is not known"},
       {"22_ascii.msh", "2 1e5\n3", "2 1e5\n1", "has no value for tet 3; give every tet a value"},
-      {"22_ascii.msh", "2 1e5", "2 nan", "line 33: a cell value is \"nan\""},
+      {"22_ascii.msh", "2 1e5", "2 none", "line 33: a cell value is \"none\", not a number"},
       {"22_ascii.msh", "$PhysicalNames", "$ParametricNodes", "line 4: section $ParametricNodes"},
       {"41_ascii.msh", "3 6 1 9", "3 7 1 9", "hold 6 nodes, $Nodes announces 7"},
       {"41_ascii.msh", "3 3 1 3", "3 4 1 3", "hold 3 elements, $Elements announces 4"},
@@ -305,7 +426,8 @@ TEST(RefuseTets, LegacyVtkSaysWhere) {
       {"version_4.vtk", "POINTS 5 double", "POINTS 5000 double",
        "line 5: the number of points is 5000, more than"},
       {"version_4.vtk", "POINTS 5 double", "POINTS 6 double", "line 8: a point coordinate is \"CELLS\""},
-      {"version_4.vtk", "0 0 1 1 1 1", "0 0 1 1 1 inf", "line 7: a point coordinate is \"inf\""},
+      {"version_4.vtk", "0 0 1 1 1 1", "0 0 1 1 1 inf",
+       "version_4.vtk: vertex 4: z is inf; give a finite number"},
       {"version_4.vtk", "CELLS 3 14", "CELLS 3 13", "CELLS: the list ends within cell 2"},
       {"version_4.vtk", "4 1 2 3 4", "4 1 2 3 5", "tet 1 names vertex 5; vertices run from 0 to 4"},
       {"version_4.vtk", "4 1 2 3 4", "4 1 2 3 4.5", "a point number or offset is 4.5"},
@@ -314,7 +436,13 @@ TEST(RefuseTets, LegacyVtkSaysWhere) {
       {"version_4.vtk", "10\n5\n", "10\n10\n", "cell 2: a tetrahedron of 3 points"},
       {"version_4.vtk", "CELL_TYPES 3\n10\n10\n5", "CELL_TYPES 2\n10\n10", "3 cells but 2 cell types"},
       {"version_4.vtk", "CELL_DATA 3", "CELL_DATA 2", "a section such as CELLS was expected"},
-      {"version_4.vtk", "0.1 200000", "0.1 nan", "an array's value is \"nan\""},
+      {"version_4.vtk", "0.1 200000", "0.1 none", "an array's value is \"none\", not a number"},
+      {"version_4.vtk", "1 3 double", "1 3 quad", "array \"young modulus\" of type \"quad\"; use int, float"},
+      {"version_4.vtk", "region int", "region quad", "array \"region\" of type \"quad\"; use int, float"},
+      {"version_4.vtk", "0 0 1 1 1 1", "0 0 1 1 1 \x1b[31m", "a point coordinate is \"?[31m\", not a number"},
+      {"version_4.vtk", "0 0 1 1 1 1", "0 0 1 1 1 1\xff\xc2\x9b", "a point coordinate is \"1???\", not a"},
+      {"version_4.vtk", "0 0 1 1 1 1", "0 0 1 1 1 1,5\xc3\xbc",
+       "a point coordinate is \"1,5\xc3\xbc\", not a"},
       {"version_4.vtk", "young%20modulus", "region", "cell field \"region\" appears twice"},
       {"version_4.vtk", "young%20modulus", "a%0Ab",
        "a cell field has an empty name or one with control characters"},
@@ -341,7 +469,7 @@ TEST(RefuseTets, XmlVtkSaysWhere) {
       {"ascii.vtu", "\"LittleEndian\"", "\"Middle\"", "line 3: byte_order \"Middle\""},
       {"zlib.vtu", "vtkZLibDataCompressor", "vtkLZMADataCompressor",
        "line 3: compressor vtkLZMADataCompressor; save it with the compressor ZLib or None"},
-      {"ascii.vtu", "0 1 0 0 0 1", "0 1 0 nan 0 1", "array \"Points\": \"nan\" is not a finite number"},
+      {"ascii.vtu", "0 1 0 0 0 1", "0 1 0 nan 0 1", "ascii.vtu: vertex 3: x is nan; give a finite number"},
       {"ascii.vtu", "NumberOfPoints=\"5\"", "NumberOfPoints=\"6\"", "has 15 numbers where 18 are announced"},
       {"ascii.vtu", "NumberOfCells=\"3\"", "NumberOfCells=\"x\"", "has NumberOfCells=\"x\""},
       {"ascii.vtu", "NumberOfCells=\"3\"", "NumberOfCells=3", "has an attribute without a quoted value"},
@@ -372,7 +500,8 @@ TEST(RefuseTets, BinaryNumbersThatAreNotFinite) {
     std::string nan;
     test::append_bytes(nan, std::numeric_limits<double>::quiet_NaN(), is_big);
     sample.content.replace(sample.content.find(one), 8, nan);
-    ARGIL_EXPECT_THROW_WITH(read_sample(folder, sample), InputError, "not finite");
+    ARGIL_EXPECT_THROW_WITH(read_sample(folder, sample), InputError,
+                            is_big ? "vertex 1: x is nan" : "vertex 2: x is nan");
   }
 }
 
@@ -417,8 +546,9 @@ TEST(RefuseTets, CoordinatesThatOverflowInMetres) {
   const test::TempFolder folder;
   SampleFile sample = find_sample("from_0.ele");
   sample.beside_content.replace(sample.beside_content.find("4 1 1 1"), 7, "4 1e300 1 1");
-  ARGIL_EXPECT_THROW_WITH(read_sample(folder, sample, 1e10), InputError,
-                          "vertex 4: a coordinate is not finite");
+  ARGIL_EXPECT_THROW_WITH(
+      read_sample(folder, sample, 1e10), InputError,
+      "vertex 4: a coordinate is not finite in metres; give finite coordinates and check");
 }
 
 // Whatever is cut off, the answer is a refusal or, when only data behind the tets are missing, the same body.
