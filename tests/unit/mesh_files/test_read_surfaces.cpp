@@ -176,7 +176,7 @@ TEST(ReadSurfaces, TheNameOfASolidMayHoldAnyWord) {
 // A header of 80 bytes that begins as a text does; a zero in a text that does not.
 TEST(ReadSurfaces, ABinaryStlIsKnownByItsZeros) {
   const test::TempFolder folder;
-  ARGIL_EXPECT_THROW_WITH(read_text(folder, "p.stl", "solid" + test::make_stl_binary().substr(5) + "x"),
+  ARGIL_EXPECT_THROW_WITH(read_text(folder, "p.stl", "solid " + test::make_stl_binary().substr(6) + "x"),
                           InputError, "4 triangles take 200 bytes, but 201 follow");
   std::string text = test::make_surface_samples()[1].content;
   text.insert(7, 1, '\0');
@@ -272,6 +272,7 @@ TEST(RefuseSurfaces, EveryFormatSaysWhere) {
        "byte 80: the number of triangles is 16777215, more than"},
       {"a.stl", std::string("short\0", 6), "byte 6: the file ends where the header was expected"},
       {"a.stl", "short", "line 1: \"short\" where solid was expected"},
+      {"a.stl", "EndSolid\n", "line 1: \"EndSolid\" where solid was expected"},
       {"a.stl", "\nfacet normal 0 0 1\n", "line 2: \"facet\" where solid was expected"},
       {"a.stl", "solid\nFacet Normal 0 0 1\nOUTER LOPP\n", "line 3: \"LOPP\" where loop was expected"},
       {"a.stl", "solid\n\x1b[31m\n", "line 2: \"?[31m\" where facet"},

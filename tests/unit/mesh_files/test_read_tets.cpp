@@ -17,6 +17,7 @@
 namespace argil::mesh_files {
 namespace {
 
+using std::string_literals::operator""s;
 using test::SampleFile;
 
 mesh::TetMesh read_sample(const test::TempFolder& folder, const SampleFile& sample, double scale = 1.0) {
@@ -314,11 +315,16 @@ TEST(ReadTets, VerticesOfNoTetAreLeftOutAndTold) {
     EXPECT_EQ(vertices.find(5), 4);
     EXPECT_EQ(vertices.describe("f", "tet"),
               "f: 1 of 6 vertices belong to no tet and are left out, number 2 (from 0) the first");
+    std::vector<Change> not_finite = changes;
+    not_finite.push_back({"7 7 7", "nan -inf 1.#IND"});
+    expect_two_tets(read(name, not_finite, vertices), name + " not finite");
+    EXPECT_EQ(vertices.kept, (std::vector<int>{0, 1, 3, 4, 5})) << name;
   }
   for (const char* name : {"22_ascii.msh", "41_ascii.msh"}) {  // the sample's node 7, before the last one
     FileVertices vertices;
     expect_two_tets(read(name, {}, vertices), name);
     EXPECT_EQ(vertices.kept, (std::vector<int>{0, 1, 2, 3, 5})) << name;
+    expect_two_tets(read(name, {{"5 5 5", "nan -inf 1.#IND"}}, vertices), name + " not finite"s);
   }
   FileVertices all;
   expect_two_tets(read("medit.mesh", {}, all), "medit.mesh");
