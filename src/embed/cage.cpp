@@ -157,8 +157,40 @@ std::vector<double> list_distances(const Points& points, const TriangleTree& fro
   return distances;
 }
 
-Cage finish(mesh::TetMesh mesh, double cell_size, const mesh::TriangleMesh& surface,
-            const mesh::TriangleMesh& skin, const TriangleTree& tree) {
+/// Their corners, the middles of their edges and their centres.
+Points sample_triangles(const Points& vertices, const Triangles& triangles) {
+  std::vector<int> corners(triangles.reshaped().begin(), triangles.reshaped().end());
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  const auto num_corners = static_cast<Eigen::Index>(corners.size());
+  Points samples(3, num_corners + 4 * triangles.cols());
+  samples.leftCols(num_corners) = vertices(Eigen::all, corners);
+  Eigen::Index next = num_corners;
+  for (const auto& t : triangles.colwise()) {
+    const Vec3 a = vertices.col(t(0));
+    const Vec3 b = vertices.col(t(1));
+    const Vec3 c = vertices.col(t(2));
+    for (const Vec3& x :
+         {Vec3(0.5 * (a + b)), Vec3(0.5 * (b + c)), Vec3(0.5 * (c + a)), Vec3((a + b + c) / 3.0)})
+      samples.col(next++) = x;
+  }
+  return samples;
+}
+
+/// How far body and surface are apart, either way.
+void measure_distances(const mesh::TetMesh& mesh, const mesh::TriangleMesh& surface, const TriangleTree& tree,
+                       CageReport& report) {
+  const Triangles boundary = mesh::make_topology(mesh).boundary;
+  const std::vector<double> distances = list_distances(sample_triangles(mesh.vertices, boundary), tree);
+  report.median_distance = distances[distances.size() / 2];
+  report.max_distance = distances.back();
+  const mesh::TriangleMesh fine = split_long_edges(surface, 0.5 * report.cell_size);
+  report.max_skin_distance =
+      list_distances(sample_triangles(fine.vertices, fine.triangles), TriangleTree({mesh.vertices, boundary}))
+          .back();
+}
+
+Cage finish(mesh::TetMesh mesh, double cell_size, const mesh::TriangleMesh& surface) {
   const mesh::QualityReport quality = mesh::compute_quality(mesh);
   Cage cage;
   CageReport& report = cage.report;
@@ -166,14 +198,6 @@ Cage finish(mesh::TetMesh mesh, double cell_size, const mesh::TriangleMesh& surf
   report.cell_size = cell_size;
   report.min_dihedral_degrees = quality.min_dihedral_degrees;
   report.max_dihedral_degrees = quality.max_dihedral_degrees;
-  const Triangles boundary = mesh::make_topology(mesh).boundary;
-  std::vector<int> vertices(boundary.reshaped().begin(), boundary.reshaped().end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  const std::vector<double> distances = list_distances(mesh.vertices(Eigen::all, vertices), tree);
-  report.median_distance = distances[distances.size() / 2];
-  report.max_distance = distances.back();
-  report.max_skin_distance = list_distances(skin.vertices, TriangleTree({mesh.vertices, boundary})).back();
   if (is_closed(surface))
     report.volume_ratio = mesh::compute_rest_volumes(mesh).sum() / compute_skin_volume(surface);
   report.num_vertices = surface.num_vertices();
@@ -270,7 +294,9 @@ class CageSearch {
       require_most(mesh);
     else if (is_fitted())
       lay(mesh);
-    return finish(std::move(mesh), m_cell_size, m_surface, m_skin, m_tree);
+    Cage cage = finish(std::move(mesh), m_cell_size, m_surface);
+    if (!leaves_thin()) measure_distances(cage.mesh, m_surface, m_tree, cage.report);
+    return cage;
   }
 
   bool is_fitted() const { return m_options.fit == Fit::surface; }

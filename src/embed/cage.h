@@ -24,10 +24,11 @@ struct CageOptions {
 
 struct CageReport {
   int num_tets = 0;
-  int wanted_tets = 0;           ///< where no lattice has within 15 % of them; else 0
-  double cell_size = 0.0;        ///< [m] edge of the background lattice
-  double median_distance = 0.0;  ///< [m] of the boundary's vertices from the surface
-  double max_distance = 0.0;     ///< [m] the largest of these
+  int wanted_tets = 0;     ///< where no lattice has within 15 % of them; else 0
+  double cell_size = 0.0;  ///< [m] edge of the background lattice
+  double median_distance =
+      0.0;  ///< [m] of the boundary from the surface, at corners, middles of edges and centres
+  double max_distance = 0.0;  ///< [m] the largest of these
   double max_skin_distance =
       0.0;                    ///< [m] of the surface's vertices from the boundary: what is lost, or covered
   double volume_ratio = 0.0;  ///< body over what the surface encloses; 0 where it is not closed
