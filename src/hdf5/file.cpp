@@ -93,6 +93,8 @@ void remove_unless_busy(const std::string& name) {
 [[noreturn]] void refuse(const std::string& name, const std::string& action) {
   const std::string reason = take_reason();
   if (reason == std::strerror(EWOULDBLOCK)) throw BusyError(name);
+  if (reason.find("signature not found") != std::string::npos)
+    throw IoError(name, "is no HDF5 file, as results of argil run are");
   throw IoError(name, action + ": " + reason);
 }
 

@@ -16,6 +16,7 @@
 #include "device/release_guard.h"
 #include "live/figures.h"
 #include "live/recorder.h"
+#include "output/info.h"
 #include "run/files.h"
 #include "run/loop.h"
 #include "run/replay.h"
@@ -182,7 +183,7 @@ int print_end(const Session& session, const device::HapticDevice& device, const 
               const Figures& figures, bool is_quiet) {
   if (!is_quiet) std::printf("%s:\n%s", result.c_str(), figures.print().c_str());
   if (const auto failure = session.failure()) {
-    std::fprintf(stderr, "argil: run failed: %s\n", to_string(*failure).c_str());
+    std::fprintf(stderr, "argil: run failed: %s\n", output::describe_failure(*failure).c_str());
     return ExitCode::kRunFailed;
   }
   switch (session.end()) {

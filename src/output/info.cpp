@@ -35,7 +35,7 @@ void describe_outcome(std::ostream& out, const ResultReader& reader) {
       break;
     case Outcome::failed: {
       const auto failure = reader.read_failure();
-      out << "failed: " << (failure ? to_string(*failure) : "no reason recorded") << '\n';
+      out << "failed: " << (failure ? describe_failure(*failure) : "no reason recorded") << '\n';
       break;
     }
   }
@@ -218,6 +218,36 @@ void describe_provenance(std::ostream& out, const ResultHeader& header) {
 }
 
 }  // namespace
+
+std::string describe_failure(const Failure& failure) {
+  const auto says = [&](const char* words) { return failure.quantity.find(words) != std::string::npos; };
+  const char* remedy = "";
+  if (says("volume ratio"))
+    remedy =
+        "; the clay would turn inside out there, pressed further than cell, step or law bear: smaller cells "
+        "(/body/cells/near_tool_m), shorter steps (/haptics/physics_period_ticks), a /dynamics/model of "
+        "large "
+        "strain, or /dynamics/strict false, which limits the motion";
+  else if (says("trembles"))
+    remedy =
+        "; hand and contact shake each other: a lower /contact/stiffness_Pa_per_m, shorter steps "
+        "(/haptics/physics_period_ticks), or /haptics/passivity";
+  else if (says("kinetic energy"))
+    remedy =
+        "; the step is longer than this integrator bears: shorter steps (/haptics/period_s), or "
+        "/dynamics/integrator backward_euler";
+  else if (says("Newton") || says("line search"))
+    remedy =
+        "; the step is too long for its iterations: shorter steps (/haptics/physics_period_ticks), or more "
+        "of "
+        "/dynamics/newton/max_iterations";
+  else if (says("residual") || says("positive definite") || says("balance"))
+    remedy =
+        "; the system is too stiff for its solver: /dynamics/solver/kind cholesky, shorter steps, or a mesh "
+        "without "
+        "flat tets";
+  return to_string(failure) + remedy;
+}
 
 std::string describe_limits(const std::vector<sim::PhysicsRecord>& steps,
                             const std::vector<sim::HapticRecord>& ticks, int num_tets) {

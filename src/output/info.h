@@ -11,6 +11,9 @@ namespace argil::output {
 /// ResultReader does.
 std::string describe_result(const ResultReader& reader);
 
+/// What ended a run, its likely cause, and what helps.
+std::string describe_failure(const Failure& failure);
+
 /// One line about steps whose motion was limited or that could not be made, and ticks in which the hand was
 /// let go; empty without any.
 std::string describe_limits(const std::vector<sim::PhysicsRecord>& steps,

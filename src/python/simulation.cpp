@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "mesh/order.h"
+#include "output/info.h"
 #include "python/bindings.h"
 #include "run/stepper.h"
 
@@ -136,7 +137,8 @@ class SteppedRun {
     const py::gil_scoped_release others_may_go_on;
     const StepStatus status = tick();
     if (!status.is_ok())
-      throw RunFailed{{run::kRunFailed, "run failed: " + to_string(status.failure()), status.failure()}};
+      throw RunFailed{
+          {run::kRunFailed, "run failed: " + output::describe_failure(status.failure()), status.failure()}};
   }
 
   std::unique_ptr<run::Stepper> m_stepper;

@@ -27,7 +27,8 @@ contact::ApproachFinder make_approach_finder(const scenario::Scenario& s, const 
   return {{elements.rest, elements.surface}, std::move(tool)};
 }
 
-std::string describe_miss(const scenario::Scenario& s, const scenario::Scene& scene) {
+std::string describe_miss(const scenario::Scenario& s, const scenario::Scene& scene,
+                          const std::string& given_trace) {
   if (scene.trace.samples.empty() || s.hand.kind == scenario::HandKind::simulated) return "";
   if (!scene.contact_cells.empty()) return "";  // which are those of the places that it touches
   const contact::Approach nearest =
@@ -37,7 +38,7 @@ std::string describe_miss(const scenario::Scenario& s, const scenario::Scene& sc
   text.precision(3);
   text << "the tool never comes nearer than " << nearest.distance << " m to the body at rest, at "
        << static_cast<double>(nearest.pose) * s.params.rates.haptic_period << " s; argil place " << s.file
-       << " brings the motion onto it";
+       << (given_trace.empty() ? "" : " --trace " + given_trace) << " brings the motion onto it";
   return text.str();
 }
 

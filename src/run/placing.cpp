@@ -161,7 +161,12 @@ Placing::Placing(const Touch& touch, scenario::Scenario scenario)
       m_placement(std::make_unique<Placement>(m_scenario)),
       m_poses(list_poses(m_scenario, m_placement->scene.trace)),
       m_nearest(finder().find(m_poses)),
-      m_depth(choose_depth(finder().tool(), touch.depth)) {}
+      m_depth(choose_depth(finder().tool(), touch.depth)) {
+  if (m_placement->scene.trace.is_in_world)
+    throw InputError(m_placement->scene.trace.file, "",
+                     "is a result, whose places are the tool's in the world",
+                     "place the recording that it was made from");
+}
 
 mesh::Box Placing::path() const {
   mesh::Box box;

@@ -67,7 +67,7 @@ int plan(const PlanOptions& options) {
   const scenario::Scenario chosen = scenario::load_text(*text, s.file, {});
   if (!(chosen.body.cells.near_tool > 0.0))
     throw InputError(s.file, "/trace", "does not touch the body at rest: no cells follow from it",
-                     "argil place " + options.run.scenario + " says where it goes and how to move it");
+                     "argil place " + repeat_words(options.run) + " says where it goes and how to move it");
   double seconds = 0.0;
   for (const auto& [name, of_name] : reader.read_timing())
     if (name == "total") seconds = of_name;

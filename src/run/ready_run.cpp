@@ -21,7 +21,7 @@ ReadyRun::ReadyRun(const scenario::Scenario& scenario, const std::string& given_
                    const std::string& note, const std::optional<device::DeviceSample>& start)
     : s(scenario),
       scene(scenario::build_scene(s)),
-      miss(start ? "" : describe_miss(s, scene)),
+      miss(start ? "" : describe_miss(s, scene, given_trace)),
       tool(scene.tool),
       full(make_full(s, scene, start ? *start : sample_at(s, scene.trace, 0))),
       simulation(std::move(scene.body), tool, s.params, start ? *start : sample_at(s, scene.trace, 0)),

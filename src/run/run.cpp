@@ -44,7 +44,7 @@ RunEnd end_done_before(const std::string& result, const RunOptions& options) {
 }
 
 RunEnd make_failed(const Failure& failure) {
-  return {kRunFailed, "run failed: " + to_string(failure), failure};
+  return {kRunFailed, "run failed: " + output::describe_failure(failure), failure};
 }
 
 RunEnd print_end(const std::string& result, const LoopEnd& end, Tick first, Tick last,
@@ -164,6 +164,22 @@ scenario::Scenario load(const RunOptions& options) {
   for (const scenario::InputFile& input : scenario::list_input_files(s))
     if (!is_text || !input.pointer.empty()) require_input_file(input.file, input.pointer);
   return s;
+}
+
+std::string repeat_words(const RunOptions& options) {
+  const auto quote = [](const std::string& word) {
+    constexpr std::string_view kPlain =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./,:@%";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    return quoted + "'";
+  };
+  std::string words = quote(options.scenario);
+  for (const std::string& patch : options.patches) words += " --patch " + quote(patch);
+  for (const std::string& setting : options.settings) words += " --set " + quote(setting);
+  if (!options.trace.empty()) words += " --trace " + quote(options.trace);
+  return words;
 }
 
 std::string name_result(const scenario::Scenario& s, const RunOptions& options) {

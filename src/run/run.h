@@ -32,6 +32,10 @@ struct RunOptions {
 
 inline constexpr int kMostThreads = 256;
 
+/// Scenario, patches, settings and trace of a call as words of a shell, for the command that a message asks
+/// for.
+std::string repeat_words(const RunOptions& options);
+
 /// Exit codes of the program.
 enum ExitCode : int {
   kDone = 0,

@@ -123,6 +123,22 @@ void make_cage(const Scenario& s, int num_tets, const std::string& name, Scene& 
   scene.body.mesh = std::move(cage.mesh);
 }
 
+/// A cage and a surface of unlike size are in unlike units.
+void require_one_size(const Scenario& s, const sim::Body& body) {
+  constexpr double kMost = 3.0;  // a cage of a few tets is less than twice as large as what it holds
+  const auto measure = [](const Points& x) {
+    return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+  };
+  const double cage = measure(body.mesh.vertices);
+  const double skin = measure(body.skin.vertices);
+  if (cage < kMost * skin && skin < kMost * cage) return;
+  std::ostringstream problem;
+  problem << "is " << cage << " m across, and the surface " << skin << " m by its scale of " << s.body.scale;
+  std::ostringstream remedy;
+  remedy << "make it by `argil cage --scale " << s.body.scale << "`, or correct /body/surface/scale";
+  throw InputError(s.body.cage_file, "/body/surface/cage", problem.str(), remedy.str());
+}
+
 /// Before its cells are graded: messages name the tets of the file.
 void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
   sim::Body& body = scene.body;
@@ -149,6 +165,7 @@ void make_mesh(const Scenario& s, int num_tets, Scene& scene) {
         make_cage(s, num_tets, s.body.file, scene);
       } else {
         body.mesh = mesh_files::read_tet_mesh(s.body.cage_file, 1.0, &scene.file_vertices);
+        require_one_size(s, body);
         add_note_of_lists(s.body.cage_file, scene);
       }
       break;

@@ -154,9 +154,20 @@ void write_published(const std::string& file, const std::string& text) {
   }
 }
 
-int run_point(const SweepPoint& point, const SweepRun& sweep) {
+/// How the points of a block ended.
+struct Tally {
+  int made = 0;
+  int before = 0;  // had ended well before
+  int failed = 0;
+  int refused = 0;
+};
+
+int run_point(const SweepPoint& point, const SweepRun& sweep, Tally& tally) {
   const std::string name = name_point(sweep.points, point.index);
-  if (look(point, sweep.points).is_done) return run::kDone;
+  if (look(point, sweep.points).is_done) {
+    ++tally.before;
+    return run::kDone;
+  }
   run::RunOptions options = make_options(point, sweep.points);
   options.output = name + ".part.h5";
   options.threads = sweep.threads;
@@ -172,17 +183,24 @@ int run_point(const SweepPoint& point, const SweepRun& sweep) {
   const fs::path folder = fs::path(name).parent_path();
   fs::create_directories(folder);
   const PointLock lock(folder.string(), point.index);
-  if (look(point, sweep.points).is_done) return run::kDone;  // by another process, meanwhile
+  if (look(point, sweep.points).is_done) {  // by another process, meanwhile
+    ++tally.before;
+    return run::kDone;
+  }
   remove_unusable(options.output, point.id);
   fs::remove(name + ".refused");
   try {
     const int code = run::run(options);
-    if (code == run::kDone || code == run::kRunFailed) publish(options.output, name + ".h5");
+    if (code == run::kDone || code == run::kRunFailed) {
+      publish(options.output, name + ".h5");
+      ++(code == run::kDone ? tally.made : tally.failed);
+    }
     return code == run::kInterrupted ? run::kInterrupted : run::kDone;
   } catch (const InputError& error) {
     write_published(name + ".refused", point.id + "\n" + error.what() + "\n");
     std::fprintf(stderr, "argil: point %lld refused: %s\n", static_cast<long long>(point.index),
                  error.what());
+    ++tally.refused;
     return run::kDone;
   }
 }
@@ -256,6 +274,7 @@ int run_sweep(const SweepRun& sweep) {
                      "give 0 to " + std::to_string((count - 1) / sweep.block));
   run::watch_signals();
   const std::int64_t end = std::min((index + 1) * sweep.block, count);
+  Tally tally;
   for (std::int64_t i = index * sweep.block; i < end; ++i) {
     if (run::is_interrupted()) {
       std::fprintf(stderr,
@@ -263,9 +282,13 @@ int run_sweep(const SweepRun& sweep) {
                    static_cast<long long>(i), sweep.points.c_str());
       return run::kInterrupted;
     }
-    if (const int code = run_point(points[static_cast<std::size_t>(i)], sweep); code != run::kDone)
+    if (const int code = run_point(points[static_cast<std::size_t>(i)], sweep, tally); code != run::kDone)
       return code;
   }
+  std::printf("%s: block %lld, points %lld to %lld: %d made, %d there before, %d failed, %d refused\n",
+              sweep.points.c_str(), static_cast<long long>(index),
+              static_cast<long long>(index * sweep.block), static_cast<long long>(end - 1), tally.made,
+              tally.before, tally.failed, tally.refused);
   return run::kDone;
 }
 

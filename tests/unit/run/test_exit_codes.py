@@ -126,6 +126,21 @@ class ExitCodes(unittest.TestCase):
             self.assertIn(arguments[-1], error)
         self.assertEqual({file: file.read_bytes() for file in sorted(self.folder.iterdir())}, before)
 
+    def test_2_a_cage_in_another_unit(self):
+        (self.folder / "body.obj").write_text("v 0 0 0\nv 40 0 0\nv 0 40 0\nv 0 0 40\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+        scene = make_scene("press.csv")
+        scene["contact"] = {"law": "pressure"}
+        for made, scale, remedy in (("1", 0.001, "argil cage --scale 0.001"), ("0.001", 1, "correct /body/surface/scale")):
+            self.call("cage", "body.obj", "-o", "cage.msh", "--tets", "400", "--scale", made)
+            scene["body"] = {"surface": {"file": "body.obj", "scale": scale, "cage": "cage.msh"},
+                             "fixed": scene["body"]["fixed"]}
+            (self.folder / "units.json").write_text(json.dumps(scene))
+            for command in ("validate", "run"):
+                code, _, error = self.call(command, "units.json")
+                self.assertEqual(code, 2, error)
+                self.assertRegex(error, r"cage.msh: /body/surface/cage: is [\d.]+ m across, and the surface [\d.]+ m by its scale")
+                self.assertIn(remedy, error)
+
     def test_2_bad_command_lines(self):
         for arguments in ([], ["rum"], ["run"], ["run", "scene.json", "--threads", "0"], ["run", "scene.json", "--sett"]):
             self.assertEqual(self.call(*arguments)[0], 2, arguments)
@@ -148,6 +163,9 @@ class ExitCodes(unittest.TestCase):
         self.assertRegex(error, r"argil: run failed: .*tick \d+")
         self.assertIn("tet", error)
         self.assertIn("0.9999", error)
+        for remedy in ("/body/cells/near_tool_m", "/haptics/physics_period_ticks", "/dynamics/model", "/dynamics/strict"):
+            self.assertIn(remedy, error)
+        self.assertIn("smaller cells (/body/cells/near_tool_m)", self.call("info", "out.h5")[1])
         complete, last, _ = self.read_ends("out.h5")
         self.assertFalse(complete)
         self.assertLess(last, 0.1)

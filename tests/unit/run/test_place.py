@@ -5,6 +5,7 @@ ball from a block, by hand.
 Usage: test_place.py ARGIL        the program
 """
 import json
+import shlex
 import math
 import re
 import subprocess
@@ -87,6 +88,28 @@ class Place(unittest.TestCase):
                   "-o", "again.json")
         np.testing.assert_allclose(self.read_translation("again.json"), [0, 0, down + 0.001], atol=2e-8)
 
+    def test_the_command_that_is_printed_is_the_next_one(self):
+        other = (self.folder / "swing.csv").rename(self.folder / "another swing.csv").name
+        words = ("--trace", other, "--set", "/material/youngs_modulus_Pa=5e4")
+        note = self.call("validate", "scene.json", *words)[1]
+        self.assertIn(f"argil place scene.json --trace {other} brings the motion onto it", note)
+        out = self.call("place", "scene.json", *words, "-o", "patch.json")[0]
+        command = out.splitlines()[-1].split(": argil ", 1)[1]
+        self.assertEqual(shlex.split(command), ["run", "scene.json", "--patch", "patch.json", *words[2:], *words[:2]])
+        self.assertNotIn("no tick", self.call(*shlex.split(command), "-o", "next.h5")[1])
+
+    def test_a_result_is_a_motion_that_lies_in_the_world(self):
+        self.call("place", "scene.json", "-o", "patch.json")
+        self.call("run", "scene.json", "--patch", "patch.json", "-o", "touch.h5")
+        error = self.call("run", "scene.json", "--patch", "patch.json", "--trace", "touch.h5", "-o", "again.h5")[1]
+        self.assertIn("/trace/device_to_world are not applied to them again", error)
+        with h5py.File(self.folder / "touch.h5") as first, h5py.File(self.folder / "again.h5") as again:
+            path = first["haptic/tool_position"][:]
+            # A result begins at its first tick: its motion is a tick behind.
+            np.testing.assert_array_equal(again["haptic/tool_position"][:], path[1:])
+        error = self.call("place", "scene.json", "--trace", "touch.h5", code=2)[1]
+        self.assertIn("touch.h5: is a result, whose places are the tool's in the world; place the recording", error)
+
     def test_a_given_place_is_touched_from_a_given_side(self):
         self.call("place", "scene.json", "--at", "0.01,0.02,0.04", "--from", "0,0,2", "--depth", "0.001", "-o", "top.json")
         np.testing.assert_allclose(self.read_translation("top.json"), [0.006, 0.023, TOP + RADIUS - 0.001 - LOWEST], atol=2e-8)
@@ -131,7 +154,7 @@ class Place(unittest.TestCase):
                                  (["--at", "0,0,nan", "--from", "0,0,1"], "is not X,Y,Z"),
                                  (["--at", "0,0,0.04"], "go together"),
                                  (["--from", "0,0,1"], "go together"),
-                                 (["--at", "0,0,0.04", "--from", "0,0,0"], "go together"),
+                                 (["--at", "0,0,0.04", "--from", "0,0,0"], "is no direction"),
                                  (["--at", "0,0.2,0.04", "--from", "0,0,1"], "is no place where the tool meets the body"),
                                  (["--depth", "0.007"], "is more than the tool's radius, 0.006 m"),
                                  (["-o", "scene.json"], "would be overwritten"),

@@ -205,7 +205,8 @@ class Sweep(unittest.TestCase):
         self.assertEqual([row["outcome"] for row in table], ["done"])
         self.assertEqual(self.call("missing", self.points), "")
         before = self.files()
-        self.call("run", self.points, "--index", 0)
+        self.assertIn("block 0, points 0 to 0: 0 made, 1 there before, 0 failed, 0 refused",
+                      self.call("run", self.points, "--index", 0))
         self.assertEqual(self.files(), before)
         whole.rename(part)  # as if it had been killed between its end and its name
         self.call("run", self.points, "--index", 0)
