@@ -118,7 +118,7 @@ class Results(unittest.TestCase):
         with h5py.File(self.folder / "other.h5", "w"):
             pass
         for name, kind, words in (("none.h5", argil.IoError, "none.h5: cannot be read"),
-                                  ("text.h5", argil.IoError, "cannot be read"),
+                                  ("text.h5", argil.IoError, "text.h5: is no HDF5 file"),
                                   ("other.h5", argil.InputError, "other.h5: is not a result file of argil run")):
             with self.assertRaisesRegex(kind, words):
                 argil.open(self.folder / name)

@@ -211,6 +211,15 @@ class Refusals(Folder):
         self.expect("press: is no mode of a tool", sim.tick, [0, 0, 0.06], mode="press")
         self.assertEqual(sim.ticks, 0)
 
+    def test_a_hand_that_returns_nothing(self):
+        sim = argil.load(BALL).start()
+        self.expect("the hand returned None; return a position", sim.run, 5, hand=lambda at, force: None)
+        self.assertEqual(sim.ticks, 0)
+
+    def test_settings_that_are_none(self):
+        self.expect("set: is a list; give a dict", argil.load, BALL, set=["/tool/mode=push"])
+        self.expect('set: "youngs_modulus_Pa" is no JSON pointer', argil.load, BALL, set={"youngs_modulus_Pa": 2e4})
+
     def test_a_run_has_one_hand_and_the_motion_an_end(self):
         sim = argil.load(BALL).start()
         sim.run()
@@ -350,6 +359,7 @@ except KeyboardInterrupt:
         patch.write_text(json.dumps({"material": {"youngs_modulus_Pa": 3e4, "poissons_ratio": 0.2}}))
         material = argil.load(BALL, patches=[patch], set={"/material/poissons_ratio": 0.1}).resolved["material"]
         self.assertEqual((material["youngs_modulus_Pa"], material["poissons_ratio"]), (3e4, 0.1))
+        self.assertEqual(argil.load(BALL, patches=str(patch)).resolved["material"]["poissons_ratio"], 0.2)  # one needs no list
 
     def test_a_motion_that_misses_is_noted(self):
         sim = argil.load(BALL, set={"/trace/device_to_world/translation_m": [0, 0, 0.05]}).start()

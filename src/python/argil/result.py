@@ -15,7 +15,9 @@ def open_file(file):
     try:
         result = h5py.File(os.fspath(file), "r")
     except OSError as error:
-        raise IoError(f"{os.fspath(file)}: cannot be read: {error}") from None
+        reason = "a run writes it at present; wait for its end" if "unable to lock" in str(error) else \
+            "is no HDF5 file, as results of argil run are" if "file signature not found" in str(error) else f"cannot be read: {error}"
+        raise IoError(f"{os.fspath(file)}: {reason}") from None
     if _attributes(result).get("format", "") != "argil-result":
         result.close()
         raise InputError(f"{os.fspath(file)}: is not a result file of argil run")

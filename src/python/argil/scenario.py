@@ -3,6 +3,7 @@ import json
 import os
 
 from . import _argil
+from .errors import InputError
 
 
 def _to_json(value):
@@ -11,6 +12,11 @@ def _to_json(value):
 
 
 def _settings(settings):
+    if settings is not None and not isinstance(settings, dict):
+        raise InputError(f'set: is a {type(settings).__name__}; give a dict, for instance {{"/tool/mode": "push"}}')
+    for pointer in settings or {}:
+        if not str(pointer).startswith("/"):
+            raise InputError(f'set: "{pointer}" is no JSON pointer; it begins with "/", as "/material/youngs_modulus_Pa"')
     return [f"{pointer}={_to_json(value)}" for pointer, value in (settings or {}).items()]
 
 
@@ -20,7 +26,7 @@ class Scenario:
     source: a JSON file, or a dict of the same keys.
     folder: of a dict; paths in it are relative to this folder.
     set: {"/json/pointer": value}, put in the place of the scenario's own values. Numpy's numbers and arrays are taken.
-    patches: JSON files with some of a scenario's keys, put in its place before `set`.
+    patches: a JSON file or several with some of a scenario's keys, put in its place before `set`.
     trace: a recorded motion (CSV or HDF5) in the place of the scenario's.
 
     Raises InputError for what cannot run, IoError for what cannot be read.
@@ -29,6 +35,7 @@ class Scenario:
     def __init__(self, source, *, folder=".", set=None, patches=(), trace=None):  # pylint: disable=redefined-builtin
         is_dict = isinstance(source, dict)
         file = os.path.normpath(os.path.join(folder, "scenario")) if is_dict else os.fspath(source)
+        patches = (patches,) if isinstance(patches, (str, os.PathLike)) else patches
         self._loaded = _argil.Scenario(file, _to_json(source) if is_dict else "", _settings(set),
                                        [os.fspath(patch) for patch in patches], os.fspath(trace or ""))
 

@@ -67,6 +67,8 @@ class Simulation:
                 self._run.tick()
                 continue
             place = hand((self.ticks + 1) * self.period, self.device_force)
+            if place is None:
+                raise InputError("run: the hand returned None; return a position, or a tuple of position, orientation and mode")
             if isinstance(place, tuple) and np.ndim(place[0]) == 1:
                 self.tick(*place)
             else:
