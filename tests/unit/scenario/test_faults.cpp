@@ -124,6 +124,23 @@ TEST_F(Faulty, FieldsSupportsAndLoadsOfABodyAllAtOnce) {
                        "has no cell data named \"E\""});
 }
 
+// The readers of meshes let NaN pass in what nothing uses.
+TEST_F(Faulty, AFieldThatTheBodyUsesMustBeFinite) {
+  std::string two_tets = kTwoTets;
+  two_tets.replace(two_tets.find("0.5 1.5"), 7, "0.5 nan");
+  folder.write("two.vtk", two_tets);
+  const auto text = [](const std::string& field) {
+    return R"({"about": "x", "dynamics": {"mode": "static"}, "body": {"mesh": {"file": "two.vtk")" + field +
+           R"(}, "fixed": [{"kind": "nodes", "nodes": [0, 1, 3]}]},
+           "material": {"youngs_modulus_Pa": 1e5, "poissons_ratio": 0.3}})";
+  };
+  EXPECT_NO_THROW(build_scene(load_scenario(folder.write("unused.json", text("")), {})));
+  expect_faults(text(R"(, "saturation_field": "S")"),
+                {"two.vtk: tet 1: cell data \"S\" is nan, outside [0, 1]; correct the file"});
+  expect_faults(text(R"(, "youngs_modulus_field": "S")"),
+                {"two.vtk: tet 1: cell data \"S\" is nan, outside"});
+}
+
 TEST_F(Faulty, EachLoadIsCheckedAndListsCountTheFilesVertices) {
   folder.write("two.vtk", kTwoTets);
   const std::string held = R"("fixed": [{"kind": "nodes", "nodes": [0, 1, 3]}], )";
