@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/lower_case.h"
+
 namespace argil::device::internal {
 
 std::string_view trim(std::string_view text) {
@@ -114,13 +116,39 @@ std::optional<double> find_comma_number(std::string_view text) {
   return find_number(pointed);
 }
 
+bool is_lost(std::string_view text) {
+  const std::string word = to_lower_case(trim(text));
+  for (const char* known : {"nan", "+nan", "-nan", "na", "n/a", "null", "none", "#n/a"})
+    if (word == known) return true;
+  return false;
+}
+
+std::string quote(std::string_view text) {
+  constexpr std::size_t kLongest = 80;
+  if (text.size() <= kLongest) return "'" + std::string(text) + "'";
+  std::size_t end = kLongest;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // no half letter
+  return "'" + std::string(text.substr(0, end)) + "…'";
+}
+
+std::string join(const std::vector<std::string>& words) {
+  constexpr std::size_t kLongest = 200;
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0 && text.size() + words[i].size() > kLongest)
+      return text + " and " + std::to_string(words.size() - i) + " more";
+    text += (i > 0 ? ", " : "") + words[i];
+  }
+  return text;
+}
+
 bool LineReader::next(std::string_view& line) {
   if (m_next >= m_text.size()) return false;
   m_begin = m_next;
-  const std::size_t end = std::min(m_text.find('\n', m_begin), m_text.size());
+  std::size_t end = m_begin;
+  while (end < m_text.size() && m_text[end] != '\n' && m_text[end] != '\r') ++end;
   line = m_text.substr(m_begin, end - m_begin);
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  m_next = end + 1;
+  m_next = end + (m_text.substr(end, 2) == "\r\n" ? 2 : 1);
   ++m_number;
   return true;
 }

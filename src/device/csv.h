@@ -31,7 +31,15 @@ std::optional<double> find_number(std::string_view text);
 /// The same with one comma in the place of the point: "0,125". Nothing for any other text.
 std::optional<double> find_comma_number(std::string_view text);
 
-/// Lines of a text one after the other; "\n" and "\r\n" end a line.
+/// Does a cell say that there is no number: "nan", "NA", "null", in any case?
+bool is_lost(std::string_view text);
+
+/// "'text'" for messages, cut where it is long.
+std::string quote(std::string_view text);
+/// "a, b" for messages, cut with the number of the others where it is long.
+std::string join(const std::vector<std::string>& words);
+
+/// Lines of a text one after the other; "\n", "\r\n" and "\r" end a line.
 class LineReader {
  public:
   explicit LineReader(std::string_view text) : m_text(text) {}

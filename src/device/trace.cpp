@@ -92,13 +92,23 @@ UnlikelyUnit::UnlikelyUnit(const std::string& file, const std::string& place, co
       m_key(key),
       m_likely(likely) {}
 
+namespace {
+
+RawTrace read_text(const std::string& file, const std::string& text, const TraceOptions& options) {
+  internal::require_text(file, text);
+  return internal::parse_csv(file, text, options);
+}
+
+}  // namespace
+
 Trace read_trace(const std::string& file, const TraceOptions& options) {
   const std::string bytes = read_file(file);
   const bool is_hdf5 = bytes.starts_with("\x89HDF\r\n\x1a\n");
   const bool is_npy = bytes.starts_with("\x93NUMPY");
   RawTrace raw = is_hdf5  ? internal::read_hdf5(file, options)
                  : is_npy ? internal::parse_npy(file, bytes, options)
-                          : internal::parse_csv(file, to_utf8(bytes), options);
+                          : read_text(file, to_utf8(bytes), options);
+  const bool has_times = !raw.time.empty();
   fill_times(file, options, raw);
   internal::check_times(file, options, raw);
   const DeviceToWorld to_world = raw.is_in_world ? DeviceToWorld{} : options.device_to_world;
@@ -132,7 +142,8 @@ Trace read_trace(const std::string& file, const TraceOptions& options) {
     trace.samples.push_back(sample);
   }
   trace.is_length_assumed = !raw.is_length_given && scale == 1.0;
-  internal::check_path(file, trace);
+  internal::check_path(file, raw, trace);
+  if (has_times && options.time_unit == TimeUnit::automatic) internal::note_slow_motion(trace);
   return trace;
 }
 

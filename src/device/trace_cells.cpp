@@ -12,32 +12,6 @@
 namespace argil::device::internal {
 namespace {
 
-/// The number of a cell, with a decimal point or a decimal comma, but one of them in the whole file: where
-/// both are, one may divide thousands.
-double read_cell(Parser& parser, std::size_t line, Role role) {
-  const int column = parser.layout.column[role];
-  const std::string& text = parser.fields[static_cast<std::size_t>(column)];
-  auto number = find_number(text);
-  if (number) {
-    if (parser.point_line == 0 && text.find('.') != std::string::npos) parser.point_line = line;
-  } else {
-    number = find_comma_number(text);
-    if (number && parser.comma_line == 0) parser.comma_line = line;
-  }
-  if (!number)
-    throw InputError(parser.file, parser.place(line, column), "'" + text + "' is not a number",
-                     "write it like 0.125");
-  if (parser.comma_line != 0 && parser.point_line != 0)
-    throw InputError(parser.file, parser.place(line, column),
-                     "'" + text + "': decimal commas (line " + std::to_string(parser.comma_line) +
-                         ") and points (line " + std::to_string(parser.point_line) + ") in one file",
-                     "write all numbers with a point and without a sign between thousands");
-  if (!std::isfinite(*number))
-    throw InputError(parser.file, parser.place(line, column), "'" + text + "' is not finite",
-                     "give a finite number");
-  return *number;
-}
-
 ToolMode read_mode(const Parser& parser, std::size_t line) {
   const int column = parser.layout.column[kMode];
   const std::string& text = parser.fields[static_cast<std::size_t>(column)];
@@ -45,7 +19,7 @@ ToolMode read_mode(const Parser& parser, std::size_t line) {
   const auto number = find_number(text);
   for (int i = 0; number && i < kNumToolModes; ++i)
     if (*number == i) return static_cast<ToolMode>(i);
-  throw InputError(parser.file, parser.place(line, column), "mode '" + text + "'",
+  throw InputError(parser.file, parser.place(line, column), "mode " + quote(text),
                    "use push, pull, wet, dry or 0, 1, 2, 3");
 }
 
@@ -56,16 +30,10 @@ std::string find_stated_unit(const Parser& parser, std::size_t line, const std::
     if (parser.layout.unit[role] != unit)
       throw InputError(parser.file, parser.place(line),
                        "columns " + std::string(name_role(roles[0])) + " and " +
-                           std::string(name_role(role)) + " are in '" + unit + "' and '" +
-                           parser.layout.unit[role] + "'",
+                           std::string(name_role(role)) + " are in " + quote(unit) + " and " +
+                           quote(parser.layout.unit[role]),
                        "give all in one unit");
   return unit;
-}
-
-void note_key(Parser& parser, std::string_view key, std::string_view stated) {
-  if (!stated.empty())
-    parser.raw.notes.push_back(std::string(key) + " is taken, not the unit '" + std::string(stated) +
-                               "' of the columns");
 }
 
 void choose_length_unit(Parser& parser, std::size_t line) {
@@ -79,45 +47,16 @@ void choose_length_unit(Parser& parser, std::size_t line) {
   }
   const auto unit = find_length_unit(stated);
   if (!stated.empty() && !unit)
-    throw InputError(parser.file, parser.place(line), "unit of length '" + stated + "'",
+    throw InputError(parser.file, parser.place(line), "unit of length " + quote(stated),
                      "give m, cm, mm or um by /trace/length_unit");
   const auto of_header = find_length_unit(parser.header_unit);
   if (unit && of_header && *unit != *of_header)
-    throw InputError(parser.file, parser.place(line),
-                     "columns in '" + stated + "', but the header's units are '" + parser.header_unit + "'",
-                     "correct one of them, or give /trace/length_unit");
+    throw InputError(
+        parser.file, parser.place(line),
+        "columns in " + quote(stated) + ", but the header's units are " + quote(parser.header_unit),
+        "correct one of them, or give /trace/length_unit");
   raw.metres_per_unit = unit ? *unit : of_header.value_or(1.0);
   raw.is_length_given = unit || of_header;
-}
-
-void choose_time_unit(Parser& parser, std::size_t line) {
-  if (!parser.layout.has(kTime)) return;
-  RawTrace& raw = parser.raw;
-  const int column = parser.layout.column[kTime];
-  const std::string& text = parser.fields[static_cast<std::size_t>(column)];
-  const std::string& stated = parser.layout.unit[kTime];
-  const bool has_key = parser.options.time_unit != TimeUnit::automatic;
-  if (find_calendar_time(text)) {
-    if (has_key)
-      throw InputError(parser.file, parser.place(line, column),
-                       "'" + text + "' is a calendar time, but /trace/time_unit is " +
-                           std::string(to_word(parser.options.time_unit)),
-                       "leave that key out");
-    parser.is_calendar = true;
-    raw.is_time_given = true;
-    raw.notes.push_back("times are calendar times, counted from the first, " + text);
-  } else if (has_key) {
-    parser.per_second = per_second(parser.options.time_unit);
-    raw.is_time_given = true;
-    if (find_time_unit(stated) != parser.per_second) note_key(parser, "/trace/time_unit", stated);
-  } else if (!stated.empty()) {
-    const auto unit = find_time_unit(stated);
-    if (!unit)
-      throw InputError(parser.file, parser.place(line, column), "unit of time '" + stated + "'",
-                       "give s, ms, us or ns by /trace/time_unit");
-    parser.per_second = *unit;
-    raw.is_time_given = true;
-  }
 }
 
 void choose_angle_unit(Parser& parser, std::size_t line) {
@@ -127,39 +66,9 @@ void choose_angle_unit(Parser& parser, std::size_t line) {
   if (!factor)
     throw InputError(
         parser.file, parser.place(line),
-        stated.empty() ? "the unit of the angles is not said" : "unit of angles '" + stated + "'",
+        stated.empty() ? "the unit of the angles is not said" : "unit of angles " + quote(stated),
         "give rad or deg by /trace/angle_unit");
   parser.radians = *factor;
-}
-
-double read_time(Parser& parser, std::size_t line) {
-  const int column = parser.layout.column[kTime];
-  const std::string& text = parser.fields[static_cast<std::size_t>(column)];
-  const bool is_first = parser.raw.line.empty();
-  constexpr std::int64_t kFarOrigin = 1'000'000;  // of whose fractions a double begins to lose nanoseconds
-  if (parser.is_calendar) {
-    const auto moment = find_calendar_time(text);
-    if (!moment)
-      throw InputError(parser.file, parser.place(line, column),
-                       "'" + text + "' is not a calendar time as the first is",
-                       "write all as 2024-01-31 12:00:00.125");
-    if (is_first) parser.origin = moment->whole;
-    return static_cast<double>(moment->whole - parser.origin) + moment->fraction;
-  }
-  if (!is_number(text))
-    throw InputError(parser.file, parser.place(line, column), "'" + text + "' is not a number",
-                     "write a time like 0.125, or a date and time like 2024-01-31 12:00:00.125");
-  const double number = read_cell(parser, line, kTime);
-  const auto moment = find_moment(text);
-  if (!moment)
-    throw InputError(parser.file, parser.place(line, column), "time " + text + " is out of range",
-                     "give a time of fewer digits");
-  if (is_first && std::abs(number) >= static_cast<double>(kFarOrigin)) {
-    parser.origin = moment->whole;
-    parser.raw.notes.push_back("times count from " + text);
-  }
-  if (parser.origin == 0) return number / parser.per_second;
-  return (static_cast<double>(moment->whole - parser.origin) + moment->fraction) / parser.per_second;
 }
 
 bool is_pressed(const Parser& parser, std::size_t line) {
@@ -172,7 +81,7 @@ bool is_pressed(const Parser& parser, std::size_t line) {
     if (word == known) return false;
   const auto number = find_number(text);
   if (number && std::isfinite(*number)) return *number != 0.0;
-  throw InputError(parser.file, parser.place(line, column), "button '" + text + "'",
+  throw InputError(parser.file, parser.place(line, column), "button " + quote(text),
                    "use 0 and 1, or true and false");
 }
 
@@ -198,14 +107,48 @@ bool holds_all_that_is_read(const Parser& parser) {
   return parser.fields.size() > static_cast<std::size_t>(last) + 1;
 }
 
-/// As where several sensors take turns in one table.
+/// As where several sensors take turns in one table, or a tracker lost its target.
 bool holds_no_place(const Parser& parser) {
-  for (const Role role : {kX, kY, kZ})
-    if (!trim(parser.fields[static_cast<std::size_t>(parser.layout.column[role])]).empty()) return false;
-  return true;
+  bool is_empty = true;
+  for (const Role role : {kX, kY, kZ}) {
+    if (is_lost(parser.cell(role))) return true;
+    is_empty = is_empty && trim(parser.cell(role)).empty();
+  }
+  return is_empty;
 }
 
 }  // namespace
+
+// Where points and commas are both there, one may divide thousands.
+double read_cell(Parser& parser, std::size_t line, Role role) {
+  const int column = parser.layout.column[role];
+  const std::string& text = parser.fields[static_cast<std::size_t>(column)];
+  auto number = find_number(text);
+  if (number) {
+    if (parser.point_line == 0 && text.find('.') != std::string::npos) parser.point_line = line;
+  } else {
+    number = find_comma_number(text);
+    if (number && parser.comma_line == 0) parser.comma_line = line;
+  }
+  if (!number)
+    throw InputError(parser.file, parser.place(line, column), quote(text) + " is not a number",
+                     "write it like 0.125");
+  if (parser.comma_line != 0 && parser.point_line != 0)
+    throw InputError(parser.file, parser.place(line, column),
+                     quote(text) + ": decimal commas (line " + std::to_string(parser.comma_line) +
+                         ") and points (line " + std::to_string(parser.point_line) + ") in one file",
+                     "write all numbers with a point and without a sign between thousands");
+  if (!std::isfinite(*number))
+    throw InputError(parser.file, parser.place(line, column), quote(text) + " is not finite",
+                     "give a finite number");
+  return *number;
+}
+
+void note_key(Parser& parser, std::string_view key, std::string_view stated) {
+  if (!stated.empty())
+    parser.raw.notes.push_back(std::string(key) + " is taken, not the unit " + quote(stated) +
+                               " of the columns");
+}
 
 bool is_number(const std::string& text) {
   return find_number(text) || find_comma_number(text);
@@ -213,6 +156,7 @@ bool is_number(const std::string& text) {
 
 void read_sample(Parser& parser, std::size_t line) {
   if (parser.fields.size() == parser.width + 1 && parser.fields.back().empty()) parser.fields.pop_back();
+  join_split_date(parser.fields, parser.layout.column[kTime], parser.width);
   if (parser.fields.size() < parser.width && holds_all_that_is_read(parser)) {
     if (parser.num_short++ == 0) parser.short_line = line;
     parser.fields.resize(parser.width);
@@ -244,12 +188,7 @@ void read_sample(Parser& parser, std::size_t line) {
 
 bool take_units_row(Parser& parser) {
   if (!parser.raw.line.empty() || parser.fields.size() != parser.width) return false;
-  const auto cell = [&](Role role) {
-    std::string_view text = parser.fields[static_cast<std::size_t>(parser.layout.column[role])];
-    if (text.size() > 1 && (text.front() == '[' || text.front() == '('))
-      text = text.substr(1, text.size() - 2);
-    return text;
-  };
+  const auto cell = [&](Role role) { return strip_brackets(parser.cell(role)); };
   for (const Role role : {kX, kY, kZ})
     if (!find_length_unit(cell(role))) return false;
   if (parser.layout.has(kTime) && !find_time_unit(cell(kTime))) return false;

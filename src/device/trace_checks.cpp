@@ -21,10 +21,14 @@ constexpr std::size_t kManySamples = 50;
 constexpr double kLongestInterval = 0.2;    // [s] of many samples
 constexpr double kShortestInterval = 1e-5;  // [s]
 constexpr std::size_t kSomeSamples = 10;
-constexpr double kFastestHand = 20.0;  // [m/s] in a hundredth of a motion
-constexpr double kFastestMean = 3.0;   // [m/s]
-constexpr double kWidestMotion = 5.0;  // [m]
-constexpr double kWideMotion = 1.0;    // [m] less may be fast: a stab that someone wrote
+constexpr double kFastestHand = 20.0;     // [m/s] in a hundredth of a motion
+constexpr double kFastestMean = 3.0;      // [m/s]
+constexpr double kWidestMotion = 5.0;     // [m]
+constexpr double kFarPlace = 5.0;         // [m] from the origin: a room's, of motion capture
+constexpr double kFarthestInRoom = 10.0;  // [m] from the origin: of no such room
+constexpr double kLongInterval = 1.0;     // [s] of samples of a slow motion
+constexpr double kSlowestHand = 1e-3;     // [m/s] in the mean
+constexpr double kWideMotion = 1.0;       // [m] less may be fast: a stab that someone wrote
 
 // A motion in steps.
 constexpr double kLongestHold = 0.5;    // [s] a longer one is a rest
@@ -109,7 +113,8 @@ void bridge_pauses(const std::string& file, const TraceOptions& options, double 
 }  // namespace
 
 std::string print_place(const RawTrace& raw, std::size_t i) {
-  return raw.line.empty() ? "row " + std::to_string(i) : "line " + std::to_string(raw.line[i]);
+  if (raw.line.empty()) return "row " + std::to_string(i);
+  return raw.are_rows ? "row " + std::to_string(raw.line[i] - 1) : "line " + std::to_string(raw.line[i]);
 }
 
 std::string print_number(double value) {
@@ -130,25 +135,70 @@ void check_times(const std::string& file, const TraceOptions& options, RawTrace&
         "correct the rate, or the unit of the time column");
 }
 
-void check_path(const std::string& file, const Trace& trace) {
+namespace {
+
+/// With three digits, which are enough of a size that is out of reason.
+std::string print_short(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// Far from the device's own origin a motion may be slow and small, and yet in another unit.
+void check_farthest(const std::string& file, const RawTrace& raw, Trace& trace) {
+  double farthest = 0.0;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < raw.position.size(); ++i)
+    if (const double away = raw.metres_per_unit * raw.position[i].norm(); away > farthest) {
+      farthest = away;
+      at = i;
+    }
+  if (farthest <= kFarPlace) return;
+  const std::string problem = "place " + print_short(farthest) + " m from the device's origin if it is in m";
+  if (farthest > kFarthestInRoom)
+    throw UnlikelyUnit(file, print_place(raw, at), problem + ", where no hand's device reaches",
+                       "/trace/length_unit", "m, cm, mm or um", "mm");
+  trace.notes.push_back(problem + " (" + print_place(raw, at) +
+                        "); give another unit by /trace/length_unit: cm, mm or um");
+}
+
+double mean_speed(const Trace& trace) {
+  double path = 0.0;
+  for (std::size_t i = 1; i < trace.samples.size(); ++i)
+    path += (trace.samples[i].position - trace.samples[i - 1].position).norm();
+  return path / trace.duration();
+}
+
+}  // namespace
+
+void note_slow_motion(Trace& trace) {
+  const double median = median_interval(trace.time);
+  const double mean = mean_speed(trace);
+  if (trace.samples.size() < kSomeSamples || !(median >= kLongInterval && mean < kSlowestHand)) return;
+  trace.notes.push_back(
+      "samples are " + print_short(median) + " s apart (median) and the motion is " +
+      print_short(1e3 * mean) +
+      " mm/s fast in the mean, slower than a hand; perhaps times are in ms: give the unit by "
+      "/trace/time_unit, s or ms");
+}
+
+void check_path(const std::string& file, const RawTrace& raw, Trace& trace) {
   if (!trace.is_length_assumed || trace.samples.size() < kSomeSamples) return;
   Vec3 low = trace.samples[0].position;
   Vec3 high = low;
-  double path = 0.0;
   std::vector<double> speed;
   for (std::size_t i = 1; i < trace.samples.size(); ++i) {
     const Vec3& place = trace.samples[i].position;
     const double way = (place - trace.samples[i - 1].position).norm();
     low = low.cwiseMin(place);
     high = high.cwiseMax(place);
-    path += way;
     speed.push_back(way / (trace.time[i] - trace.time[i - 1]));
   }
-  const double mean = path / trace.duration();
+  const double mean = mean_speed(trace);
   const double fast = take_quantile(std::move(speed), 0.99);
   const double width = (high - low).norm();
   const bool is_fast = mean > kFastestMean || fast > kFastestHand;
-  if (width <= kWidestMotion && !(is_fast && width > kWideMotion)) return;
+  if (width <= kWidestMotion && !(is_fast && width > kWideMotion)) return check_farthest(file, raw, trace);
   throw UnlikelyUnit(file, "",
                      "the motion is " + print_number(width) + " m wide, " + print_number(mean) +
                          " m/s fast in the mean and " + print_number(fast) +

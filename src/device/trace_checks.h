@@ -19,9 +19,13 @@ std::string print_number(double value);
 /// gave. Shorter pauses go to the notes.
 void check_times(const std::string& file, const TraceOptions& options, RawTrace& raw);
 
-/// Throws InputError where a hand would be faster or go farther than hands do, and nobody gave the unit of
-/// places or a scale.
-void check_path(const std::string& file, const Trace& trace);
+/// Throws InputError where a hand would be faster or go farther than hands do, or be farther from the
+/// device's origin, and nobody gave the unit of places or a scale. Places somewhat far away go to the notes.
+void check_path(const std::string& file, const RawTrace& raw, Trace& trace);
+
+/// Says it where samples are a second or more apart and the motion is slower than any hand's: the unit that
+/// the file says may be a slip.
+void note_slow_motion(Trace& trace);
 
 /// Says it where a motion goes in steps: places in whole steps of a coarse sensor, or held for several
 /// samples. `metres` per unit of the file's places in the world.

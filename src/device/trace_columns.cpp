@@ -4,6 +4,8 @@
 #include <cctype>
 #include <map>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "base/error.h"
 #include "base/lower_case.h"
@@ -18,6 +20,13 @@ const char* const kColumnHelp =
 
 bool is_alnum(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0;
+}
+
+std::string letters_of(std::string_view text) {
+  std::string letters;
+  for (const char c : to_lower_case(text))
+    if (is_alnum(c)) letters += c;
+  return letters;
 }
 
 /// Units that may end a name behind a blank or a sign: "x_mm", "Time, s".
@@ -37,6 +46,9 @@ const std::map<std::string, Role, std::less<>>& plain_names() {
       {"z_m", kZ},  {"qx", kQx},     {"qy", kQy},    {"qz", kQz},       {"qw", kQw}, {"mode", kMode}};
   return kNames;
 }
+
+/// Before x, y and z angles; before w too a quaternion.
+constexpr std::array<std::string_view, 5> kTurnWords = {"r", "rot", "rotation", "euler", "angle"};
 
 std::map<std::string, Role, std::less<>> make_usual_names() {
   std::map<std::string, Role, std::less<>> names = {{"qr", kQw},    {"qi", kQx},  {"qj", kQy},
@@ -75,7 +87,7 @@ std::map<std::string, Role, std::less<>> make_usual_names() {
                                "coord"})
       names[before + axis] = role(kX);
     for (const char* after : {"pos", "position", "coord"}) names[axis + after] = role(kX);
-    for (const char* before : {"r", "rot", "rotation", "euler", "angle"}) names[before + axis] = role(kRx);
+    for (const std::string_view before : kTurnWords) names[std::string(before) + axis] = role(kRx);
   }
   for (int i = 0; i < 4; ++i)
     for (const char* before : {"q", "quat", "quaternion", "orientation", "ori"})
@@ -88,10 +100,10 @@ std::optional<Role> find_usual_name(std::string_view base) {
   static const std::map<std::string, Role, std::less<>> kNames = make_usual_names();
   const auto found = kNames.find(base);
   if (found != kNames.end()) return found->second;
-  for (const char* part : {"poseposition", "poseorientation"}) {
+  for (const std::string_view part : {"poseposition", "poseorientation", "transformtranslation"}) {
     const std::size_t at = base.rfind(part);
     if (at == std::string_view::npos) continue;
-    const auto of_pose = kNames.find(base.substr(at + 4));
+    const auto of_pose = kNames.find(base.substr(at + (part.starts_with("pose") ? 4 : 9)));
     if (of_pose != kNames.end()) return of_pose->second;
   }
   return std::nullopt;
@@ -106,10 +118,9 @@ std::optional<int> find_numbered_part(std::string_view base) {
   return std::nullopt;
 }
 
-std::string quote(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
-  return text;
+std::string quote_all(std::vector<std::string> names) {
+  for (std::string& name : names) name = quote(name);
+  return join(names);
 }
 
 /// The names from the left, without those of a kind that was there before, as a list of JSON.
@@ -145,6 +156,62 @@ std::optional<Candidate> find_role(const std::string& name) {
   return std::nullopt;
 }
 
+/// What stands before x, y, z and w of a quaternion: words that without w are those of angles, or nothing
+/// where another place is there.
+std::set<std::string> find_quaternion_words(const std::vector<std::string>& names) {
+  std::set<std::string> bases;
+  std::vector<std::string> others;  // than x, y, z, w
+  for (const std::string& name : names) {
+    const std::string base = split_name(name).base;
+    if (base.size() != 1) others.push_back(name);
+    bases.insert(base);
+  }
+  const auto is_known = [&](std::string_view word) {
+    if (word.empty()) return names_a_place(others);
+    for (const std::string_view before : {"pose", "transform"})
+      if (const std::size_t at = word.rfind(before); at != std::string_view::npos)
+        word = word.substr(at + before.size());
+    return word == "o" || word == "orient" || word == "att" || word == "attitude" ||
+           std::find(kTurnWords.begin(), kTurnWords.end(), word) != kTurnWords.end();
+  };
+  std::set<std::string> words;
+  for (const std::string& base : bases) {
+    if (!base.ends_with('w')) continue;
+    const std::string word = base.substr(0, base.size() - 1);
+    if (bases.contains(word + "x") && bases.contains(word + "y") && bases.contains(word + "z") &&
+        is_known(word))
+      words.insert(word);
+  }
+  return words;
+}
+
+/// Seconds and nanoseconds in two columns are one time, where no plain column of times is there.
+void join_nanoseconds(const std::vector<std::string>& names, bool has_plain_time, Layout& layout) {
+  if (has_plain_time) return;
+  const auto is_pair = [](std::string_view seconds, std::string_view nanoseconds) {
+    for (const auto& [whole, rest] : {std::pair<std::string_view, std::string_view>{"secs", "nsecs"},
+                                      {"sec", "nsec"},
+                                      {"sec", "nanosec"},
+                                      {"secs", "nanosecs"},
+                                      {"seconds", "nanoseconds"}})
+      if (seconds.ends_with(whole) && nanoseconds.ends_with(rest) &&
+          seconds.substr(0, seconds.size() - whole.size()) ==
+              nanoseconds.substr(0, nanoseconds.size() - rest.size()))
+        return true;
+    return false;
+  };
+  std::vector<std::string> letters;
+  for (const std::string& name : names) letters.push_back(letters_of(name));
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const int seconds = static_cast<int>(i);
+      if (i == k || !is_pair(letters[i], letters[k])) continue;
+      if (layout.has(kTime) && layout.column[kTime] != seconds) continue;
+      layout.column[kTime] = seconds;
+      layout.column[kNanoseconds] = static_cast<int>(k);
+    }
+}
+
 /// A quaternion whose parts are numbered has its scalar where it is told, or is "Q0 Qx Qy Qz".
 void place_numbered_parts(const std::string& file, const std::string& place,
                           const std::vector<std::string>& names, const TraceOptions& options,
@@ -156,8 +223,8 @@ void place_numbered_parts(const std::string& file, const std::string& place,
       numbered[static_cast<std::size_t>(*part)] = static_cast<int>(i);
   const auto put = [&](Role role, int column) {
     layout.column[role] = column;
-    layout.unusual.push_back(std::string(name_role(role)) + ": '" + names[static_cast<std::size_t>(column)] +
-                             "'");
+    layout.unusual.push_back(std::string(name_role(role)) + ": " +
+                             quote(names[static_cast<std::size_t>(column)]));
   };
   const bool has_vector = layout.has(kQx) && layout.has(kQy) && layout.has(kQz);
   if (has_vector && !layout.has(kQw) && numbered[0] != Layout::kAbsent) put(kQw, numbered[0]);
@@ -199,28 +266,30 @@ int find_button(const std::string& file, const std::string& place, const std::ve
                      "say by it what the tool does while the button is pressed: push, pull, wet or dry");
   for (std::size_t i = 0; i < names.size(); ++i)
     if (trim(names[i]) == trim(options.button_column)) return static_cast<int>(i);
-  throw InputError(file, place, "no column '" + options.button_column + "' among " + quote(names),
+  throw InputError(file, place, "no column " + quote(options.button_column) + " among " + quote_all(names),
                    "correct /trace/button/column");
 }
 
 /// The columns that are left over, with the key by which some could be read.
-void list_ignored(const std::vector<std::string>& names, Layout& layout) {
+void list_ignored(const std::vector<std::string>& names, bool are_from_user, Layout& layout) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     const int column = static_cast<int>(i);
-    if (!names[i].empty() && names[i] != "-" && column != layout.button &&
-        std::find(layout.column.begin(), layout.column.end(), column) == layout.column.end())
-      layout.ignored.push_back(names[i]);
+    if (names[i] == "-" || (names[i].empty() && are_from_user) || column == layout.button ||
+        std::find(layout.column.begin(), layout.column.end(), column) != layout.column.end())
+      continue;
+    layout.ignored.push_back(names[i].empty() ? "column " + std::to_string(column + 1) + " (without a name)"
+                                              : names[i]);
   }
 }
 
 void list_unusual(const std::vector<std::string>& names, const std::array<bool, kNumRoles>& by_plain_name,
                   Layout& layout) {
   for (int role = 0; role < kNumRoles; ++role) {
-    if (layout.column[role] == Layout::kAbsent) continue;
+    if (layout.column[role] == Layout::kAbsent || role == kDate) continue;
     const std::string& name = names[static_cast<std::size_t>(layout.column[role])];
     layout.unit[role] = split_name(name).unit;
     if (!by_plain_name[role])
-      layout.unusual.push_back(std::string(name_role(static_cast<Role>(role))) + ": '" + name + "'");
+      layout.unusual.push_back(std::string(name_role(static_cast<Role>(role))) + ": " + quote(name));
   }
 }
 
@@ -242,22 +311,27 @@ ColumnName split_name(std::string_view name) {
       name = name.substr(0, sign);
     }
   }
-  for (const char c : to_lower_case(name))
-    if (is_alnum(c)) found.base += c;
+  found.base = letters_of(name);
   return found;
 }
 
 std::string_view name_role(Role role) {
-  static constexpr std::array<std::string_view, kNumRoles> kNames = {"t",  "x",  "y",  "z",  "qx", "qy",
-                                                                     "qz", "qw", "rx", "ry", "rz", "mode"};
+  static constexpr std::array<std::string_view, kNumRoles> kNames = {
+      "t", "x", "y", "z", "qx", "qy", "qz", "qw", "rx", "ry", "rz", "mode", "date", "nanoseconds"};
   return kNames[static_cast<std::size_t>(role)];
 }
 
+std::array<int, kNumRoles> find_columns(const std::vector<std::string>& names) {
+  std::array<int, kNumRoles> columns;
+  columns.fill(Layout::kAbsent);
+  for (std::size_t i = names.size(); i-- > 0;)
+    if (const auto found = find_role(names[i])) columns[found->role] = static_cast<int>(i);
+  return columns;
+}
+
 bool names_a_place(const std::vector<std::string>& names) {
-  std::array<bool, kNumRoles> is_there{};
-  for (const std::string& name : names)
-    if (const auto found = find_role(name)) is_there[static_cast<std::size_t>(found->role)] = true;
-  return is_there[kX] && is_there[kY] && is_there[kZ];
+  const std::array<int, kNumRoles> columns = find_columns(names);
+  return columns[kX] >= 0 && columns[kY] >= 0 && columns[kZ] >= 0;
 }
 
 std::string_view find_remedy(const std::string& name) {
@@ -275,16 +349,25 @@ Layout find_layout(const std::string& file, const std::string& place, const std:
   Layout layout;
   layout.column.fill(Layout::kAbsent);
   std::array<bool, kNumRoles> by_plain_name{};
+  const std::set<std::string> quaternions = find_quaternion_words(names);
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i].empty() || names[i] == "-") continue;
-    const auto found = find_role(names[i]);
+    const std::string base = split_name(names[i]).base;
+    const std::size_t part = base.empty() ? std::string::npos : std::string_view("xyzw").find(base.back());
+    auto found = find_role(names[i]);
+    if (part != std::string::npos && quaternions.contains(base.substr(0, base.size() - 1)))
+      found = Candidate{static_cast<Role>(kQx + part), false};
+    if (base == "date" && layout.column[kDate] == Layout::kAbsent) {
+      layout.column[kDate] = static_cast<int>(i);
+      layout.date_name = names[i];
+    }
     if (!found) continue;
     int& slot = layout.column[found->role];
     bool& is_plain = by_plain_name[found->role];
     if (slot != Layout::kAbsent && found->is_plain == is_plain)
       throw InputError(
           file, place,
-          "two columns for '" + names[i] + "': it and '" + names[static_cast<std::size_t>(slot)] + "'",
+          "two columns for " + quote(names[i]) + ": it and " + quote(names[static_cast<std::size_t>(slot)]),
           "name from the left those that count by /trace/columns, for instance " +
               propose_columns(names, layout));
     if (slot != Layout::kAbsent && is_plain) continue;  // the plain name is meant
@@ -292,7 +375,9 @@ Layout find_layout(const std::string& file, const std::string& place, const std:
     is_plain = found->is_plain;
   }
   if (!layout.has(kX) || !layout.has(kY) || !layout.has(kZ))
-    throw InputError(file, place, "no columns x, y, z among " + quote(names), kColumnHelp);
+    throw InputError(file, place, "no columns x, y, z among " + quote_all(names), kColumnHelp);
+  join_nanoseconds(names, by_plain_name[kTime], layout);
+  if (!layout.has(kTime)) layout.column[kDate] = Layout::kAbsent;
   choose_orientation(file, place, options, layout);
   list_unusual(names, by_plain_name, layout);
   place_numbered_parts(file, place, names, options, layout);
@@ -301,7 +386,7 @@ Layout find_layout(const std::string& file, const std::string& place, const std:
     throw InputError(file, place, "some but not all of the columns qx, qy, qz, qw", kColumnHelp);
   layout.button = find_button(file, place, names, options);
   if (layout.button == layout.column[kMode]) layout.column[kMode] = Layout::kAbsent;
-  list_ignored(names, layout);
+  list_ignored(names, !options.columns.empty(), layout);
   return layout;
 }
 

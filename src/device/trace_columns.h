@@ -11,7 +11,24 @@
 
 namespace argil::device::internal {
 
-enum Role : int { kTime, kX, kY, kZ, kQx, kQy, kQz, kQw, kRx, kRy, kRz, kMode, kNumRoles };
+/// kDate: of times of day. kNanoseconds: beside whole seconds.
+enum Role : int {
+  kTime,
+  kX,
+  kY,
+  kZ,
+  kQx,
+  kQy,
+  kQz,
+  kQw,
+  kRx,
+  kRy,
+  kRz,
+  kMode,
+  kDate,
+  kNanoseconds,
+  kNumRoles
+};
 
 /// A column's name without its unit, in small letters and digits alone: "Pos_X [mm]" is "posx" in "mm".
 struct ColumnName {
@@ -27,6 +44,7 @@ struct Layout {
   std::array<std::string, kNumRoles> unit;  ///< of each role as its column's name says
   std::vector<std::string> ignored;         ///< names of columns that are not used
   std::vector<std::string> unusual;         ///< "x: 'Pos_X [mm]'" of each name that is no plain one
+  std::string date_name;                    ///< of the column of dates
   int button = kAbsent;
   bool has(Role role) const { return column[role] != kAbsent; }
 };
@@ -36,6 +54,9 @@ struct Layout {
 /// which number is the scalar, angles that are asked for and not there, a button's column that is not there.
 Layout find_layout(const std::string& file, const std::string& place, const std::vector<std::string>& names,
                    const TraceOptions& options);
+
+/// The first column of each role by its name; kAbsent.
+std::array<int, kNumRoles> find_columns(const std::vector<std::string>& names);
 
 /// Do they name x, y and z?
 bool names_a_place(const std::vector<std::string>& names);

@@ -23,7 +23,7 @@ std::vector<double> header_numbers(const Parser& parser, std::size_t line, std::
   }
   if (numbers.size() != count || at != std::string_view::npos)
     throw InputError(parser.file, parser.place(line),
-                     "'" + std::string(value) + "' is not " + std::to_string(count) + " finite numbers",
+                     quote(value) + " is not " + std::to_string(count) + " finite numbers",
                      "separate numbers by blanks");
   return numbers;
 }
@@ -33,8 +33,7 @@ Quat header_rotation(const Parser& parser, std::size_t line, std::string_view va
   const Quat rotation(q[3], q[0], q[1], q[2]);
   constexpr double kMaxUnitError = 1e-3;
   if (!(std::abs(rotation.norm() - 1.0) <= kMaxUnitError))
-    throw InputError(parser.file, parser.place(line),
-                     "rotation '" + std::string(value) + "' is not of unit length",
+    throw InputError(parser.file, parser.place(line), "rotation " + quote(value) + " is not of unit length",
                      "give x y z w with norm 1");
   return make_unit(rotation);
 }
@@ -45,7 +44,7 @@ void read_header_entry(Parser& parser, std::size_t line, std::string_view key, s
     raw.device = value;
   } else if (key == "units") {
     if (!find_length_unit(value))
-      throw InputError(parser.file, parser.place(line), "unit of length '" + std::string(value) + "'",
+      throw InputError(parser.file, parser.place(line), "unit of length " + quote(value),
                        "use m, cm, mm or um");
     parser.header_unit = value;
   } else if (key == "rate_hz") {
@@ -66,7 +65,7 @@ void read_header_entry(Parser& parser, std::size_t line, std::string_view key, s
   } else if (key == "sha256") {
     parser.body_sha256 = value;
   } else {
-    throw InputError(parser.file, parser.place(line), "unknown header key '" + std::string(key) + "'",
+    throw InputError(parser.file, parser.place(line), "unknown header key " + quote(key),
                      "known: device, units, rate_hz, device_to_world_scale, device_to_world_rotation_xyzw, "
                      "device_to_world_translation_m, sha256");
   }
@@ -81,7 +80,7 @@ void read_header_line(Parser& parser, std::size_t line, std::string_view comment
       colon == std::string_view::npos ? std::string_view() : trim(comment.substr(colon + 1));
   if (line == 1 && key == "argil-trace") {
     if (value != "1")
-      throw InputError(parser.file, parser.place(line), "format version '" + std::string(value) + "'",
+      throw InputError(parser.file, parser.place(line), "format version " + quote(value),
                        "this program reads version 1");
     ours = true;
     parser.raw.is_time_given = true;  // the format's unit is s

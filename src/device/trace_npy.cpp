@@ -1,6 +1,8 @@
 // NumPy's array files [numpy.lib.format]: magic, version, length of a header, a Python dictionary in it, then
 // bytes.
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "device/trace_columns.h"
 #include "device/trace_raw.h"
 
 namespace argil::device::internal {
@@ -122,7 +125,24 @@ double read_number(const Array& array, std::uint64_t row, std::uint64_t column) 
   return array.is_double ? read_as<double, std::uint64_t>(array, i) : read_as<float, std::uint32_t>(array, i);
 }
 
+/// A table whose columns are the samples: few rows, and as many named columns or fewer.
+void refuse_lying(const std::string& file, const Array& array, const TraceOptions& options) {
+  constexpr std::uint64_t kMostQuantities = 32;  // that a device writes
+  constexpr std::uint64_t kManySamples = 50;
+  const std::uint64_t rows = array.shape[0];
+  const std::uint64_t columns = array.shape[1];
+  const std::uint64_t named = options.columns.size();
+  const bool is_likely = named == 0 ? columns >= kManySamples : named <= rows && named < columns;
+  if (!(rows >= 3 && rows <= kMostQuantities && rows < columns && is_likely)) return;
+  throw InputError(file, "",
+                   "is " + print_shape(array.shape) +
+                       ", fewer rows than columns, but a row is a sample and a column a quantity",
+                   "save it the other way round, numpy.save(file, a.T); or, if it is as meant, name all " +
+                       std::to_string(columns) + R"( columns by /trace/columns, "-" leaves one out)");
+}
+
 void require_columns(const std::string& file, const Array& array, const TraceOptions& options) {
+  refuse_lying(file, array, options);
   if (options.columns.empty())
     throw InputError(
         file, "", print_shape(array.shape) + " numbers without names of the columns",
@@ -137,13 +157,19 @@ void require_columns(const std::string& file, const Array& array, const TraceOpt
 
 /// The named columns as the text that a table of them is; numbers come back from it to the bit.
 std::string print_table(const std::string& file, const Array& array, const TraceOptions& options) {
+  const std::array<int, kNumRoles> places = find_columns(options.columns);
+  const auto is_place = [&](std::uint64_t column) {
+    return std::find(places.begin() + kX, places.begin() + kZ + 1, static_cast<int>(column)) !=
+           places.begin() + kZ + 1;
+  };
   std::string text;
   for (std::uint64_t row = 0; row < array.shape[0]; ++row) {
     for (std::uint64_t column = 0; column < array.shape[1]; ++column) {
       const bool is_named = column < options.columns.size() && options.columns[column] != "-" &&
                             !options.columns[column].empty();
       const double value = is_named ? read_number(array, row, column) : 0.0;
-      if (!std::isfinite(value))
+      const bool is_lost = std::isnan(value) && is_place(column);
+      if (!std::isfinite(value) && !is_lost)
         throw InputError(file, "row " + std::to_string(row) + ", column " + std::to_string(column),
                          "is " + std::to_string(value), "give finite numbers");
       char digits[32];
@@ -161,9 +187,7 @@ RawTrace parse_npy(const std::string& file, const std::string& bytes, const Trac
   const Array array = read_header(file, bytes);
   check_shape(file, array);
   require_columns(file, array, options);
-  RawTrace raw = parse_csv(file, print_table(file, array, options), options);
-  raw.line.clear();  // samples are rows
-  return raw;
+  return parse_csv(file, print_table(file, array, options), options, true);
 }
 
 }  // namespace argil::device::internal

@@ -26,10 +26,16 @@ struct RawTrace {
   std::vector<std::string> ignored_columns;
   std::vector<std::string> notes;  ///< what was not as the plain format has it, a line each
   std::vector<std::size_t>
-      line;  ///< line in the file of each sample; empty: samples are rows 0, 1, … of arrays
+      line;               ///< line in the file of each sample; empty: samples are rows 0, 1, … of arrays
+  bool are_rows = false;  ///< `line` counts rows of an array from 1
 };
 
-RawTrace parse_csv(const std::string& file, const std::string& text, const TraceOptions& options);
+/// Throws InputError for bytes that are no text, with what they are (packed, UTF-16 without a byte order
+/// mark) and how to make text of them.
+void require_text(const std::string& file, const std::string& bytes);
+
+RawTrace parse_csv(const std::string& file, const std::string& text, const TraceOptions& options,
+                   bool are_rows = false);
 /// A table of NumPy's (.npy) whose columns the options name.
 RawTrace parse_npy(const std::string& file, const std::string& bytes, const TraceOptions& options);
 RawTrace read_hdf5(const std::string& file, const TraceOptions& options);

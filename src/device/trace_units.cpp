@@ -194,4 +194,18 @@ std::optional<Moment> find_calendar_time(std::string_view text) {
   return moment;
 }
 
+bool is_time_of_day(std::string_view text) {
+  text = trim(text);
+  return text.size() > 2 && text[2] == ':' && find_calendar_time(text);
+}
+
+bool is_date(std::string_view text) {
+  return trim(text).size() > 4 && find_calendar_time(std::string(trim(text)) + " 00:00:00");
+}
+
+std::string_view strip_brackets(std::string_view text) {
+  const bool has_brackets = text.size() > 1 && (text.front() == '[' || text.front() == '(');
+  return has_brackets ? text.substr(1, text.size() - 2) : text;
+}
+
 }  // namespace argil::device::internal

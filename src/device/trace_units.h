@@ -33,4 +33,12 @@ std::optional<Moment> find_moment(std::string_view text);
 /// 12:00:00", "12:00:00.5+01:00". In s since 1970, or since midnight. Nothing for any other text.
 std::optional<Moment> find_calendar_time(std::string_view text);
 
+/// Is it a time of day without a date?
+bool is_time_of_day(std::string_view text);
+/// Is it a date (year first) without a time of day?
+bool is_date(std::string_view text);
+
+/// "mm" of "[mm]" or "(mm)".
+std::string_view strip_brackets(std::string_view text);
+
 }  // namespace argil::device::internal

@@ -140,12 +140,39 @@ TEST(RecordingUnits, ThatNobodyGaveAreRefusedWhereThePathIsOutOfReason) {
   EXPECT_TRUE(read(make_rows("t,x,y,z", 200, time, still)).is_length_assumed);
 }
 
+// A millimetre in 2 s, 70 "m" from the device's origin.
+TEST(RecordingUnits, ThatNobodyGaveAreRefusedWhereThePlaceIsOutOfReason) {
+  TraceOptions options;
+  const auto at = [](double height) {
+    return make_rows(
+        "t,x,y,z", 200, [](int i) { return 0.01 * i; }, [=](int i) { return height - 0.005 * i; });
+  };
+  expect_refused(
+      at(70.0), "line 2",
+      "place 70 m from the device's origin if it is in m, where no hand's device reaches; give the unit "
+      "by /trace/length_unit: m, cm, mm or um, perhaps mm");
+  expect_refused(at(10.01), "line 2", "place 10 m from");
+  for (const double room : {9.9, 5.1}) {
+    EXPECT_TRUE(
+        has_note(read(at(room)), "m from the device's origin if it is in m (line 2); give another unit"));
+  }
+  EXPECT_TRUE(read(at(4.9)).notes.empty());
+  for (const auto& [unit, height] : {std::pair{LengthUnit::m, 70.0}, {LengthUnit::mm, 0.07}}) {
+    options.length_unit = unit;
+    EXPECT_NEAR(read(at(70.0), options).samples[0].position.z(), height, 1e-15);
+  }
+  // Moved in the world, it is still as near to its device.
+  options = {};
+  options.device_to_world.translation = Vec3(70, 0, 0);
+  EXPECT_TRUE(read(at(0.5), options).notes.empty());
+}
+
 TEST(RecordingTimes, MayBeDates) {
   for (const std::string date :
        {"2024/01/02/12:00:", "2024-01-02T12:00:", "2024-01-02 12:00:", "2024.01.02 12:00:", "12:00:"}) {
     const Trace trace =
         read("time,x,y,z\n" + date + "59.250,0,0,0\n" + date.substr(0, date.size() - 3) + "01:00.5,0,0,0\n");
-    EXPECT_EQ(trace.time, (std::vector<double>{0.25, 1.5})) << date;
+    EXPECT_EQ(trace.time, (std::vector<double>{0.0, 1.25})) << date;
     EXPECT_TRUE(has_note(trace, "calendar times, counted from the first")) << date;
   }
   // Across the end of a leap year's February, and of a year, and zones apart.

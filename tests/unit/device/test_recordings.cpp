@@ -114,7 +114,7 @@ TEST(Recordings, OfSeveralSensorsAreReadByTheColumnsThatTheMessageProposes) {
   options.max_gap = 1.0;
   const Trace trace = read(text, options);
   expect_two_samples(trace, "two sensors");
-  EXPECT_TRUE(has_note(trace, "line 2 holds names"));
+  EXPECT_TRUE(has_note(trace, "1 line above the table, from line 1, is not used"));
   EXPECT_TRUE(has_note(trace, "rows without a place, left out: 1, the first in line 4"));
   EXPECT_TRUE(has_note(trace, "rows that lack columns which are not used: 2, the first in line 3"));
   // A row that was cut in what is read is no such row.
@@ -132,7 +132,9 @@ TEST(Recordings, WithColumnsNamedByTheUserStillTakeTheRowOfUnits) {
 TEST(Recordings, SpellQuaternionsInTheUsualWays) {
   // A quarter turn about x.
   for (const std::string names :
-       {"Q0,Qx,Qy,Qz", "qw,qx,qy,qz", "QW,QX,QY,QZ", "q_w,q_x,q_y,q_z", "Quat_w,Quat_x,Quat_y,Quat_z",
+       {"rotation.w,rotation.x,rotation.y,rotation.z", "rot_w,rot_x,rot_y,rot_z", "ow,ox,oy,oz",
+        "transform.rotation.w,transform.rotation.x,transform.rotation.y,transform.rotation.z", "Q0,Qx,Qy,Qz",
+        "qw,qx,qy,qz", "QW,QX,QY,QZ", "q_w,q_x,q_y,q_z", "Quat_w,Quat_x,Quat_y,Quat_z",
         "orientation.w,orientation.x,orientation.y,orientation.z", "qr,qi,qj,qk",
         "pose.orientation.w,pose.orientation.x,pose.orientation.y,pose.orientation.z"}) {
     const Trace trace = read("t,x,y,z," + names + "\n0,0,0,0,0.7071068,0.7071068,0,0\n1,0,0,0,1,0,0,0\n");
@@ -141,6 +143,20 @@ TEST(Recordings, SpellQuaternionsInTheUsualWays) {
     EXPECT_EQ(trace.samples[1].orientation.coeffs(), Vec4(0, 0, 0, 1)) << names;
     EXPECT_TRUE(trace.ignored_columns.empty()) << names;
   }
+}
+
+TEST(Recordings, TakeAFamilyOfNamesForAQuaternionOnlyWhereItHasAScalar) {
+  const Trace bare = read("t,px,py,pz,w,x,y,z\n0,1,2,3,0,1,0,0\n1,4,5,6,1,0,0,0\n");
+  EXPECT_EQ(bare.samples[0].position, Vec3(1, 2, 3));
+  EXPECT_EQ(bare.samples[0].orientation.coeffs(), Vec4(1, 0, 0, 0));
+  // A place with a weight, and angles.
+  const Trace place = read("t,x,y,z,w,rot_x,rot_y,rot_z\n0,1,2,3,1,1,0,0\n1,4,5,6,1,1,0,0\n");
+  EXPECT_EQ(place.samples[0].position, Vec3(1, 2, 3));
+  EXPECT_EQ(place.ignored_columns, (std::vector<std::string>{"w", "rot_x", "rot_y", "rot_z"}));
+  TraceOptions options;
+  options.angle_order = AngleOrder::xyz;
+  expect_refused("t,x,y,z,rot_x,rot_y,rot_z,rot_w\n0,0,0,0,0,0,0,1\n", "line 1",
+                 "/trace/angle_order is given, but not all of the columns rx, ry, rz", options);
 }
 
 TEST(Recordings, SayOnceWhichColumnsAreNotUsed) {

@@ -110,14 +110,35 @@ TEST_F(Npy, WhatIsNoTableOfNumbersIsRefused) {
   expect_refused(make_file("<f8", "False", "(0, 5)", ""), "holds 0 bytes");
   std::vector<double> broken = kByRows;
   broken[8] = std::numeric_limits<double>::quiet_NaN();
+  const Trace found = read(make_file("<f8", "False", "(3, 5)", bytes_of<double>(broken)));
+  EXPECT_EQ(found.time, (std::vector<double>{0.0, 0.02}));
+  EXPECT_EQ(found.notes, (std::vector<std::string>{"rows without a place, left out: 1, the first in row 1"}));
+  broken[14] = std::numeric_limits<double>::infinity();
   expect_refused(make_file("<f8", "False", "(3, 5)", bytes_of<double>(broken)),
-                 "hand.npy: row 1, column 3: is nan");
+                 "hand.npy: row 2, column 4: is inf");
   broken = kByRows;
   broken[7] = std::numeric_limits<double>::infinity();  // of a column that is left out
   expect_samples<double>(read(make_file("<f8", "False", "(3, 5)", bytes_of<double>(broken))));
   broken[10] = 0.01;
   expect_refused(make_file("<f8", "False", "(3, 5)", bytes_of<double>(broken)),
                  "hand.npy: row 2: time 0.01 s does not come after");
+}
+
+TEST_F(Npy, ATableThatLiesTheOtherWayRoundIsRefused) {
+  const std::vector<double> numbers(4 * 60, 0.5);
+  const auto file = [&](const std::string& shape) {
+    return make_file("<f8", "False", shape, bytes_of<double>(numbers));
+  };
+  for (const auto& columns : {std::vector<std::string>{"t", "x", "y", "z"}, std::vector<std::string>{}}) {
+    options.columns = columns;
+    expect_refused(file("(4, 60)"), "hand.npy: is 4 × 60, fewer rows than columns");
+    expect_refused(file("(4, 60)"), "save it the other way round, numpy.save(file, a.T)");
+  }
+  options.default_rate_hz = 100.0;
+  options.columns = {"x", "y", "z"};
+  EXPECT_EQ(read(file("(60, 4)")).samples.size(), 60U);
+  options.columns.resize(60, "-");  // as the message proposes
+  EXPECT_EQ(read(file("(4, 60)")).samples.size(), 4U);
 }
 
 TEST_F(Npy, FilesCutAtEveryByteAreRefused) {
