@@ -119,6 +119,7 @@ void show(const run::RunOptions& options) {
 void print_scene_notes(const scenario::Scene& scene, const std::string& miss) {
   for (const std::string& note : scene.trace.notes)
     std::fprintf(stderr, "argil: note: trace: %s\n", note.c_str());
+  for (const std::string& note : scene.file_notes) std::fprintf(stderr, "argil: note: %s\n", note.c_str());
   if (!scene.free_motion.empty()) std::fprintf(stderr, "argil: note: %s\n", scene.free_motion.c_str());
   if (!scene.contact_cells.empty()) std::fprintf(stderr, "argil: note: %s\n", scene.contact_cells.c_str());
   if (!miss.empty()) std::fprintf(stderr, "argil: note: %s\n", miss.c_str());

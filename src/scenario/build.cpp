@@ -96,18 +96,24 @@ void add_note(std::string note, Scene& scene) {
   if (!note.empty()) scene.notes.push_back(std::move(note));
 }
 
+void add_file_note(std::string note, Scene& scene) {
+  if (note.empty()) return;
+  scene.file_notes.push_back(note);
+  scene.notes.push_back(std::move(note));
+}
+
 /// The scenario's lists of vertices number those of this file.
 void add_note_of_lists(const std::string& file, Scene& scene) {
   const std::string note = scene.file_vertices.describe(file, "tet");
   if (note.empty()) return;
   const bool has_gaps = scene.file_vertices.num_left_out() > 0;
-  scene.notes.push_back(note + (has_gaps ? "; lists of vertices go on counting them" : ""));
+  add_file_note(note + (has_gaps ? "; lists of vertices go on counting them" : ""), scene);
 }
 
 mesh::TriangleMesh read_surface(const std::string& file, double scale, Scene& scene) {
   mesh_files::FileVertices vertices;
   mesh::TriangleMesh surface = mesh_files::read_triangle_mesh(file, scale, &vertices);
-  add_note(vertices.describe(file, "triangle"), scene);
+  add_file_note(vertices.describe(file, "triangle"), scene);
   return surface;
 }
 
@@ -212,6 +218,7 @@ Halvings make_cells(const Scenario& s, const std::vector<sim::TouchedPlace>* pla
   const double most = std::max(s.body.target_tets, count_first_tets(s.body));
   for (double count = count_first_tets(s.body);; count *= kMore) {
     scene.notes = notes;
+    scene.file_notes.clear();
     make_mesh(s, static_cast<int>(count), scene);
     std::optional<Halvings> halvings =
         grade_cells(s, scene.trace, scene.tool, places, scene.body, scene.notes, bends_edges(s));
@@ -224,6 +231,7 @@ Halvings make_cells(const Scenario& s, const std::vector<sim::TouchedPlace>* pla
   const std::string reason = scene.notes.back();
   scene.notes = notes;
   scene.notes.push_back(reason);
+  scene.file_notes.clear();
   make_mesh(s, s.body.target_tets, scene);
   return {};
 }

@@ -18,6 +18,7 @@ struct Scene {
   std::string medium_status;       ///< where eq. 6 stands at every φ and dry modulus that the run can reach
   std::vector<std::string> notes;  ///< for the user: mesh quality, cage report, warnings
   mesh_files::FileVertices file_vertices;  ///< of the body's mesh file
+  std::vector<std::string> file_notes;     ///< what of the body's files was left out or turned; in notes, too
   std::string contact_cells;               ///< for the user, of the motion: describe_contact_cells
   std::string free_motion;                 ///< for the user, of a motion: describe_free_motion; in notes, too
 };

@@ -126,6 +126,17 @@ class ExitCodes(unittest.TestCase):
             self.assertIn(arguments[-1], error)
         self.assertEqual({file: file.read_bytes() for file in sorted(self.folder.iterdir())}, before)
 
+    def test_0_validate_says_what_of_a_file_is_left_out(self):
+        corners = "v 0 0 0\nv 9 9 9\nv .04 0 0\nv 0 .04 0\nv 0 0 .04\nf 1 4 3\nf 1 3 5\nf 3 4 5\nf 1 5 4\n"
+        (self.folder / "stray.obj").write_text(corners)
+        scene = make_scene("press.csv")
+        scene["body"] = {"surface": {"file": "stray.obj", "target_tets": 400}, "fixed": scene["body"]["fixed"]}
+        scene["contact"] = {"law": "pressure"}
+        (self.folder / "stray.json").write_text(json.dumps(scene))
+        code, _, error = self.call("validate", "stray.json")
+        self.assertEqual(code, 0, error)
+        self.assertEqual(error.count("stray.obj: 1 of 5 vertices belong to no triangle and are left out, number 1 (from 0)"), 1)
+
     def test_2_a_cage_in_another_unit(self):
         (self.folder / "body.obj").write_text("v 0 0 0\nv 40 0 0\nv 0 40 0\nv 0 0 40\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
         scene = make_scene("press.csv")
