@@ -4,8 +4,9 @@
 Usage: paper_measures.py ARGIL --works DRY.h5 WET.h5 --hands ON.h5 OFF.h5 --delays HOLD.h5 … [-o STEM]
        → STEM.json, STEM.png, STEM.pdf
 
-Force on or off: what a hand that yields gives the clay with the force and without; and the work that a hand
-which is put along its trace does against it. Delay: age of the force that the hand feels while it touches, and its lag behind the picture. Realism:
+Force on or off: what a hand that gives way gives the clay with the force and without; and the work that a hand
+which is put along its trace does against it: minus the sum of the device's force times the tool's step, over the ticks that
+push. Delay: age of the force that the hand feels while it touches, and its lag behind the picture. Realism:
 strength of the clay against its water, beside measured clays, each over its strength at the liquid limit, and what the
 clay has in pascals beside what was measured. Saturation 0 is the water with which clay is modelled, 1 that of the liquid limit.
 """

@@ -49,9 +49,12 @@ class Folder(unittest.TestCase):
 
 
 class Page(Folder):
-    def test_the_committed_page_is_what_the_script_writes_from_the_committed_data(self):
-        call(ROOT / "scripts/paper_page.py", "-o", self.folder / "page.md")
-        self.assertEqual((self.folder / "page.md").read_text(), (ROOT / "results/paper/README.md").read_text())
+    def test_the_committed_pages_are_what_the_script_writes_from_the_committed_data(self):
+        call(ROOT / "scripts/paper_page.py", "-o", self.folder)
+        pages = sorted(page.name for page in self.folder.glob("*.md"))
+        self.assertEqual(pages, sorted(page.name for page in (ROOT / "results/paper").glob("*.md")))
+        for page in pages:
+            self.assertEqual((self.folder / page).read_text(), (ROOT / "results/paper" / page).read_text())
 
 
     def test_a_deviation_is_that_of_the_finest_mesh(self):
