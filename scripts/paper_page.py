@@ -305,13 +305,12 @@ def delay_measures(delay):
                          for name, value in delay.items())
 
     live = [(float(row["picture_delay_p50"]), float(row["picture_delay_p99"])) for row in read_rows("../live/live.csv")]
-    live = "{:.0f} to {:.0f} ms after the force (median of each session), 99 % within {:.0f} ms".format(
+    live = "{:.0f} to {:.0f} ms behind the force (median of each session). 99 % of a session were within {:.0f} ms".format(
         *(1e3 * value for value in (min(live)[0], max(live)[0], max(p99 for _, p99 in live)))) if live else "a moment later"
     return prose(f"""**Do force and picture come together?** Age of the felt force at physics of 71.4 Hz: {delays("force_age")}. Lag between the felt
-                and the seen moment, if each physics step is drawn: {delays("lag_of_step")}. If only the frames of the file are, one each
+                and the seen moment. If each physics step is drawn: {delays("lag_of_step")}. If only the frames of the file are, one each
                 98 ms: {delays("lag_of_frame")}. `compliant` computes the force anew from the clay's last response. It is never old, but
-                runs ahead of its picture. The clock on the wall adds to that: in [live sessions](../live/README.md) the picture was written
-                {live}.""")
+                runs ahead of its picture. The clock on the wall adds to that: in [live sessions](../live/README.md) the picture was {live}.""")
 
 
 def measures():
