@@ -5,7 +5,7 @@ replayed and compared.
     scripts/live_table.py [--build BUILD] [--seconds 60] [--devices simulated haply spacenav …]
                           [--sessions 1000:re_evaluate 71:hold …] [--output results/live]
 
-writes live.csv and README.md there, one line a session; other lines stay. A session is the physics' rate [Hz] and what the
+writes live.csv, README.md and force.md there, one line a session; other lines stay. A session is the physics' rate [Hz] and what the
 hand feels between its steps. Run it on a machine with nothing
 else to do. A simulated hand means to press, wet, press and dry the haunch, to and fro, for as long as the session
 lasts. "haply" and "spacenav" are the stand-ins of the tests, started here; any other device must be there.
@@ -129,33 +129,61 @@ def name_session(row):
     return f"{row['device']} | {row['physics_Hz']} Hz, `{row['between_frames']}`"
 
 
+def share(row, what, of):
+    return 100 * row[f"num_{what}"] / row[f"num_{of}"]
+
+
+def between(values, digits):
+    return f"{min(values):.{digits}f} to {max(values):.{digits}f} %"
+
+
+def conclude(rows):
+    """What holds of all sessions, and what was wanted and missed."""
+    equal = sum(r["replay"] == "equal" for r in rows)
+    late = {rate: [share(r, "late_steps", "steps") for r in rows if r["physics_Hz"] == rate] for rate in RATES}
+    return [f"- **Conclude.** {equal} of {len(rows)} sessions are replayed to the same bits. The median [picture](force.md) is"
+            f" {1e3 * min(r['picture_delay_p50'] for r in rows):.0f} to {1e3 * max(r['picture_delay_p50'] for r in rows):.0f} ms behind its force.",
+            f"- **Missed.** A hand at 1 kHz loses {between([share(r, 'missed_ticks', 'ticks') for r in rows], 1)} of its ticks.",
+            f"  Late steps: {', '.join(f'{between(shares, 1)} at {rate} Hz' for rate, shares in late.items() if shares)}."]
+
+
 def write_readme(file, rows, options):
     us, ms = 1e6, 1e3
+    ticks = sorted({int(r["num_ticks"]) for r in rows})
     lines = [
         "# How well a live session keeps its times", "",
-        f"The dinosaur of `study_soft_dino`, {options.seconds:g} s a session, hand at 1 kHz; {os.cpu_count()} processors,",
-        f"{platform.machine()}, Linux {platform.release()}. Each session is replayed in one thread; \"equal\": `argil compare` finds",
-        f"no difference, forces and hashes included. `scripts/live_table.py` writes this. {options.note}".rstrip(),
-        f"Real-time priority of the hand's thread and locked memory were granted: {', '.join(sorted({r['granted'] for r in rows}))}."
-        f" Commit {', '.join(sorted({r['commit'] for r in rows}))}.", "",
+        f"The dinosaur of `study_soft_dino`, {options.seconds:g} s a session, hand at 1 kHz. {os.cpu_count()} processors,"
+        f" {platform.machine()}, Linux {platform.release()}.",
+        "`scripts/live_table.py` writes this page, [live.csv](live.csv) has p99.9 besides. Each session is replayed in one thread.",
+        "\"Equal\": `argil compare` finds no difference, forces and hashes included. Real-time priority of the hand's thread and",
+        f"locked memory were granted: {', '.join(sorted({r['granted'] for r in rows}))}."
+        f" Commit {', '.join(sorted({r['commit'] for r in rows}))}.",
+        *([options.note] if options.note else []), "",
+        *conclude(rows), "",
         "\"Woken late\": by the system, after the time that the hand asked for. A tick is missed when that is more than a period.",
-        "\"Late steps\": those for which the body was not ready when the hand had the next load for it; the hand went on against the",
-        "last surface, whose age is in the column before.", "",
-        "| device | physics, between its steps | woken late, p50 / p99 / p99.9 / max [µs] | a tick's work, p50 / p99 / max [µs] |"
-        " a step's work, p50 / p99 / max [ms] | age of the surface, p50 / p99 / max [ticks] | missed ticks | late steps | replay |",
+        "\"Late steps\": the body was not ready when the hand had its next load. The hand went on against the last surface.",
+        "The column before has the age of that surface. Times are p50 / p99 / max.", "",
+        "| device | physics, between its steps | woken late [µs] | a tick's work [µs] | a step's work [ms] |"
+        f" age of the surface [ticks] | missed of {' or '.join(map(str, ticks))} ticks | late steps | replay |",
         "|---|---|---|---|---|---|---|---|---|"]
     for r in rows:
-        times = [quantiles(r, "wake_late", us, 0, ("p50", "p99", "p999", "max")), quantiles(r, "tick_work", us, 0),
-                 quantiles(r, "step_work", ms, 2), quantiles(r, "num_surface_age_ticks", 1, 0)]
+        times = [quantiles(r, "wake_late", us, 0), quantiles(r, "tick_work", us, 0), quantiles(r, "step_work", ms, 2),
+                 quantiles(r, "num_surface_age_ticks", 1, 0)]
         lines.append(f"| {name_session(r)} | {' | '.join(times)} |"
-                     f" {r['num_missed_ticks']:.0f} of {r['num_ticks']:.0f} | {r['num_late_steps']:.0f} of {r['num_steps']:.0f}"
-                     f" | {r['replay']} |")
-    lines += [
-        "", "**What the hand's force rests on.** The sample's age by the device's clock when the hand takes it; ticks for which there was no",
-        "newer one; ticks since the force was last found anew from contacts; and how long after the force its picture was in the",
-        "file that others watch (`--watch`, a picture each 40 or 42 ticks).", "",
-        "| device | physics, between its steps | age of the sample, p50 / p99 / max [ms] | ticks without a new sample |"
-        " age of the force, p50 / p99 / max [ticks] | force to picture, p50 / p99 / max [ms] |", "|---|---|---|---|---|---|"]
+                     f" {r['num_missed_ticks']:.0f} | {r['num_late_steps']:.0f} of {r['num_steps']:.0f} | {r['replay']} |")
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def write_force_page(file, rows):
+    ms = 1e3
+    lines = [
+        "# What the hand's force rests on in a live session", "",
+        "The sessions of [the page](README.md), by `scripts/live_table.py`. Times are p50 / p99 / max.",
+        "- *Age of the sample*: by the device's clock, when the hand takes it.",
+        "- *Age of the force*: since it was last found anew from contacts.",
+        "- *Force to picture*: until the picture was in the file that others watch (`--watch`, a picture each 40 or 42 ticks).", "",
+        "| device | physics, between its steps | age of the sample [ms] | ticks without a new sample |"
+        " age of the force [ticks] | force to picture [ms] |", "|---|---|---|---|---|---|"]
     for r in rows:
         lines.append(f"| {name_session(r)} | {quantiles(r, 'sample_age', ms, 2)} | {r['num_repeated_samples']:.0f}"
                      f" | {quantiles(r, 'num_force_age_ticks', 1, 0)} | {quantiles(r, 'picture_delay', ms, 1)} |")
@@ -187,6 +215,7 @@ def main():
         writer.writeheader()
         writer.writerows(rows)
     write_readme(options.output / "README.md", rows, options)
+    write_force_page(options.output / "force.md", rows)
 
 
 if __name__ == "__main__":
