@@ -12,6 +12,7 @@ PANEL_PIXELS = {"wide": (1280, 960), "tall": (720, 960)}
 BACKGROUND = (0.965, 0.968, 0.972)
 TOOL = (0.86, 0.90, 0.94)
 ARROW = (0.10, 0.10, 0.12)
+EDGE = 0.94  # of half a panel, up to which arrows go
 
 
 def poly_data(vtk, points, triangles):
@@ -83,13 +84,18 @@ def tool_actor(vtk, shot):
     return actor
 
 
-def arrow_start(shot, length):
-    """Of the arrow of the force on the hand: the hand's point; where the force goes into the body, which would hide
-    the arrow, so far outside that it ends there."""
+def arrow_heading(shot):
+    """Where the arrow of the force on the hand lies from the hand's point: along the force; where that goes into the body,
+    which would hide the arrow, opposite, so that the arrow ends there."""
     direction = shot.force / np.linalg.norm(shot.force)
     nearest = np.linalg.norm(shot.points - shot.tool_position, axis=1).argmin()
     outward = render_shots.vertex_normals(shot.points, shot.triangles)[nearest]
-    return shot.tool_position - length * direction if direction @ outward < 0.0 else shot.tool_position
+    return -direction if direction @ outward < 0.0 else direction
+
+
+def arrow_start(shot, length):
+    heading = arrow_heading(shot)
+    return shot.tool_position + (length * heading if heading @ shot.force < 0.0 else 0.0)
 
 
 def arrow_actor(vtk, shot, length):
@@ -142,16 +148,32 @@ class Camera:
         self.direction = self.find_direction(tool_centre - 0.5 * (lowest + highest), highest - lowest)
         right = np.cross([0.0, 0.0, 1.0], self.direction)
         right /= np.linalg.norm(right)
-        axes = np.stack([right, np.cross(self.direction, right), self.direction])  # right, up, to the eye
-        seen = points @ axes.T
+        self.axes = np.stack([right, np.cross(self.direction, right), self.direction])  # right, up, to the eye
+        self.zoom, self.tool_centre = zoom, tool_centre
+        self.fit(points)
+
+    def fit(self, points):
+        seen = points @ self.axes.T
         width, height, _ = np.ptp(seen, axis=0)
         self.pixels = PANEL_PIXELS["tall" if height > 1.2 * width else "wide"]
         aspect = self.pixels[0] / self.pixels[1]
-        self.half_height = 0.5 * max(height, width / aspect) * 1.12 / zoom
+        self.half_height = 0.5 * max(height, width / aspect) * 1.12 / self.zoom
+        self.half_size = np.array([aspect, 1.0]) * self.half_height
         middle = 0.5 * (seen.min(axis=0) + seen.max(axis=0))
-        self.focus = middle @ axes if zoom == 1.0 else tool_centre
+        self.focus = middle @ self.axes if self.zoom == 1.0 else self.tool_centre
         self.reach = 1.5 * np.linalg.norm(np.ptp(points, axis=0))
         self.distance = 2.0 * self.reach
+
+    def project(self, points):
+        """Right and up in the panel; from -1 to 1 is inside."""
+        return ((points - self.focus) @ self.axes[:2].T) / self.half_size
+
+    def room(self, start, direction):
+        """How far from a point along a direction the panel's edge is, less a margin [m]; no limit outside of the panel."""
+        place, step = self.project(start), self.project(self.focus + direction)
+        if np.abs(place).max() > EDGE:
+            return np.inf
+        return np.min((EDGE - np.sign(step) * place) / np.maximum(np.abs(step), 1e-12))
 
     @staticmethod
     def find_direction(tool, size):
@@ -216,6 +238,16 @@ def shade_creases(vtk, renderer, radius):
     renderer.SetPass(occlusion)
 
 
+def fit_arrows(camera, points, shots, largest_force):
+    """The arrows' common scale [m/N], and the camera fitted to them too. Closer than the whole they end at the panel's edge."""
+    scale = 0.9 * camera.half_height / largest_force
+    if camera.zoom > 1.0:
+        return min([scale] + [camera.room(shot.tool_position, arrow_heading(shot)) / np.linalg.norm(shot.force) for shot in shots])
+    ends = [shot.tool_position + scale * np.linalg.norm(shot.force) * arrow_heading(shot) for shot in shots]
+    camera.fit(np.concatenate([points, ends]))
+    return scale
+
+
 def render_rows(rows, field, zoom, shows_cage):
     """Images of all shots by one camera, one scale of colours and of forces; and the colours' top."""
     import vtk
@@ -230,6 +262,8 @@ def render_rows(rows, field, zoom, shows_cage):
     touched = points.mean(axis=0) if strongest.tool_points is None else strongest.tool_position
     camera = Camera(points, np.concatenate([shot.points for shot in shots]), touched, zoom)
     size = np.ptp(points, axis=0).max()
+    with_arrow = [shot for shot in shots if shows_tool and np.linalg.norm(shot.force) > 1e-3 * largest_force > 0.0]
+    metres_per_newton = fit_arrows(camera, points, with_arrow, largest_force) if with_arrow else 0.0
 
     def actors_of(shot):
         actors = [body_actor(vtk, shot, render_shots.FIELDS[field], top)]
@@ -237,9 +271,8 @@ def render_rows(rows, field, zoom, shows_cage):
             actors.append(cage_actor(vtk, shot))
         if shows_tool and shot.tool_points is not None:
             actors.append(tool_actor(vtk, shot))
-        force = np.linalg.norm(shot.force)
-        if shows_tool and force > 1e-3 * largest_force > 0.0:
-            actors.append(arrow_actor(vtk, shot, 0.9 * camera.half_height * force / largest_force))
+        if any(shot is one for one in with_arrow):
+            actors.append(arrow_actor(vtk, shot, metres_per_newton * np.linalg.norm(shot.force)))
         return actors
 
     window = make_window(vtk, camera.pixels)  # one for all: a virtual display ends with its last window

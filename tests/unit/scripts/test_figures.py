@@ -245,6 +245,22 @@ class Figures(unittest.TestCase):
             camera = render_vtk.Camera(np.concatenate([body, touched, gone]), body, touched[0], 1.0)
             self.assertGreater(side * camera.direction[0], 0.5)
 
+    def test_the_arrow_ends_inside_the_panel_also_from_closer(self):
+        with h5py.File(self.file("dry.h5")) as result:
+            shot = render_shots.Shot(result, result["frames/000006"], "saturation")
+        points = np.concatenate([shot.points, shot.tool_points])
+        for force in ([0.0, -2.0, 0.0], [0.0, 2.0, 0.0], [1.0, -1.0, 1.5], [0.0, -0.1, -2.0]):
+            shot.force = np.array(force)
+            size = np.linalg.norm(force)
+            for zoom in (1.0, 2.0, 5.0):
+                camera = render_vtk.Camera(points, shot.points, shot.tool_position, zoom)
+                length = size * render_vtk.fit_arrows(camera, points, [shot], size)
+                ends = shot.tool_position + np.outer([0.0, length], render_vtk.arrow_heading(shot))
+                self.assertLess(np.abs(camera.project(ends)).max(), 0.95)
+                self.assertGreater(length, 0.3 * camera.half_height)
+                if zoom == 1.0:
+                    self.assertLess(np.abs(camera.project(points)).max(), 0.95)
+
     def test_figures_are_written_equal_when_drawn_again_and_no_word_is_cut_off_at_the_edge(self):
         for script, files in (("plot_force.py", ["dry.h5", "wet.h5", "--align-press"]), ("plot_water.py", ["wet.h5"]),
                               ("plot_energy.py", ["dry.h5", "wet.h5"])):
