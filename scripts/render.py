@@ -2,14 +2,20 @@
 """Draws the body of one or more runs at chosen moments, with the tool and the force that the hand feels.
 
 Usage: render.py A.h5 [B.h5 ...] [--labels A B ...] [--frames before,during,after] [--field saturation]
-                 [-o FILE.png]
+                 [--up x|y|z] [--view AZIMUTH ELEVATION] [-o FILE.png]
        render.py A.h5 --movie FILE.mp4|FILE.gif [--field saturation]
 
-One row a run, one column a moment; of one moment all runs beside each other. A moment is before (the first frame), wetting or drying (the frame in the
-middle of that contact), push, pull, during (nearest to the largest force of that mode; of either), after (the
-last frame), or a time in seconds. Fields: saturation, displacement, normal (displacement along the outward normal),
-plastic_strain, on a skin alone influence; shape is the body alone. The skin is drawn where there is one, else the cage. A movie has one picture a frame of the file, in real time. The pictures are made by VTK
-without a window; where there is no display the script starts a virtual one (Xvfb).
+One row a run, one column a moment; of one moment all runs beside each other. A moment is before (the first frame), wetting
+or drying (the frame in the middle of that contact), push, pull, during (nearest to the largest force of that mode; of
+either), after (the last frame), or a time in seconds. Fields: saturation, displacement, normal (displacement along the
+outward normal), plastic_strain, on a skin alone influence; shape is the body alone. The skin is drawn where there is one,
+else the cage. A movie has one picture a frame of the file, in real time.
+
+Up is the axis against gravity; without gravity y where the body is held at its foot in y and not in z, else z. The eye is
+on the side that the tools touch, a little above. --view puts it elsewhere: degrees about the upward axis, from the axis
+that follows it (x after z), and above the horizon.
+
+The pictures are made by VTK without a window; where there is no display the script starts a virtual one (Xvfb).
 """
 import argparse
 import textwrap
@@ -70,6 +76,13 @@ def compose(images, captions, field, top):
     return figure
 
 
+def view_of(options):
+    """As asked for; which axis is up otherwise follows from the first result."""
+    with ap.open_result(options.files[0]) as result:
+        up = options.up or render_shots.find_up(result)
+    return render_vtk.View(up, options.view and tuple(options.view), options.zoom)
+
+
 def draw_sheet(options, labels):
     """The chosen moments of each run, in one picture."""
     moments = options.frames.split(",") if options.frames else render_shots.default_moments(options.files[0])
@@ -78,7 +91,7 @@ def draw_sheet(options, labels):
                          FIELDS[options.field].shows_scene)
                  for shot, moment in zip(row, moments)] for row, label in zip(rows, labels)]
     with render_vtk.display():
-        images, top = render_vtk.render_rows(rows, options.field, options.zoom, options.cage)
+        images, top = render_vtk.render_rows(rows, options.field, view_of(options), options.cage)
     if len(moments) == 1:
         images, captions = [sum(images, [])], [sum(captions, [])]
     figure = compose(images, captions, options.field, top)
@@ -100,7 +113,7 @@ def draw_movie(options, labels):
         ap.refuse(f"{options.movie}: there is no ffmpeg (package ffmpeg); a .gif needs none")
     shots = render_shots.read_all_shots(options.files[0], options.field)
     with render_vtk.display():
-        (images,), top = render_vtk.render_rows([shots], options.field, options.zoom, options.cage)
+        (images,), top = render_vtk.render_rows([shots], options.field, view_of(options), options.cage)
     duration = shots[-1].time - shots[0].time
     writer = (PillowWriter if is_gif else FFMpegWriter)(fps=max(1.0, (len(shots) - 1) / max(duration, 1e-3)))
     figure = compose([images[:1]], [[caption(shots[0], labels[0])]], options.field, top)
@@ -122,12 +135,17 @@ def main():
                         "second where nothing was touched")
     parser.add_argument("--field", default="saturation", choices=FIELDS, help="default: %(default)s")
     parser.add_argument("--zoom", type=float, default=1.0, help="more than 1: look at the tool from closer")
+    parser.add_argument("--up", choices=["x", "y", "z"], help="axis that points up; default: against gravity, else as the body is held")
+    parser.add_argument("--view", nargs=2, type=float, metavar=("AZIMUTH", "ELEVATION"),
+                        help="of the eye, in degrees; default: the side that the tool touches, from a little above")
     parser.add_argument("--cage", action="store_true", help="draw the edges of the cage too")
     parser.add_argument("--movie", metavar="FILE.mp4|FILE.gif", help="every frame of one result, no sheet")
     parser.add_argument("-o", "--output", default="body.png", metavar="FILE.png", help="default: %(default)s")
     options = parser.parse_args()
     if not options.zoom >= 1.0:
         ap.refuse(f"zoom {options.zoom:g}: give 1 or more")
+    if options.view and not (abs(options.view[0]) <= 360.0 and abs(options.view[1]) <= 90.0):
+        ap.refuse(f"view {options.view[0]:g} {options.view[1]:g}: give an azimuth from -360 to 360 and an elevation from -90 to 90 degrees")
     labels = ap.labels_for(options.files, options.labels)
     try:
         import vtk  # noqa: F401

@@ -1,4 +1,5 @@
 """What is drawn of a result: the chosen moments, their surfaces and the field that colours them."""
+import json
 from typing import NamedTuple
 
 import argil_plot as ap
@@ -11,6 +12,7 @@ MODES_OF = {"wetting": ("wet",), "drying": ("dry",), "push": ("push",), "pull": 
 CLAY = (0.80, 0.56, 0.43)
 
 
+FOOT = 0.2  # of a body's height, at most
 NEAREST = 60  # tets around a skin vertex among which the containing one is looked for
 
 
@@ -117,6 +119,40 @@ def find_skin_tets(result, field):
         return None
     first = ap.frames_of(result)[0]
     return find_weights(first["position"][:], result["mesh/tets"][:], first["skin_position"][:])[0]
+
+
+def held_points(result, scenario):
+    """The vertices at rest that the scenario holds, as far as its boxes and balls, half spaces and planes say."""
+    rest = result["mesh/rest_position"][:]
+    is_held = np.zeros(len(rest), bool)
+    for support in scenario.get("body", {}).get("fixed", []):
+        kind = support["kind"]
+        if kind == "box":
+            is_held |= np.all((rest >= support["lower_m"]) & (rest <= support["upper_m"]), axis=1)
+        elif kind == "sphere":
+            is_held |= np.linalg.norm(rest - support["centre_m"], axis=1) <= support["radius_m"]
+        elif kind in ("half_space", "plane"):
+            height = rest @ support["normal"] / np.linalg.norm(support["normal"]) - support["offset_m"]
+            is_held |= height <= 0.0 if kind == "half_space" else np.abs(height) <= support.get("thickness_m", 0.0)
+    return rest[is_held]
+
+
+def find_up(result):
+    """The axis that points up: against the scenario's gravity; else y where the body is held at its foot in y and not in z;
+    else z. A body held at one end in x is a beam at a wall."""
+    words = result["provenance"].get("scenario")
+    try:
+        scenario = json.loads(words[()]) if words is not None else {}
+    except ValueError:  # a result made by hand
+        scenario = {}
+    gravity = np.array(scenario.get("body", {}).get("loads", {}).get("gravity_m_per_s2", [0.0, 0.0, 0.0]))
+    if np.any(gravity):
+        return "xyz"[np.abs(gravity).argmax()]
+    held, rest = held_points(result, scenario), result["mesh/rest_position"][:]
+    if len(held) == 0:
+        return "z"
+    is_foot = held.max(axis=0) - rest.min(axis=0) < FOOT * np.ptp(rest, axis=0)
+    return "y" if is_foot[1] and not is_foot[2] else "z"
 
 
 def vertex_normals(points, triangles):

@@ -3,6 +3,7 @@ import contextlib
 import os
 import shutil
 import subprocess
+from typing import NamedTuple
 
 import argil_plot as ap
 import render_shots
@@ -138,18 +139,29 @@ def add_lights(vtk, renderer):
         renderer.AddLight(light)
 
 
+class View(NamedTuple):
+    """From where a body is seen."""
+
+    up: str = "z"  # the axis that points up in the picture
+    angles: tuple = None  # azimuth and elevation of the eye [degrees]; None: the side that the tools touch, from above
+    zoom: float = 1.0  # more than 1: closer to the tool
+
+
 class Camera:
     """Parallel projection, three-quarter view from the side that the tools touch, the same for all panels."""
 
-    def __init__(self, points, body, tool_centre, zoom):
+    def __init__(self, points, body, tool_centre, view):
         """Fits `points` (n×3) [m], of the `body` and of the tool, into the panel; closer than that, looks at
         the tool's centre."""
+        upright = np.roll(np.eye(3), 2 - "xyz".index(view.up), axis=0)  # from x, y, z to ahead, aside, up
         lowest, highest = body.min(axis=0), body.max(axis=0)
-        self.direction = self.find_direction(tool_centre - 0.5 * (lowest + highest), highest - lowest)
-        right = np.cross([0.0, 0.0, 1.0], self.direction)
-        right /= np.linalg.norm(right)
-        self.axes = np.stack([right, np.cross(self.direction, right), self.direction])  # right, up, to the eye
-        self.zoom, self.tool_centre = zoom, tool_centre
+        azimuth, elevation = (np.radians(view.angles) if view.angles else
+                              self.find_angles(upright @ (tool_centre - 0.5 * (lowest + highest)), upright @ (highest - lowest)))
+        right = [-np.sin(azimuth), np.cos(azimuth), 0.0]
+        away = [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
+        self.axes = np.stack([right, np.cross(away, right), away]) @ upright  # right, up, to the eye
+        self.direction = self.axes[2]
+        self.zoom, self.tool_centre = view.zoom, tool_centre
         self.fit(points)
 
     def fit(self, points):
@@ -176,19 +188,20 @@ class Camera:
         return np.min((EDGE - np.sign(step) * place) / np.maximum(np.abs(step), 1e-12))
 
     @staticmethod
-    def find_direction(tool, size):
-        """Towards the eye: 30 degrees off the side of the body's box that is nearest to the tool."""
+    def find_angles(tool, size):
+        """Azimuth and elevation of the eye: 30 degrees off the side of the body's box that is nearest to the tool, where the
+        third axis points up."""
         if abs(tool[0]) / size[0] > abs(tool[1]) / size[1]:
-            away = np.array([0.92 if tool[0] > 0.0 else -0.92, -0.50, 0.36])
+            away = np.array([0.92 if tool[0] > 0.0 else -0.92, -0.50])
         else:
-            away = np.array([0.50, 0.92 if tool[1] > 0.0 else -0.92, 0.36])
-        return away / np.linalg.norm(away)
+            away = np.array([0.50, 0.92 if tool[1] > 0.0 else -0.92])
+        return np.arctan2(away[1], away[0]), np.arctan2(0.36, np.linalg.norm(away))
 
     def apply(self, camera):
         camera.ParallelProjectionOn()
         camera.SetFocalPoint(*self.focus)
         camera.SetPosition(*(self.focus + self.distance * self.direction))
-        camera.SetViewUp(0, 0, 1)
+        camera.SetViewUp(*self.axes[1])
         camera.SetParallelScale(self.half_height)
         # No wider than needed: the occlusion pass compares depths, and coarse ones draw contour lines.
         camera.SetClippingRange(self.distance - self.reach, self.distance + self.reach)
@@ -248,7 +261,7 @@ def fit_arrows(camera, points, shots, largest_force):
     return scale
 
 
-def render_rows(rows, field, zoom, shows_cage):
+def render_rows(rows, field, view, shows_cage):
     """Images of all shots by one camera, one scale of colours and of forces; and the colours' top."""
     import vtk
 
@@ -260,7 +273,7 @@ def render_rows(rows, field, zoom, shows_cage):
     largest_force = np.linalg.norm(strongest.force)
     top = render_shots.FIELDS[field].top or max(np.abs(shot.values).max() for shot in shots) or 1.0
     touched = points.mean(axis=0) if strongest.tool_points is None else strongest.tool_position
-    camera = Camera(points, np.concatenate([shot.points for shot in shots]), touched, zoom)
+    camera = Camera(points, np.concatenate([shot.points for shot in shots]), touched, view)
     size = np.ptp(points, axis=0).max()
     with_arrow = [shot for shot in shots if shows_tool and np.linalg.norm(shot.force) > 1e-3 * largest_force > 0.0]
     metres_per_newton = fit_arrows(camera, points, with_arrow, largest_force) if with_arrow else 0.0

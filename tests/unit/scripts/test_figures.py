@@ -242,7 +242,7 @@ class Figures(unittest.TestCase):
         body = 0.1 * np.array([[-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]])
         for side in (1.0, -1.0):
             touched, gone = np.array([[0.1 * side, 0.0, 0.1]]), np.array([[0.5 * side, 0.0, 0.1]])
-            camera = render_vtk.Camera(np.concatenate([body, touched, gone]), body, touched[0], 1.0)
+            camera = render_vtk.Camera(np.concatenate([body, touched, gone]), body, touched[0], render_vtk.View())
             self.assertGreater(side * camera.direction[0], 0.5)
 
     def test_the_arrow_ends_inside_the_panel_also_from_closer(self):
@@ -253,13 +253,43 @@ class Figures(unittest.TestCase):
             shot.force = np.array(force)
             size = np.linalg.norm(force)
             for zoom in (1.0, 2.0, 5.0):
-                camera = render_vtk.Camera(points, shot.points, shot.tool_position, zoom)
+                camera = render_vtk.Camera(points, shot.points, shot.tool_position, render_vtk.View(zoom=zoom))
                 length = size * render_vtk.fit_arrows(camera, points, [shot], size)
                 ends = shot.tool_position + np.outer([0.0, length], render_vtk.arrow_heading(shot))
                 self.assertLess(np.abs(camera.project(ends)).max(), 0.95)
                 self.assertGreater(length, 0.3 * camera.half_height)
                 if zoom == 1.0:
                     self.assertLess(np.abs(camera.project(points)).max(), 0.95)
+
+    def test_the_axis_that_is_asked_for_points_up(self):
+        body = np.array([[-0.1, -0.1, 0.0], [0.1, 0.1, 0.2]])
+        for name, axis in zip("xyz", np.eye(3)):
+            camera = render_vtk.Camera(body, body, body[0], render_vtk.View(up=name))
+            right, up = camera.project(camera.focus + 0.01 * axis)
+            self.assertGreater(up, 0.0)
+            self.assertAlmostEqual(right, 0.0)
+            np.testing.assert_allclose(camera.axes @ camera.axes.T, np.eye(3), atol=1e-15)
+            self.assertAlmostEqual(np.linalg.det(camera.axes), 1.0)
+            following = np.roll(axis, 1)  # x after z
+            for angles, towards in (((0.0, 0.0), following), ((90.0, 0.0), np.roll(axis, 2)), ((30.0, 90.0), axis)):
+                camera = render_vtk.Camera(body, body, body[0], render_vtk.View(name, angles))
+                np.testing.assert_allclose(camera.direction, towards, atol=1e-15)
+
+    def test_up_is_against_gravity_or_as_the_body_is_held(self):
+        def held(axis):  # at its low end, a tenth of the cube
+            upper = [0.11, 0.11, 0.11]
+            upper[axis] = 0.01
+            return {"fixed": [{"kind": "box", "lower_m": [-0.01, -0.01, -0.01], "upper_m": upper}]}
+        for body, up in (({}, "z"), (held(0), "z"), (held(1), "y"), (held(2), "z"),
+                         ({"fixed": [{"kind": "half_space", "normal": [0, 2, 0], "offset_m": 0.001}]}, "y"),
+                         ({**held(1), "loads": {"gravity_m_per_s2": [-9.8, 0, 0]}}, "x"),
+                         ({"loads": {"gravity_m_per_s2": [0, -9.8, 0]}}, "y")):
+            with h5py.File(self.file("dry.h5"), "r+") as result:
+                if "scenario" in result["provenance"]:
+                    del result["provenance/scenario"]
+                result["provenance/scenario"] = json.dumps({"body": body})
+                self.assertEqual(render_shots.find_up(result), up, body)
+        self.expect_refusal("view 0 91", "render.py", "dry.h5", "--view", "0", "91")
 
     def test_figures_are_written_equal_when_drawn_again_and_no_word_is_cut_off_at_the_edge(self):
         for script, files in (("plot_force.py", ["dry.h5", "wet.h5", "--align-press"]), ("plot_water.py", ["wet.h5"]),
