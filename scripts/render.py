@@ -2,12 +2,12 @@
 """Draws the body of one or more runs at chosen moments, with the tool and the force that the hand feels.
 
 Usage: render.py A.h5 [B.h5 ...] [--labels A B ...] [--frames before,during,after] [--field saturation]
-                 [--up x|y|z] [--view AZIMUTH ELEVATION] [-o FILE.png]
+                 [--up x|y|z] [--view AZIMUTH ELEVATION] [--dpi 300] [-o FILE.png]
        render.py A.h5 --movie FILE.mp4|FILE.gif [--field saturation]
 
 One row a run, one column a moment; of one moment all runs beside each other. A moment is before (the first frame), wetting
 or drying (the frame in the middle of that contact), push, pull, during (nearest to the largest force of that mode; of
-either), after (the last frame), or a time in seconds. Fields: saturation, displacement, normal (displacement along the
+either), after (the last frame), or a time in seconds. The caption has the frame's own time. Fields: saturation, displacement, normal (displacement along the
 outward normal), plastic_strain, on a skin alone influence; shape is the body alone. The skin is drawn where there is one,
 else the cage. A movie has one picture a frame of the file, in real time.
 
@@ -31,11 +31,19 @@ from render_shots import FIELDS, MOMENTS
 from render_vtk import BACKGROUND
 
 
+def three_digits(value):
+    """As 0.15 or 0.00412: never rounded to nothing."""
+    return np.format_float_positional(value, 3, fractional=False, trim="-")
+
+
 def caption(shot, name, shows_scene=True):
-    force = np.linalg.norm(shot.force)
+    """Name, the frame's own time, the force; and the moment that was asked for where the frame is off it."""
     if not shows_scene:
         return name
-    return f"{name}\n{shot.time:.1f} s" + (f", {force:.2f} N" if force > 0.0 else "")
+    force = np.linalg.norm(shot.force)
+    words = f"{name}\n{three_digits(shot.time)} s" + (f", {three_digits(force)} N" if force > 0.0 else "")
+    is_off = abs(shot.asked - shot.time) > 0.01 * abs(shot.asked)
+    return words + (f"\nnearest to {three_digits(shot.asked)} s" if is_off else "")
 
 
 def wrapped(words, characters):
@@ -97,7 +105,7 @@ def draw_sheet(options, labels):
     figure = compose(images, captions, options.field, top)
     # Cut to what is there: words that the layout has no room for would be cut off.
     figure.draw_without_rendering()  # as in argil_plot.save
-    figure.savefig(writable(options.output), dpi=140, facecolor=BACKGROUND, metadata={"Software": None},
+    figure.savefig(writable(options.output), dpi=options.dpi, facecolor=BACKGROUND, metadata={"Software": None},
                    bbox_inches="tight", pad_inches=0.05, pil_kwargs={"optimize": True})
     print(options.output)
 
@@ -140,10 +148,13 @@ def main():
                         help="of the eye, in degrees; default: the side that the tool touches, from a little above")
     parser.add_argument("--cage", action="store_true", help="draw the edges of the cage too")
     parser.add_argument("--movie", metavar="FILE.mp4|FILE.gif", help="every frame of one result, no sheet")
+    parser.add_argument("--dpi", type=int, default=300, help="points an inch of a sheet; default: %(default)s")
     parser.add_argument("-o", "--output", default="body.png", metavar="FILE.png", help="default: %(default)s")
     options = parser.parse_args()
     if not options.zoom >= 1.0:
         ap.refuse(f"zoom {options.zoom:g}: give 1 or more")
+    if not 50 <= options.dpi <= 1200:
+        ap.refuse(f"dpi {options.dpi}: give 50 to 1200")
     if options.view and not (abs(options.view[0]) <= 360.0 and abs(options.view[1]) <= 90.0):
         ap.refuse(f"view {options.view[0]:g} {options.view[1]:g}: give an azimuth from -360 to 360 and an elevation from -90 to 90 degrees")
     labels = ap.labels_for(options.files, options.labels)

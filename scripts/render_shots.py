@@ -43,7 +43,7 @@ FIELDS = {
     "displacement": Field("displacement [mm]", STRAINED, scale=1e3),
     "normal": Field("moved along the normal,\noutwards > 0 [mm]", SIGNED, scale=1e3, is_signed=True),
     "influence": Field("region of influence [–]", STRAINED, top=1.0, on_skin_only=True),
-    "plastic_strain": Field("plastic strain ‖ε_p‖ [–]", STRAINED),
+    "plastic_strain": Field("plastic strain ‖ε$_\\mathrm{p}$‖ [–]", STRAINED),
     "shape": Field("", LinearSegmentedColormap.from_list("clay", (CLAY, CLAY)), top=1.0, shows_scene=False),
 }
 
@@ -52,7 +52,7 @@ class Shot:
     """One moment of a run: surface, field, tool (None where there is none) and force. SI units."""
 
     def __init__(self, result, frame, field, skin_tets=None):
-        self.time = float(frame.attrs["time"])
+        self.time = self.asked = float(frame.attrs["time"])  # [s]; asked: the moment that this frame is nearest to
         mesh, haptic = result["mesh"], result["haptic"]
         skinned = len(mesh["skin_triangles"]) > 0
         if FIELDS[field].on_skin_only and not skinned:
@@ -229,6 +229,10 @@ def read_shots(file, moments, field):
     with ap.open_result(file) as result:
         frames = ap.frames_of(result)
         times = np.array([frame.attrs["time"] for frame in frames])
-        nearest = [frames[np.argmin(np.abs(times - find_time(result, moment)))] for moment in moments]
+        asked = [float(find_time(result, moment)) for moment in moments]
         skin_tets = find_skin_tets(result, field)
-        return [Shot(result, frame, field, skin_tets) for frame in nearest]
+        shots = [Shot(result, frames[np.abs(times - time).argmin()], field, skin_tets) for time in asked]
+    for shot, moment, time in zip(shots, moments, asked):
+        if moment not in ("wetting", "drying"):  # any frame of their middle will do
+            shot.asked = time
+    return shots

@@ -230,6 +230,16 @@ class Figures(unittest.TestCase):
         shot.force = -shot.force
         np.testing.assert_allclose(render_vtk.arrow_start(shot, 0.1), [0.05, -0.12, 0.05])
 
+    def test_a_caption_has_the_frames_own_time_and_says_where_it_is_off(self):
+        moments = ["0.06", "0.065", "0.5", "during", "wetting"]  # frames: every 0.02 s up to 0.18 s; the push is strongest at 0.12 s
+        shots = render_shots.read_shots(self.file("dry.h5"), moments, "saturation")
+        self.assertEqual([render.caption(shot, "dry") for shot in shots], [
+            "dry\n0.06 s", "dry\n0.06 s\nnearest to 0.065 s", "dry\n0.18 s\nnearest to 0.5 s", "dry\n0.12 s, 2 N",
+            "dry\n0.02 s, 3 N"])
+        shots[0].time = shots[0].asked = 0.15
+        shots[0].force = np.array([0.0, 0.004123, 0.0])
+        self.assertEqual(render.caption(shots[0], "dry"), "dry\n0.15 s, 0.00412 N")
+
     def test_rotations_follow_the_quaternion(self):
         half = np.sqrt(0.5)
         np.testing.assert_allclose(render_shots.rotation_matrix([half, 0, 0, half]) @ [0, 0, 1], [0, -1, 0], atol=1e-15)
