@@ -7,9 +7,9 @@ Usage: render.py A.h5 [B.h5 ...] [--labels A B ...] [--frames before,during,afte
 
 One row a run, one column a moment; of one moment all runs beside each other. A moment is before (the first frame), wetting
 or drying (the frame in the middle of that contact), push, pull, during (nearest to the largest force of that mode; of
-either), after (the last frame), or a time in seconds. The caption has the frame's own time. Fields: saturation, displacement, normal (displacement along the
-outward normal), plastic_strain, on a skin alone influence; shape is the body alone. The skin is drawn where there is one,
-else the cage. A movie has one picture a frame of the file, in real time.
+either), after (the last frame), or a time in seconds. The caption has the frame's own time. Fields: saturation,
+displacement, normal (displacement along the outward normal), plastic_strain, on a skin alone influence; shape is the body
+alone. The skin is drawn where there is one, else the cage. A movie has one picture a frame of the file, in real time.
 
 Up is the axis against gravity; without gravity y where the body is held at its foot in y and not in z, else z. The eye is
 on the side that the tools touch, a little above. --view puts it elsewhere: degrees about the upward axis, from the axis

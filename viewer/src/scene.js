@@ -1,13 +1,14 @@
-// The body, the tool and the force, drawn by three.js. Lengths are metres, z points up.
+// The body, the tool and the force, drawn by three.js. Lengths are metres.
 
 import {
-  BufferAttribute, BufferGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide, Group,
+  Box3, BufferAttribute, BufferGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide, Group,
   HemisphereLight, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, PerspectiveCamera, Quaternion, Scene, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 const OPENING_DEGREES = 30;
-const ROOM = 1.06; // around the body
+const ROOM = 1.06; // around what is fitted
+const PEAK_ARROW = 0.33; // length of the largest force over the size of the body
 const UP = new Vector3(0, 1, 0); // of three.js' own cylinders
 
 function makeBody(indices, numVertices) {
@@ -57,6 +58,31 @@ function extentOf(result) {
   return { middle: low.add(high).multiplyScalar(0.5), box, size: box.length() };
 }
 
+/** The tool's extent, the eight corners of its box where it is at rest; none where there is no tool. */
+function toolCorners(vertices) {
+  if (vertices.length === 0) return [];
+  const box = new Box3().setFromArray(vertices);
+  const { min, max } = box;
+  return [min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) => [min.z, max.z].map((z) => new Vector3(x, y, z))));
+}
+
+/** What the opening picture holds: the body in all frames, the tool where it is not far from it, and the force's arrow. */
+function pointsToShow(result, { middle, box, size }) {
+  const points = [];
+  for (const x of [-0.5, 0.5]) for (const y of [-0.5, 0.5]) for (const z of [-0.5, 0.5])
+    points.push(box.clone().multiply(new Vector3(x, y, z)).add(middle));
+  const corners = toolCorners(result.arrays.tool_vertices);
+  for (const frame of result.frames) {
+    const place = new Vector3(...frame.tool_position_m);
+    if (!frame.has_tool || place.distanceTo(middle) > size) continue;
+    const turn = new Quaternion(...frame.tool_orientation);
+    for (const corner of corners) points.push(corner.clone().applyQuaternion(turn).add(place));
+    if (result.peak_force_N > 0)
+      points.push(place.addScaledVector(new Vector3(...frame.force_N), (PEAK_ARROW * size) / result.peak_force_N));
+  }
+  return points;
+}
+
 export class View {
   /** Throws where the browser has no WebGL. */
   constructor(host, result) {
@@ -65,6 +91,8 @@ export class View {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     host.append(this.renderer.domElement);
     this.extent = extentOf(result);
+    this.points = pointsToShow(result, this.extent);
+    this.target = new Box3().setFromPoints(this.points).getCenter(new Vector3());
     this.peak = result.peak_force_N;
     const { arrays } = result;
     this.body = makeBody(arrays.triangles, result.num_vertices);
@@ -107,24 +135,25 @@ export class View {
     return away.normalize();
   }
 
-  /** How far from the middle every corner of the extent is inside the picture, whatever its aspect [m]. */
+  /** How far from the target every point is inside the picture, whatever its aspect [m]. */
   findDistance() {
-    const right = new Vector3(0, 0, 1).cross(this.away).normalize();
+    const right = this.camera.up.clone().cross(this.away).normalize();
     const up = this.away.clone().cross(right);
     const rise = Math.tan((OPENING_DEGREES * Math.PI) / 360);
+    const point = new Vector3();
     let distance = 0;
-    for (const x of [-0.5, 0.5]) for (const y of [-0.5, 0.5]) for (const z of [-0.5, 0.5]) {
-      const corner = this.extent.box.clone().multiply(new Vector3(x, y, z));
-      const aside = Math.max(Math.abs(corner.dot(right)) / this.camera.aspect, Math.abs(corner.dot(up)));
-      distance = Math.max(distance, corner.dot(this.away) + (ROOM * aside) / rise);
+    for (const place of this.points) {
+      point.copy(place).sub(this.target);
+      const aside = Math.max(Math.abs(point.dot(right)) / this.camera.aspect, Math.abs(point.dot(up)));
+      distance = Math.max(distance, point.dot(this.away) + (ROOM * aside) / rise);
     }
     return distance;
   }
 
   reset() {
     this.isFitted = true;
-    this.camera.position.copy(this.extent.middle).addScaledVector(this.away, this.findDistance());
-    this.controls.target.copy(this.extent.middle);
+    this.camera.position.copy(this.target).addScaledVector(this.away, this.findDistance());
+    this.controls.target.copy(this.target);
     this.controls.update();
   }
 
@@ -150,7 +179,7 @@ export class View {
     geometry.computeBoundingSphere();
   }
 
-  /** Tool and arrow of a frame; the arrow is as long as the force is large, the peak a third of the scene. */
+  /** Tool and arrow of a frame; the arrow is as long as the force is large, the peak a third of the body. */
   placeTool(frame, isShown) {
     const force = new Vector3(...frame.force_N);
     const size = force.length();
@@ -162,7 +191,7 @@ export class View {
     if (!this.arrow.visible) return;
     this.arrow.position.copy(this.tool.position);
     this.arrow.quaternion.copy(new Quaternion().setFromUnitVectors(UP, force.normalize()));
-    this.arrow.scale.setScalar((0.33 * this.extent.size * size) / this.peak);
+    this.arrow.scale.setScalar((PEAK_ARROW * this.extent.size * size) / this.peak);
   }
 
   draw() { this.renderer.render(this.scene, this.camera); }

@@ -188,23 +188,35 @@ class Pages(Folder):
         self.assertEqual(self.frame(), int(self.browser.evaluate("slider.max")))
         self.assertGreater(self.browser.evaluate(PIXELS)[0], 5000)
 
-    def test_the_whole_body_is_in_the_picture_whatever_its_aspect(self):
+    def test_body_tool_and_arrow_are_in_the_picture_whatever_its_aspect(self):
         self.open("--cage")
         for width, height in ((1280, 900), (480, 900), (1600, 500)):
             self.browser.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
                               mobile=False)
             self.browser.wait_for(f"innerWidth === {width} && argil.view.renderer.domElement.width <= {width} && "
                                   "Math.abs(argil.view.camera.aspect - scene.clientWidth / scene.clientHeight) < 0.01")
-            corner = """(() => {
-              const {middle, box} = argil.view.extent, seen = [];
-              for (const x of [-0.5, 0.5]) for (const y of [-0.5, 0.5]) for (const z of [-0.5, 0.5]) {
-                const at = box.clone().multiply({x, y, z}).add(middle).project(argil.view.camera);
-                seen.push(Math.abs(at.x), Math.abs(at.y));
+            farthest = """(() => {
+              const {view, result} = argil, {body, tool, arrow} = view;
+              let most = 0;
+              for (let number = 0; number < result.frames.length; ++number) {
+                argil.show(number);
+                view.scene.updateMatrixWorld();
+                for (const mesh of [body, tool, ...(arrow.visible ? arrow.children : [])]) {
+                  const {array} = mesh.geometry.attributes.position;
+                  for (let i = 0; i < array.length; i += 3) {
+                    const at = view.target.clone().fromArray(array, i).applyMatrix4(mesh.matrixWorld).project(view.camera);
+                    most = Math.max(most, Math.abs(at.x), Math.abs(at.y));
+                  }
+                }
               }
-              return Math.max(...seen);
+              return most;
             })()"""
-            self.assertLess(self.browser.evaluate(corner), 1.0)
-            self.assertGreater(self.browser.evaluate(corner), 0.85)  # and no farther away than that needs
+            self.assertLess(self.browser.evaluate(farthest), 1.0)
+            fitted = """Math.max(...argil.view.points.flatMap((point) => {
+              const at = point.clone().project(argil.view.camera);
+              return [Math.abs(at.x), Math.abs(at.y)];
+            }))"""
+            self.assertAlmostEqual(self.browser.evaluate(fitted), 1 / 1.06, delta=0.01)  # no farther away than that needs
         self.browser.call("Emulation.clearDeviceMetricsOverride")
 
     def test_a_result_without_a_frame_at_rest_shows_how_far_it_moved(self):
