@@ -12,7 +12,7 @@ MODES_OF = {"wetting": ("wet",), "drying": ("dry",), "push": ("push",), "pull": 
 CLAY = (0.80, 0.56, 0.43)
 
 
-FOOT = 0.2  # of a body's height, at most
+FOOT = 0.3  # of a body's height, at most
 NEAREST = 60  # tets around a skin vertex among which the containing one is looked for
 
 

@@ -55,3 +55,23 @@ export function valuesOf(result, field, frame, count) {
   for (let v = 0, b = count * frame; v < count; ++v, ++b) values[v] = (field.top * bytes[b]) / 255;
   return values;
 }
+
+/** The axis that points up: y where the vertices that never move are the body's foot in y and not in z, else z. */
+export function findUp(result) {
+  const { position } = result.arrays;
+  const { num_vertices: count, frames } = result;
+  const foot = 0.3; // of the body's height, at most
+  const body = [0, 1, 2].map(() => ({ low: Infinity, high: -Infinity }));
+  const held = [0, 1, 2].map(() => ({ high: -Infinity }));
+  for (let v = 0; v < count; ++v) {
+    const isStill = frames.every((_, frame) => [0, 1, 2].every((k) => position[3 * (frame * count + v) + k] === position[3 * v + k]));
+    for (let k = 0; k < 3; ++k) {
+      const x = position[3 * v + k];
+      body[k].low = Math.min(body[k].low, x);
+      body[k].high = Math.max(body[k].high, x);
+      if (isStill) held[k].high = Math.max(held[k].high, x);
+    }
+  }
+  const isFoot = (k) => held[k].high - body[k].low < foot * (body[k].high - body[k].low);
+  return Number.isFinite(held[0].high) && isFoot(1) && !isFoot(2) ? "y" : "z";
+}

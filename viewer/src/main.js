@@ -1,7 +1,7 @@
 // Puts the parts together: one state (the frame that is shown), and everything that follows it.
 
 import { colourValues, drawLegend, rampTable } from "./colours.js";
-import { positionsOf, readResult, valuesOf } from "./data.js";
+import { findUp, positionsOf, readResult, valuesOf } from "./data.js";
 import { ForcePlot } from "./plot.js";
 import { View } from "./scene.js";
 
@@ -22,8 +22,10 @@ class Page {
     this.frame = 0;
     this.playingSince = null;
     this.describe();
+    $("up").value = findUp(result);
     try {
       this.view = new View($("scene"), result);
+      this.view.setUp($("up").value);
     } catch (error) {
       say(`The body is not drawn: ${error.message}. The browser needs WebGL.`);
     }
@@ -46,6 +48,7 @@ class Page {
     $("slider").addEventListener("input", () => { this.pause(); this.show($("slider").valueAsNumber); });
     $("field").addEventListener("change", () => this.chooseField());
     $("show-tool").addEventListener("change", () => this.show(this.frame));
+    $("up").addEventListener("change", () => this.view?.setUp($("up").value));
     $("reset").addEventListener("click", () => this.view?.reset());
     $("speed").addEventListener("change", () => { if (this.playingSince) this.play(); });
     $("play").addEventListener("click", () => (this.playingSince ? this.pause() : this.play()));

@@ -105,13 +105,11 @@ export class View {
     this.addCamera(result);
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
-    this.controls.addEventListener("start", () => { this.isFitted = false; });
   }
 
   addCamera(result) {
     const { size } = this.extent;
     this.camera = new PerspectiveCamera(OPENING_DEGREES, 1, size / 50, size * 20);
-    this.camera.up.set(0, 0, 1);
     this.scene.add(this.camera, new HemisphereLight(0xffffff, 0xb9a79c, 1.5));
     for (const [x, y, z, brightness] of [[-0.6, 0.8, 1.0, 2.0], [1.0, 0.1, 0.6, 0.7]]) {
       const light = new DirectionalLight(0xffffff, brightness); // moves with the eye
@@ -119,19 +117,31 @@ export class View {
       light.target = this.body;
       this.camera.add(light);
     }
+    this.touched = result.touched;
+    this.setUp("z");
+  }
+
+  /** Turns the picture so that an axis, "x", "y" or "z", points up, seen as at first. */
+  setUp(axis) {
+    this.camera.up.set(0, 0, 0)[axis] = 1;
+    this.away = this.findDirection(axis);
+    this.controls?.dispose(); // it keeps the camera's up of its start
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
-    this.away = this.findDirection(result.touched);
-    this.isFitted = true;
+    this.controls.addEventListener("start", () => { this.isFitted = false; });
+    this.reset();
   }
 
   /** Towards the eye: 30 degrees off the side of the body's box that the tool is nearest to, and from above. */
-  findDirection(touched) {
+  findDirection(axis) {
     const { middle, box } = this.extent;
-    const x = touched[0] - middle.x;
-    const y = touched[1] - middle.y;
-    const away = Math.abs(x) / box.x > Math.abs(y) / box.y
-      ? new Vector3(x > 0 ? 0.92 : -0.92, -0.5, 0.36) : new Vector3(0.5, y > 0 ? 0.92 : -0.92, 0.36);
+    const [ahead, aside] = { x: "yz", y: "zx", z: "xy" }[axis];
+    const part = (k, name) => (this.touched[k] - middle[name]) / box[name];
+    const [first, second] = [ahead, aside].map((name) => part("xyz".indexOf(name), name));
+    const away = new Vector3();
+    away[axis] = 0.36;
+    [away[ahead], away[aside]] = Math.abs(first) > Math.abs(second)
+      ? [first > 0 ? 0.92 : -0.92, -0.5] : [0.5, second > 0 ? 0.92 : -0.92];
     return away.normalize();
   }
 

@@ -219,6 +219,35 @@ class Pages(Folder):
             self.assertAlmostEqual(self.browser.evaluate(fitted), 1 / 1.06, delta=0.01)  # no farther away than that needs
         self.browser.call("Emulation.clearDeviceMetricsOverride")
 
+    def test_the_axis_that_is_chosen_points_up(self):
+        self.open("--cage")
+        self.assertEqual(self.browser.evaluate("document.getElementById('up').value"), "z")
+        seen = []
+        for name, axis in (("y", (0, 1, 0)), ("x", (1, 0, 0)), ("z", (0, 0, 1))):
+            self.browser.evaluate(f"document.getElementById('up').value = '{name}', "
+                                  "document.getElementById('up').dispatchEvent(new Event('change'))")
+            right, up = self.browser.evaluate(f"""(() => {{
+              const {{target, camera}} = argil.view;
+              const tip = target.clone();
+              tip.set({",".join(map(str, axis))}).multiplyScalar(0.01).add(target).project(camera);
+              return [tip.x, tip.y];
+            }})()""")
+            self.assertAlmostEqual(right, 0.0, delta=1e-6)
+            self.assertGreater(up, 0.01)
+            seen.append(self.browser.evaluate(PIXELS)[1])
+        self.assertEqual(len(set(seen)), 3)
+
+    def test_a_body_that_is_held_at_its_foot_in_y_stands_on_it(self):
+        standing = self.path("standing.h5")
+        shutil.copy(RESULT, standing)
+        with h5py.File(standing, "r+") as result:  # turned about x: y is what was z, z is what was -y
+            turned = [result["mesh/rest_position"], *(frame["position"] for frame in frames_of(result))]
+            values = [data[:] for data in turned]  # all before any is written: equal ones may be one
+            for data, (x, y, z) in zip(turned, (value.T for value in values)):
+                data[:] = np.stack([x, z, -y], axis=1)
+        self.open("--cage", result=standing)
+        self.assertEqual(self.browser.evaluate("document.getElementById('up').value"), "y")
+
     def test_a_result_without_a_frame_at_rest_shows_how_far_it_moved(self):
         with h5py.File(RESULT) as result, h5py.File(self.path("static.h5"), "w") as static:
             for name in ("mesh", "haptic", "physics", "provenance", "timing"):
