@@ -11,15 +11,25 @@ function fillList(list, texts) {
   list.replaceChildren(...texts.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
 }
 
+/** A title with its index as one. */
+const readable = (title) => title.replace("ε_p", "εₚ");
+
 function say(words) {
   $("trouble").hidden = false;
   $("trouble").textContent = words;
 }
 
+/** The frame of the largest force; the first without any. */
+function frameOfPeak(result) {
+  const forces = result.frames.map((frame) => Math.hypot(...frame.force_N));
+  return forces.indexOf(Math.max(...forces));
+}
+
 class Page {
   constructor(result) {
     this.result = result;
-    this.frame = 0;
+    this.frame = frameOfPeak(result);
+    this.isUntouched = true; // it opens there, and plays from the start
     this.playingSince = null;
     this.describe();
     $("up").value = findUp(result);
@@ -29,7 +39,7 @@ class Page {
     } catch (error) {
       say(`The body is not drawn: ${error.message}. The browser needs WebGL.`);
     }
-    this.plot = new ForcePlot($("plot"), result, (time) => { this.pause(); this.goTo(time); });
+    this.plot = new ForcePlot($("plot"), result, (time) => { this.pause(); this.isUntouched = false; this.goTo(time); });
     this.listen();
     this.chooseField();
   }
@@ -40,12 +50,12 @@ class Page {
     $("title").textContent = result.file;
     $("summary").textContent = result.summary;
     fillList($("notes"), result.notes);
-    $("field").replaceChildren(...result.fields_shown.map((field) => new Option(field.title, field.name)));
+    $("field").replaceChildren(...result.fields_shown.map((field) => new Option(readable(field.title), field.name)));
     $("slider").max = result.frames.length - 1;
   }
 
   listen() {
-    $("slider").addEventListener("input", () => { this.pause(); this.show($("slider").valueAsNumber); });
+    $("slider").addEventListener("input", () => { this.pause(); this.isUntouched = false; this.show($("slider").valueAsNumber); });
     $("field").addEventListener("change", () => this.chooseField());
     $("show-tool").addEventListener("change", () => this.show(this.frame));
     $("up").addEventListener("change", () => this.view?.setUp($("up").value));
@@ -58,7 +68,7 @@ class Page {
     this.field = this.result.fields_shown.find((field) => field.name === $("field").value);
     this.table = rampTable(this.field.ramp);
     drawLegend($("legend-bar"), this.table);
-    $("legend-title").textContent = `${this.field.title} [${this.field.unit}]`;
+    $("legend-title").textContent = `${readable(this.field.title)} [${this.field.unit}]`;
     fillList($("legend-ticks"), [1, 0.75, 0.5, 0.25, 0].map((part) => +(part * this.field.top).toPrecision(3)));
     this.show(this.frame);
   }
@@ -93,7 +103,8 @@ class Page {
 
   play() {
     const { frames } = this.result;
-    const start = this.frame === frames.length - 1 ? 0 : this.frame;
+    const start = this.isUntouched || this.frame === frames.length - 1 ? 0 : this.frame;
+    this.isUntouched = false;
     this.playingSince = { wall: performance.now(), time: frames[start].time_s };
     $("play").textContent = "❚❚";
     $("play").setAttribute("aria-label", "pause");

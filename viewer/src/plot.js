@@ -1,6 +1,8 @@
 // Force on the hand against time. Where there are more ticks than points, each point is the range of its ticks.
 
-const MARGIN = { left: 52, right: 12, top: 8, bottom: 34 };
+const MARGIN = { right: 12, top: 8, bottom: 34 };
+const FONT = '12px "DejaVu Sans", system-ui, sans-serif';
+const TITLE = 24; // of the axis of force, its room
 const FORCE = "#d55e00";
 const GREY = "#5a5f66";
 const MODE_NAMES = ["push", "pull", "wet", "dry"];
@@ -22,6 +24,7 @@ export class ForcePlot {
     this.time = 0;
     this.end = result.duration_s || 1;
     this.top = 1.05 * (result.peak_force_N || 1);
+    this.left = this.findLeft();
     const pick = (event) => event.buttons & 1 && goTo(this.timeAt(event.offsetX));
     canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); pick(event); });
     canvas.addEventListener("pointermove", pick);
@@ -29,11 +32,18 @@ export class ForcePlot {
     this.resize();
   }
 
-  get width() { return this.canvas.clientWidth - MARGIN.left - MARGIN.right; }
+  /** Where the axis of force stands: right of its title and of its widest number. */
+  findLeft() {
+    const pen = this.canvas.getContext("2d");
+    pen.font = FONT;
+    return TITLE + Math.max(...roundTicks(this.top, 4).map((force) => pen.measureText(`${force}`).width)) + 6;
+  }
+
+  get width() { return this.canvas.clientWidth - this.left - MARGIN.right; }
   get height() { return this.canvas.clientHeight - MARGIN.top - MARGIN.bottom; }
-  x(time) { return MARGIN.left + (time / this.end) * this.width; }
+  x(time) { return this.left + (time / this.end) * this.width; }
   y(force) { return MARGIN.top + (1 - force / this.top) * this.height; }
-  timeAt(x) { return Math.min(Math.max((x - MARGIN.left) / this.width, 0), 1) * this.end; }
+  timeAt(x) { return Math.min(Math.max((x - this.left) / this.width, 0), 1) * this.end; }
 
   resize() {
     const scale = window.devicePixelRatio;
@@ -50,7 +60,7 @@ export class ForcePlot {
     layer.height = this.canvas.height;
     const pen = layer.getContext("2d");
     pen.scale(scale, scale);
-    pen.font = '12px "DejaVu Sans", system-ui, sans-serif';
+    pen.font = FONT;
     this.drawModes(pen);
     this.drawAxes(pen);
     this.drawErrorBar(pen);
@@ -81,11 +91,11 @@ export class ForcePlot {
       pen.strokeRect(this.x(time), MARGIN.top, 0, this.height);
       pen.fillText(`${time}`, this.x(time), MARGIN.top + this.height + 15);
     }
-    pen.fillText("time [s]", MARGIN.left + this.width / 2, MARGIN.top + this.height + 30);
+    pen.fillText("time [s]", this.left + this.width / 2, MARGIN.top + this.height + 30);
     pen.textAlign = "right";
     for (const force of roundTicks(this.top, 4)) {
-      pen.strokeRect(MARGIN.left, this.y(force), this.width, 0);
-      pen.fillText(`${force}`, MARGIN.left - 6, this.y(force) + 4);
+      pen.strokeRect(this.left, this.y(force), this.width, 0);
+      pen.fillText(`${force}`, this.left - 6, this.y(force) + 4);
     }
     pen.save();
     pen.translate(12, MARGIN.top + this.height / 2);

@@ -127,6 +127,33 @@ class Pages(Folder):
         self.browser.evaluate("argil.view.path.material.opacity = 0; argil.view.draw()")
         self.assertNotEqual(self.browser.evaluate(PIXELS)[1], with_path)
 
+    def test_it_opens_at_the_largest_force_and_plays_from_the_start(self):
+        self.open()
+        forces = self.browser.evaluate("argil.result.frames.map((frame) => Math.hypot(...frame.force_N))")
+        self.assertGreater(int(np.argmax(forces)), 0)
+        self.assertEqual(self.frame(), int(np.argmax(forces)))
+        self.assertEqual(self.browser.evaluate("(argil.play(), argil.playingSince.time)"), 0.0)
+        self.browser.evaluate("argil.pause(), argil.show(3), argil.play()")
+        self.assertGreater(self.browser.evaluate("argil.playingSince.time"), 0.0)  # from then on where it stands
+
+    def test_no_number_lies_on_a_title_and_the_legend_is_beside_the_scene(self):
+        self.open()
+        for peak in (9e-4, 0.0102, 1234.0):
+            self.browser.evaluate(f"argil.plot.top = {peak}; argil.plot.left = argil.plot.findLeft(); argil.plot.resize()")
+            widest = self.browser.evaluate("""(() => {
+              const pen = plot.getContext('2d');
+              pen.font = '12px "DejaVu Sans", system-ui, sans-serif';
+              return Math.max(...[0.25, 0.5, 0.75, 1].map((part) => pen.measureText(`${+(part * argil.plot.top).toPrecision(1)}`).width));
+            })()""")
+            self.assertGreater(self.browser.evaluate("argil.plot.left") - 6 - widest, 18)  # the title's right side
+        for width in (1280, 420):
+            self.browser.call("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=False)
+            self.browser.wait_for(f"innerWidth === {width}")
+            scene, bar = (self.browser.evaluate(f"(({{left, right}}) => [left, right])(document.getElementById('{name}')"
+                                                ".getBoundingClientRect())") for name in ("scene", "legend-bar"))
+            self.assertLess(scene[1], bar[0])
+        self.browser.call("Emulation.clearDeviceMetricsOverride")
+
     def test_a_click_on_the_slider_changes_frame_and_picture(self):
         self.open()
         last = int(self.browser.evaluate("slider.max"))
