@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import InputError
 from .reading import is_deforming, labels_for, name_of, opened
-from .style import COLOURS, DASHES, GREY, MILLIMETRES
+from .style import COLOURS, DASHES, GREY, MILLIMETRES, entries_of, put_legend
 
 PREFIXES = ((1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9, "nJ"), (1e-12, "pJ"))
 
@@ -78,7 +78,7 @@ def draw(runs):
         axes.set_xlabel("time [s]")
         axes.set_title(f"{run.label}\nkinetic at most {with_prefix(run.kinetic.max())}", loc="left", color=GREY)
     panels[0][0].set_ylabel(f"energy [{unit}]")
-    panels[0][-1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    put_legend(figure, *entries_of(panels[0][0]))
     return figure
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import InputError
 from .reading import force_norm, is_deforming, labels_for, name_of, opened, spans
-from .style import COLOURS, DASHES, GREY, MILLIMETRES, WATER_BAND
+from .style import COLOURS, DASHES, GREY, MILLIMETRES, WATER_BAND, entries_of, put_legend
 
 
 class Run(NamedTuple):
@@ -71,11 +71,13 @@ def find_peak(runs):
 
 
 def draw_lines(axes, runs, time_label):
+    first_with_band = next((run for run in runs if run.band), None)
     for number, run in enumerate(runs):
         axes.plot(run.time, run.force, label=run.label, color=COLOURS[number % len(COLOURS)],
                   linestyle=DASHES[number % len(DASHES)])
         if run.band:
-            axes.fill_between(run.time, *run.band, color=COLOURS[number % len(COLOURS)], alpha=0.2, linewidth=0)
+            axes.fill_between(run.time, *run.band, color=COLOURS[number % len(COLOURS)], alpha=0.2, linewidth=0,
+                              label="where it should be, as the run estimates" if run is first_with_band else None)
     axes.set_xlabel(time_label)
 
 
@@ -91,8 +93,15 @@ def draw_water_bands(axes, runs):
                 drawn.add(band)
 
 
-def draw(runs, align_press, smooth, start=None):
+def find_close_up(runs, start):
+    """The strongest contact, where it is less than half of the time that is drawn: else the whole shows it as well."""
     peak = find_peak(runs)
+    begin = min(run.time[0] for run in runs) if start is None else start
+    return peak if peak and peak[1] - peak[0] < 0.5 * (max(run.time[-1] for run in runs) - begin) else None
+
+
+def draw(runs, align_press, smooth, start=None):
+    peak = find_close_up(runs, start)
     time_label = "time since the push began [s]" if align_press else "time [s]"
     figure, panels = plt.subplots(1, 2 if peak else 1, figsize=(180 * MILLIMETRES, 72 * MILLIMETRES),
                                   squeeze=False, gridspec_kw={"width_ratios": [2, 1] if peak else [1]})
@@ -116,8 +125,9 @@ def draw(runs, align_press, smooth, start=None):
         close.set_title("strongest contact", loc="left", color=GREY)
         whole.add_patch(plt.Rectangle((left, 0), right - left, height, fill=False, edgecolor=GREY, linewidth=0.8,
                                       linestyle=":"))
-    if len(runs) > 1 or whole.get_legend_handles_labels()[1] != [runs[0].label]:
-        whole.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncol=3, borderaxespad=0.3)
+    handles, words = entries_of(whole)
+    if words != [runs[0].label]:
+        put_legend(figure, handles, words, above=True)
     return figure
 
 

@@ -4,6 +4,7 @@ Colours are those of Okabe and Ito, which people with any kind of colour blindne
 lines also differ in their dashes, for a grey print.
 """
 import functools
+import textwrap
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -35,6 +36,34 @@ def styled(draw):
             figure.draw_without_rendering()  # makes the ticks, which would take the caller's style later
             return figure
     return in_style
+
+
+def put_legend(figure, handles, labels, above=False, **options):
+    """A legend of the whole figure below its panels, or above them, in as many columns as fit; long labels are broken. The
+    figure grows by it, so that no axes shrink."""
+    width, height = figure.get_size_inches()
+    fitting = round(width / MILLIMETRES / 2.0)  # characters in one column
+    labels = [textwrap.fill(label, fitting) for label in labels]
+    for columns in range(max(1, min(len(labels), 4)), 0, -1):
+        legend = figure.legend(handles, labels, ncol=columns, loc=("upper" if above else "lower") + " left", columnspacing=1.4,
+                               borderaxespad=0.2, **options)
+        size = legend.get_window_extent().size / figure.dpi
+        if size[0] <= width or columns == 1:
+            break
+        legend.remove()
+    total = height + size[1] + 0.08
+    figure.set_size_inches(width, total)
+    figure.get_layout_engine().set(rect=(0.0, 0.0 if above else 1.0 - height / total, 1.0, height / total))
+    return legend
+
+
+def entries_of(*panels):
+    """Handles and labels of all panels, each label once."""
+    entries = {}
+    for axes in panels:
+        for handle, label in zip(*axes.get_legend_handles_labels()):
+            entries.setdefault(label, handle)
+    return list(entries.values()), list(entries)
 
 
 def quantity_label(name, has_unit=True):
