@@ -315,6 +315,34 @@ class Figures(unittest.TestCase):
             edge = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
             self.assertEqual(edge[:, :3].min(), 1.0, script)  # white all around
 
+    def test_long_labels_leave_the_axes_their_width(self):
+        label = "a label that tells everything there is to tell about a run of wet clay"
+        runs = [force_figure.read_run(self.file(name), label + name, False) for name in ("dry.h5", "wet.h5")] * 3
+        energies = [energy_figure.read_energies(self.file("dry.h5"), "dry")]
+        for figure in (force_figure.draw(runs, False, 0.0), energy_figure.draw(energies)):
+            self.addCleanup(argil_plot.plt.close, figure)
+            figure.draw_without_rendering()
+            width = sum(axes.get_window_extent().width for axes in figure.axes)
+            self.assertGreater(width, 0.7 * figure.bbox.width)
+            words = figure.legends[0].get_window_extent()
+            self.assertLessEqual(words.width, figure.bbox.width)
+            for axes in figure.axes:
+                self.assertFalse(words.overlaps(axes.get_tightbbox(figure.canvas.get_renderer())))
+
+    def test_what_has_nothing_to_show_has_no_panel(self):
+        with h5py.File(self.file("dry.h5"), "r+") as result:
+            result["physics/water_mass"][:] = 1e-3
+            result["physics/water_added"][:] = result["physics/water_removed"][:] = 0.0
+        write_result(self.file("leak.h5"), 0.0, leak=1e-6)
+        for name, panels, words in (("dry.h5", 1, "No water was given"), ("wet.h5", 2, "The ledger closes to"), ("leak.h5", 3, "")):
+            figure = water_figure.make_figure(self.file(name))
+            self.addCleanup(argil_plot.plt.close, figure)
+            self.assertEqual(len(figure.axes), panels)
+            self.assertTrue(figure.axes[-1].get_title(loc="left").startswith(words))
+        runs = [force_figure.read_run(self.file("wet.h5"), "wet", False)]
+        self.assertIsNotNone(force_figure.find_close_up(runs, None))  # 30 ms of 200 ms
+        self.assertIsNone(force_figure.find_close_up(runs, 0.15))
+
     def test_a_label_wider_than_its_axes_is_whole(self):
         figure, (left, right) = argil_plot.plt.subplots(1, 2, figsize=(5, 2), gridspec_kw={"width_ratios": [8, 1]})
         right.set_xlabel("a label that is much wider than its axes")

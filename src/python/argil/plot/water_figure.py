@@ -1,4 +1,7 @@
-"""Where the water of a run is: saturation, the water ledger, and by how much the ledger fails to close."""
+"""Where the water of a run is: saturation, the water ledger, and by how much the ledger fails to close.
+
+What has nothing to show has no panel: words say that no water moved, or how well the ledger closes.
+"""
 from typing import NamedTuple
 
 import matplotlib.pyplot as plt
@@ -6,9 +9,10 @@ import numpy as np
 
 from ..errors import InputError
 from .reading import cells_of, frames_of, opened
-from .style import COLOURS, DASHES, GREY, MILLIMETRES
+from .style import COLOURS, DASHES, GREY, MILLIMETRES, entries_of, put_legend
 
 MILLIGRAM = 1e-6  # [kg]
+CLOSED = 1e-12  # of the water, a ledger's error that is rounding
 
 
 class Saturation(NamedTuple):
@@ -33,6 +37,10 @@ class Ledger(NamedTuple):
         implied_start = self.mass - self.added + self.removed
         scale = max(np.max(np.abs(q)) for q in (self.mass, self.added, self.removed))
         return np.abs(implied_start - implied_start[0]) / (scale if scale > 0.0 else 1.0)
+
+    def is_still(self):
+        """No water was given or taken, and none is missing."""
+        return not (np.any(self.added) or np.any(self.removed) or np.any(self.mass != self.mass[0]))
 
 
 def rest_volumes(mesh):
@@ -62,14 +70,14 @@ def draw_saturation(axes, saturation):
     for number, (name, values) in enumerate((("largest", saturation.largest), ("mean of the body", saturation.mean))):
         axes.plot(saturation.time, values, label=name, color=COLOURS[number], linestyle=DASHES[number])
     axes.set_ylabel("saturation S [–]")
-    axes.set_ylim(0, 1.05)
+    axes.set_ylim(-0.02, 1.05)  # dry clay is seen above the axis
 
 
 def draw_ledger(axes, ledger):
     change = ledger.mass - ledger.mass[0] + ledger.added[0] - ledger.removed[0]
     lines = (("in the body, beyond the start", change), ("added by the tool", ledger.added),
              ("removed by the tool", ledger.removed))
-    for number, (name, mass) in enumerate(lines, start=1):
+    for number, (name, mass) in enumerate(lines, start=2):  # after those of the saturation
         axes.plot(ledger.time, mass / MILLIGRAM, label=name, color=COLOURS[number], linestyle=DASHES[number])
     axes.set_ylabel("water [mg]")
 
@@ -87,16 +95,25 @@ def draw_error(axes, ledger):
 
 
 def draw(saturation, ledger):
-    figure, panels = plt.subplots(1, 3, figsize=(180 * MILLIMETRES, 68 * MILLIMETRES))
+    """Saturation; ledger, unless no water moved; the ledger's error, unless it is rounding, where words say so."""
+    error = ledger.error().max()
+    has_ledger, has_error = not ledger.is_still(), error > CLOSED
+    count = 1 + has_ledger + has_error
+    figure, panels = plt.subplots(1, count, squeeze=False, figsize=((40 + 55 * count) * MILLIMETRES, 62 * MILLIMETRES))
+    panels = panels[0]
     draw_saturation(panels[0], saturation)
-    draw_ledger(panels[1], ledger)
-    draw_error(panels[2], ledger)
+    if has_ledger:
+        draw_ledger(panels[1], ledger)
+    if has_error:
+        draw_error(panels[-1], ledger)
+    else:
+        words = f"The ledger closes to {error:.0e} of the water." if has_ledger else "No water was given or taken."
+        panels[-1].set_title(words, loc="left", color=GREY)
     for axes in panels:
         axes.margins(x=0)
         axes.set_xlim(0, ledger.time[-1] or 1.0)  # a static result has one moment, at 0
         axes.set_xlabel("time [s]")
-    for axes in panels[:2]:
-        axes.legend(loc="lower left", bbox_to_anchor=(-0.05, 1.0), borderaxespad=0.3)
+    put_legend(figure, *entries_of(*panels))
     return figure
 
 
