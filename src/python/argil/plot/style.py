@@ -4,10 +4,13 @@ Colours are those of Okabe and Ito, which people with any kind of colour blindne
 lines also differ in their dashes, for a grey print.
 """
 import functools
+import math
+import re
 import textwrap
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 DASHES = ("-", "-", (0, (5, 1.5)), (0, (1.5, 1.5)), (0, (5, 1.5, 1.5, 1.5)), (0, (8, 2)))
@@ -55,6 +58,34 @@ def put_legend(figure, handles, labels, above=False, **options):
     figure.set_size_inches(width, total)
     figure.get_layout_engine().set(rect=(0.0, 0.0 if above else 1.0 - height / total, 1.0, height / total))
     return legend
+
+
+def math_words(text):
+    """Text whose symbols with an index, as ω_max, are set as such."""
+    return re.sub(r"([^\W\d_])_(\w+)", r"$\\mathrm{\1_{\2}}$", text)
+
+
+def tick_text(value, _=None):
+    """A number as people write it: 0.002, 500, 10⁵."""
+    if value == 0.0 or 1e-3 <= abs(value) < 1e4:
+        return f"{value:g}"
+    mantissa, exponent = f"{value:.5e}".split("e")
+    return ("" if float(mantissa) == 1.0 else f"{float(mantissa):g}·") + f"$10^{{{int(exponent)}}}$"
+
+
+def number_log_axis(axis, values, most=8):
+    """Ticks of a logarithmic axis: at the few values themselves, else 1, 2, 5 over little more than a decade, else its powers."""
+    values = sorted(set(values))
+    decades = math.log10(values[-1] / values[0])
+    gaps = [math.log10(b / a) for a, b in zip(values, values[1:])]
+    if len(values) <= most and min(gaps, default=1.0) > 0.04 * decades:
+        axis.set_ticks(values)
+    else:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if decades < 2.5 else (1.0,)))
+    axis.set_major_formatter(FuncFormatter(tick_text))
+    axis.set_minor_formatter(NullFormatter())
+    if len(values) <= most:
+        axis.set_minor_locator(NullLocator())
 
 
 def entries_of(*panels):
