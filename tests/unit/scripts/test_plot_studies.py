@@ -22,6 +22,7 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "h5py", "mat
 sys.path.insert(0, str(SCRIPTS))
 sys.dont_write_bytecode = True
 import argil_plot as ap
+from argil.plot import style
 from argil.plot import chart_figure, map_figure
 
 SCENE = {
@@ -113,12 +114,26 @@ class PlotStudies(unittest.TestCase):
         self.assertEqual(found[0.5 * min(costs), 2 * max(errors)], 1)
         for row in rows[6:8]:
             self.assertEqual(found[number(row, "cpu_s_per_s"), 2 * max(errors)], 1, row["outcome"])
-        words = [text.get_text() for text in axes.get_legend().get_texts()]
+        words = [text.get_text() for text in figure.legends[0].get_texts()]
         for row in rows[2:]:
             self.assertIn(row["curve"], words)
         self.assertIn("has nothing to be compared with", words)
         self.call("plot_chart.py", self.tables["chart"])
         self.assert_pictures(self.tables["chart"])
+
+    def test_names_that_refer_to_another_curve_are_said_in_full(self):
+        names = ["tets, even", "tets, graded", "these, 2 ms", "1200 of these: 1, 2 ms", "asked for 5 %"]
+        self.assertEqual(list(chart_figure.full_names(names).values()),
+                         ["tets, even", "tets, graded", "tets, graded, 2 ms", "1200 tets, graded: 1, 2 ms", "asked for 5 %"])
+
+    def test_axes_of_maps_have_units_that_people_use(self):
+        for words, label, value in (("speed [0.1 mm/s]", "speed [m/s]", 2e-4), ("step [ticks of 1 ms]", "step [ms]", 2.0),
+                                    ("push, less 0.025 m [m]", "push [mm]", 2025.0), ("ratio", "ratio", 2.0)):
+            quantity = map_figure.read_quantity(words)
+            self.assertEqual(quantity.label(), label)
+            self.assertAlmostEqual(quantity.of({"x": "2"}, "x"), value)
+        self.assertEqual(style.math_words("h = 2/ω_max"), "h = 2/$\\mathrm{ω_{max}}$")
+        self.assertEqual([style.tick_text(v) for v in (0.002, 500, 1e5, 2.5e-4)], ["0.002", "500", "$10^{5}$", "2.5·$10^{-4}$"])
 
     def test_a_map_has_a_mark_for_every_run(self):
         for name, outcomes in (("line", {"accurate", "inverted", "refused"}),
@@ -142,7 +157,7 @@ class PlotStudies(unittest.TestCase):
                         self.assertEqual(found[x, map_figure.ERROR_BOTTOM], 1, row)
                     else:
                         self.assertEqual(found[x, map_figure.ERROR_TOP], at_top[x], row)
-                words = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
+                words = {text.get_text() for text in figure.legends[0].get_texts()}
                 self.assertTrue({map_figure.OUTCOMES[outcome][0] for outcome in outcomes} | {"a limit"} <= words, words)
                 self.call("plot_map.py", self.tables[name], "--forces", "method", "reference")
                 self.assert_pictures(self.tables[name])
