@@ -73,7 +73,7 @@ def draw_eq6(argil):
                           label="Reuss to Voigt, eq. 5")
         axes.axvspan(papers["not_positive_definite"], medium.PHI[-1], color="#C00000", alpha=0.2, linewidth=0,
                      label="eq. 6 is no stiffness")
-        axes.plot(medium.PHI, papers[key] / dry, color=PAPERS, label="eq. 6 (the paper)")
+        axes.plot(medium.PHI, medium.break_at_pole(papers[key] / dry), color=PAPERS, label="eq. 6 (the paper)")
         axes.plot(medium.PHI, ours[key] / dry, color=OURS, label="Mori–Tanaka")
         axes.set_xlabel("volume fraction of water φ [–]")
         axes.set_ylabel(f"{words} over dry [–]")

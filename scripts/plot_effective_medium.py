@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from argil_plot import COLOURS, GREY, MILLIMETRES, plt, save
+from argil.plot.style import entries_of
 
 SCHEMES = ("dilute", "dilute_strain", "mori_tanaka", "self_consistent", "differential", "hs_lower", "hs_upper")
 NAMES = {"dilute": "dilute (eq. 6)", "dilute_strain": "dilute in strain", "mori_tanaka": "Mori–Tanaka",
@@ -76,32 +77,51 @@ def put_legend(figure, handles, labels, columns, height):
 
 
 def shade(axes, data):
-    """Where the paper's scheme leaves the bounds, and where it is no stiffness any more."""
+    """Where the paper's scheme leaves the bounds, and where it is no stiffness any more; whether it comes to that."""
     above, broken = data["above_voigt"], data["not_positive_definite"]
     if above is not None:
         axes.axvspan(above, broken if broken is not None else PHI[-1], color=FAILURE["above_voigt"], alpha=0.3, lw=0)
     if broken is not None:
         axes.axvspan(broken, PHI[-1], color=FAILURE["not_positive_definite"], alpha=0.25, lw=0)
+    return broken is not None
+
+
+def break_at_pole(values):
+    """A curve in its pieces: nothing joins the two sides of a pole, where the sign changes from one point to the next."""
+    is_past = np.concatenate([[False], values[1:] * values[:-1] < 0.0])
+    return np.where(is_past, np.nan, values)
 
 
 def mark_ends(axes, data, values, colour):
-    """On a curve: a circle where it leaves the Voigt bound, a cross where it stops being a stiffness."""
+    """On a curve: a circle where it leaves the Voigt bound, a cross where it stops being a stiffness; at the edge of the axes
+    where the curve has left them before."""
     for status, marker, size in (("above_voigt", "o", 4), ("not_positive_definite", "x", 6)):
         if data[status] is not None:
             good = np.isfinite(values) & (PHI <= data[status])
-            axes.plot(data[status], np.interp(data[status], PHI[good], values[good]), marker=marker, color=colour,
-                      ms=size, mfc="white", mew=1.3, ls="", zorder=5)
+            value = np.clip(np.interp(data[status], PHI[good], values[good]), *axes.get_ylim())
+            axes.plot(data[status], value, marker=marker, color=colour, ms=size, mfc="white", mew=1.3, ls="", zorder=5, clip_on=False)
+
+
+def set_heights(axes, key, nu, fluid):
+    if key == "nu":
+        axes.set_ylim(min(0.1, nu - 0.1), 0.52)
+    elif key == "K" and fluid > 0:
+        axes.set_yscale("symlog", linthresh=1.0)
+        axes.set_ylim(-300, 300)
+    else:
+        axes.set_ylim(-0.1, 1.05)
 
 
 def draw_moduli(argil, nu, output):
     figure, rows = plt.subplots(2, 4, figsize=(240 * MILLIMETRES, 122 * MILLIMETRES), sharex=True)
-    table = []
+    table, is_broken = [], False
     for axes, (water, fluid) in zip(rows, (("drained", 0.0), ("undrained", WATER))):
         data = {scheme: curve(argil, nu, fluid, scheme) for scheme in SCHEMES + ("voigt", "reuss")}
         dry = {key: data["voigt"][key][0] for key in ("K", "G", "E")}
         for ax, key in zip(axes, ("K", "G", "E", "nu")):
             unit = 1.0 if key == "nu" else dry[key]
-            shade(ax, data["dilute"])
+            set_heights(ax, key, nu, fluid)
+            is_broken |= shade(ax, data["dilute"])
             if key != "nu":
                 ax.fill_between(PHI, data["reuss"][key] / unit, data["voigt"][key] / unit, color="#DDE6EE", lw=0)
             for scheme in SCHEMES:
@@ -111,29 +131,25 @@ def draw_moduli(argil, nu, output):
                 if key == "nu" or scheme != "dilute":
                     values = np.where(bad, np.nan, values)
                 colour, dash = STYLE[scheme]
-                ax.plot(PHI, values, color=colour, ls=dash, label=NAMES[scheme])
+                ax.plot(PHI, break_at_pole(values), color=colour, ls=dash,
+                        label=NAMES[scheme] if np.isfinite(values[1:]).any() else None)
                 if scheme in SCHEMES[:5]:
                     mark_ends(ax, data[scheme], values, colour)
             ax.axvline(PHI_REACHED, color=GREY, lw=0.7, ls=":")
             ax.set_title(f"{water}: " + ("ν [–]" if key == "nu" else f"{key} over dry [–]"), loc="left")
             ax.set_xlim(0, PHI[-1])
-            if key == "nu":
-                ax.set_ylim(min(0.1, nu - 0.1), 0.52)
-            elif key == "K" and fluid > 0:
-                ax.set_yscale("symlog", linthresh=1.0)
-                ax.set_ylim(-300, 300)
-            else:
-                ax.set_ylim(-0.1, 1.05)
         for scheme in SCHEMES[:5]:
             table.append((nu, water, scheme, data[scheme]["above_voigt"], data[scheme]["not_positive_definite"],
                           *(at_porosity(data[scheme], k) for k in ("E", "nu"))))
     for ax in rows[1]:
         ax.set_xlabel("volume fraction of water φ [–]")
-    handles, labels = rows[0][0].get_legend_handles_labels()
+    handles, labels = entries_of(*rows.flat)
     handles += [plt.Rectangle((0, 0), 1, 1, color="#DDE6EE"),
                 plt.Rectangle((0, 0), 1, 1, color=FAILURE["above_voigt"], alpha=0.3),
                 plt.Rectangle((0, 0), 1, 1, color=FAILURE["not_positive_definite"], alpha=0.25)]
     labels += ["Reuss to Voigt", "eq. 6 above Voigt", "eq. 6 not positive definite"]
+    if not is_broken:
+        handles, labels = handles[:-1], labels[:-1]
     handles += [plt.Line2D([], [], color="black", marker=m, mfc="white", ls="") for m in ("o", "x")]
     labels += ["a curve leaves Voigt", "a curve is no stiffness past here"]
     put_legend(figure, handles, labels, 4, 0.13)
@@ -160,6 +176,8 @@ def draw_polar(argil, output):
         ax.set_theta_direction(-1)
         ax.set_ylim(0, 1)
         ax.set_yticks([0.25, 0.5, 0.75, 1.0])
+        for label in ax.get_yticklabels():  # readable on the curves
+            label.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
         ax.set_title(water)
     put_legend(figure, *axes[0].get_legend_handles_labels(), 3, 0.08)
     figure.suptitle("E over dry [–] along each direction; aligned pores, axis at 0°, φ = 0.2, ν = 0.3\n", fontsize=9)
@@ -176,6 +194,7 @@ def draw_hertz(argil, output):
             good = np.array([s != "not_positive_definite" for s in data["status"]])
             modulus = np.where(good, data["E"] / (1 - data["nu"]**2), np.nan)
             colour, dash = STYLE[scheme]
+            ax.set_ylim(0, 1.02)
             # Past the Voigt bound the curve is no clay's any more: thin, and marked where that begins.
             within = np.where(PHI <= (data["above_voigt"] or PHI[-1]), modulus, np.nan)
             ax.plot(PHI, modulus / modulus[0], color=colour, ls=":", lw=0.8)
@@ -191,7 +210,6 @@ def draw_hertz(argil, output):
         ax.set_xlim(0, PHI[-1])
         ax.axvline(PHI_REACHED, color=GREY, lw=0.7, ls=":")
     axes[0].set_ylabel("Hertz force, wet over dry [–]")
-    axes[0].set_ylim(0, 1.02)
     handles, labels = axes[0].get_legend_handles_labels()
     handles += [plt.Line2D([], [], color="black", marker=m, mfc="white", ls=s) for m, s in (("o", ":"), ("x", ""))]
     labels += ["stiffer than Voigt from here", "no stiffness past here"]
