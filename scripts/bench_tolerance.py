@@ -23,6 +23,7 @@ import h5py
 import numpy as np
 import provenance
 from argil_plot import COLOURS, DASHES, GREY, MILLIMETRES, plt
+from argil.plot.style import entries_of, put_legend
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIO = ROOT / "scenarios" / "study_soft_dino.json"
@@ -78,32 +79,34 @@ def measure(argil, folder, target, kernel):
 
 
 def draw(rows, stem):
-    """Force error against steps per second, a line a mesh."""
-    figure, axes = plt.subplots(figsize=(150 * MILLIMETRES, 90 * MILLIMETRES))
+    """Force error against steps per second, a line a mesh, a mark a tolerance."""
+    figure, axes = plt.subplots(figsize=(150 * MILLIMETRES, 85 * MILLIMETRES))
     axes.axhline(1.0, color=GREY, linewidth=0.8)
-    axes.annotate("1 %", (0.0, 1.0), xycoords=("axes fraction", "data"), xytext=(3, 3), textcoords="offset points",
-                  color=GREY, fontsize=8)
+    marks = dict(zip(TOLERANCES, "osD^"))
     for tets, colour, dashes in zip(dict.fromkeys(row["tets"] for row in rows), COLOURS, DASHES):
         of_mesh = [row for row in rows if (row["tets"], row["clay_kernel"]) == (tets, "rate")]
         points = [(float(row["steps_per_s"]), 100 * float(row["largest_error_over_peak"]), row) for row in of_mesh]
         full = [point for point in points if point[2]["fidelity"] == "full"]
-        axes.plot(*zip(*[point[:2] for point in full]), color=colour, linestyle=dashes, marker="o", markersize=4)
-        axes.annotate(f"{tets} tets", min(full, key=lambda point: point[1])[:2], xytext=(0, -6), textcoords="offset points",
-                      ha="center", va="top", color=colour, fontsize=8)
+        axes.plot(*zip(*[point[:2] for point in full]), color=colour, linestyle=dashes, label=f"{tets} tets")
         for rate, error, row in points:
             is_auto = row["fidelity"] == "auto"
-            if is_auto:
-                axes.plot(rate, error, color=colour, marker="*", markersize=10, linestyle="none")
-            axes.annotate("auto" if is_auto else row["tolerance"], (rate, error), xytext=(5, 4), textcoords="offset points",
-                          color=colour, fontsize=7)
+            axes.plot(rate, error, color=colour, marker="*" if is_auto else marks[row["tolerance"]], markersize=10 if is_auto else 5,
+                      linestyle="none")
         if int(tets) in WANTED:
             axes.plot(WANTED[int(tets)], 1.0, color=colour, marker="|", markersize=14, markeredgewidth=2.5)
-    axes.set(xscale="log", yscale="log", xlabel="physics steps per second on two threads (thick bars: wanted)",
+    axes.set(xscale="log", yscale="log", xlabel="physics steps per second on two threads",
              ylabel="largest error of the force, % of its peak")
     axes.set_xticks(RATES, [str(rate) for rate in RATES])
     axes.set_xticks([], minor=True)
     axes.yaxis.set_major_formatter("{x:g}")
     axes.margins(y=0.12)
+    handles, labels = entries_of(axes)
+    for words, style in (*((f"tolerance {tolerance}", {"marker": mark, "markersize": 5}) for tolerance, mark in marks.items()),
+                         ("fidelity auto", {"marker": "*", "markersize": 10}),
+                         ("wanted, at 1 %", {"marker": "|", "markersize": 9, "markeredgewidth": 2.5})):
+        handles.append(plt.Line2D([], [], color=GREY, linestyle="none", **style))
+        labels.append(words)
+    put_legend(figure, handles, labels)
     ap.save(figure, stem)
 
 
