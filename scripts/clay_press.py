@@ -17,6 +17,7 @@ from pathlib import Path
 import argil_plot as ap
 import h5py
 from argil_plot import np, plt
+from argil.plot.style import entries_of, put_legend
 
 ROOT = Path(__file__).resolve().parent.parent
 EDGE_OVER_RADIUS = 25  # of the block, over the ball's radius
@@ -96,7 +97,7 @@ def main():
     for case, axis in zip(cases, axes[0]):
         known_depth, known = np.array(case["depth_m"]), np.array(case["force_N"])
         # Cells a radius of contact: of the size under the ball, over the root of radius times depth.
-        for cells in CELLS:
+        for number, cells in enumerate(CELLS):
             with tempfile.TemporaryDirectory() as name:
                 depth, force, dent, pile_up, highest, tets, seconds = run(options.argil.resolve(), Path(name), case, cells)
             size = (cells[0] if cells else np.inf) * (case["ball_radius_m"] * known_depth[-1])**0.5
@@ -109,11 +110,12 @@ def main():
                          f"{100 * (dent / case['residual_depth_m'] - 1):.1f}", f"{100 * (pile_up / case['pile_up_m'] - 1):.1f}",
                          f"{100 * (highest / case['pile_up_m'] - 1):.1f}", f"{seconds:.0f}"])
             print(*rows[-1], flush=True)
-            axis.plot(1e3 * depth, force, linewidth=1, label=f"{tets} tets")
-        axis.plot(1e3 * known_depth, known, "k.", markersize=5, label="another program")
-        axis.set(xlim=(0, None), ylim=(0, None), xlabel="depth (mm)", ylabel="force (N)",
+            words = f"{1 / cells[0]:.1f} cells a radius of contact" if cells else "cells as chosen"
+            axis.plot(1e3 * depth, force, linewidth=1, color=ap.COLOURS[number], linestyle=ap.DASHES[number], label=words)
+        axis.plot(1e3 * known_depth, known, "k.", markersize=5, label="the reference program")
+        axis.set(xlim=(0, None), ylim=(0, None), xlabel="depth [mm]", ylabel="force [N]",
                  title=f"ball of {1e3 * case['ball_radius_m']:g} mm, $c_u$ = {case['c_u_Pa'] / 1e3:.3g} kPa")
-        axis.legend(frameon=False)
+    put_legend(figure, *entries_of(*axes[0]))
     options.output.parent.mkdir(parents=True, exist_ok=True)
     with open(options.output.with_suffix(".csv"), "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import argil_plot as ap
 import h5py
 from argil_plot import np, plt
+from argil.plot.style import entries_of, put_legend
 from table_file import write_table
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -153,12 +154,16 @@ def main():
         time = np.arange(1, len(force) + 1)
         axis.plot(time, true, "k-", linewidth=1.2, label="true error")
         axis.plot(time, estimate, color=ap.COLOURS[0], linewidth=1, label="estimate")
-        axis.fill_between(time, estimate / scene.factor, estimate * scene.factor, color=ap.COLOURS[0], alpha=0.15, linewidth=0)
+        axis.fill_between(time, estimate / scene.factor, estimate * scene.factor, color=ap.COLOURS[0], alpha=0.15, linewidth=0,
+                          label="estimate, times and over the scene's factor")
         axis.plot(time, doubt, ":", color="grey", linewidth=1, label="doubt of the truth")
         axis.set(title=f"{scene.name}: {number} tets", xlabel="time [ms]", ylabel="error of the force [N]", ylim=(0, None))
+        touching = time[(force > 0) | (finer > 0)]
+        if len(touching):
+            axis.set_xlim(touching[0], touching[-1])
         axis.title.set_fontsize(9)
     print(f"{100 * np.mean(all_ticks):.1f} % of {len(all_ticks)} ticks are within their factor")
-    axes.flat[0].legend(frameon=False, fontsize=8)
+    put_legend(figure, *entries_of(axes.flat[0]))
     write_table(options.output.with_suffix(".csv"), ["scene", "tets", "tets_of_truth", "peak_N", "error_at_peak_percent",
                 "estimate_at_peak_percent", "mesh_percent", "step_percent", "contact_percent", "solver_percent", "left_out_percent",
                 "doubt_at_peak_percent", "factor", "touching_ticks", "counted_ticks", "effectivity_5_percent", "effectivity_median",
