@@ -14,12 +14,15 @@ from pathlib import Path
 
 import argil_plot
 from argil_plot import COLOURS, GREY, MILLIMETRES, plt
+from argil.plot.style import entries_of, put_legend
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "results" / "verification"
 STYLE = {name: {"color": COLOURS[i], "marker": "os^D"[i], "markersize": 4}
          for group in (("p1", "p1_nodal", "p2"), ("backward_euler", "bdf2", "newmark", "symplectic_euler"))
          for i, name in enumerate(group)}
+ALIKE = 0.005  # of a ratio: lines that lie on each other
+ROUNDING = 1e-7  # changes below are drawn there, for a curve at rounding would squeeze the others
 
 
 def make_tables(build):
@@ -85,7 +88,7 @@ def draw_beams():
             panels, ("cantilever", "torsion", "twisted_beam", "cook", "cook_plane_strain"),
             ("deflection_m", "constant", "tip", "tip", "tip"),
             ("timoshenko_m", "saint_venant", "literature", "literature", "fine"),
-            ("cantilever", "torsion", "twisted beam", "Cook, ν = ⅓", "Cook, 0.4999")):
+            ("cantilever", "torsion", "twisted beam", "Cook, ν = ⅓", "Cook, ν = 0.4999")):
         for (element, force), rows in groups(
                 [{**r, "who": (r["element"], r.get("force"))} for r in read(name)], "who"):
             along_thickness = force == "along_thickness"
@@ -98,23 +101,30 @@ def draw_beams():
         axes.minorticks_off()
         axes.set(xlabel="cells across [–]", title=title)
     panels[0].set_ylabel("over the reference [–]")
-    panels[2].legend(*panels[4].get_legend_handles_labels(), loc=(0.02, 0.66), fontsize=7)
+    panels[2].plot([], [], color=GREY, linestyle="--", label="twisted beam: force along the thickness")
+    put_legend(figure, *entries_of(panels[4], panels[2]))
     save(figure, "beams")
 
 
 def draw_locking():
     figure, axes = make_figure(1)
+    linear, lines = {}, {}
     for (element, model), rows in groups(
             [{**r, "who": (r["element"], r["model"])} for r in read("locking")], "who"):
+        ratios = [r["deflection_m"] / r["reference_m"] for r in rows]
+        if model == "linear":
+            linear[element] = ratios
+        elif max(abs(one - other) for one, other in zip(ratios, linear[element])) < ALIKE:
+            lines[element].set_label(f"{element}: linear, corotational and neo-Hookean lie on each other")
+            continue
         dashes = {"linear": "-", "corotational": "--", "neo_hookean": ":"}[model]
-        axes.semilogx([0.5 - r["poissons_ratio"] for r in rows],
-                      [r["deflection_m"] / r["reference_m"] for r in rows], linestyle=dashes,
-                      label=element if model == "linear" else f"{element}, {model}", **STYLE[element])
+        label = element if model == "linear" else f"{element}, {model}"
+        lines[element], = axes.semilogx([0.5 - r["poissons_ratio"] for r in rows], ratios, linestyle=dashes, label=label, **STYLE[element])
     axes.axhline(1.0, color=GREY, linewidth=0.8)
     axes.invert_xaxis()
     axes.set(xlabel="½ − ν [–]", ylabel="tip deflection over the fine one [–]", ylim=(0, 1.08),
              title="bar 5 : 1; p1 four cells across, p2 two")
-    axes.legend(loc="lower left")
+    put_legend(figure, *entries_of(axes))
     save(figure, "locking")
 
 
@@ -129,14 +139,13 @@ def draw_time():
     for axes, drift in zip(panels[1:], ("energy_drift", "momentum_drift")):
         for (integrator, iteration), rows in groups(
                 [{**r, "who": (r["integrator"], r["iteration"])} for r in read("spin")], "who"):
-            axes.loglog([1.0 / r["steps_a_turn"] for r in rows], [max(r[drift], 1e-16) for r in rows],
+            axes.loglog([1.0 / r["steps_a_turn"] for r in rows], [max(r[drift], ROUNDING) for r in rows],
                         linestyle="-" if iteration == "newton" else "--", **STYLE[integrator])
         axes.set(xlabel="step over turn [–]", title={"energy_drift": "free turn: energy change [–]",
-                                                     "momentum_drift": "its angular momentum [–]"}[drift])
+                                                     "momentum_drift": f"its angular momentum [–]\n(at the bottom: {ROUNDING:g} or less)"}[drift])
     panels[1].plot([], [], color=GREY, label="Newton")
     panels[1].plot([], [], color=GREY, linestyle="--", label="one step")
-    panels[1].legend()
-    panels[0].legend(loc="lower right", fontsize=6)
+    put_legend(figure, *entries_of(*panels))
     save(figure, "time")
 
 
