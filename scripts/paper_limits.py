@@ -137,8 +137,8 @@ def draw_hold(argil):
     for axes in (left, right):
         axes.set_xlabel("time [s]")
         axes.set_ylim(bottom=0.0)
+        axes.set_ylabel("force at the hand [N]")
         put_legend(axes)
-    left.set_ylabel("force at the hand [N]")
     return figure, {"hand_kg": HAND["/hand/mass_kg"], "physics_Hz": 1000 / HAND["/haptics/physics_period_ticks"], "peak_N": peaks}
 
 

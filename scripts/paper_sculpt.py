@@ -15,6 +15,7 @@ import argil_plot as ap
 import render_shots
 from argil_plot import np, plt
 from argil.plot.force_figure import moving_mean
+from argil.plot.style import entries_of, put_legend
 
 PLACES = {  # name: a place on the body at rest, and how near to it a vertex belongs to it [m]
     "horn": ((0.002, 0.0, 0.087), 0.02), "hole": ((-0.006, -0.0304, 0.062), 0.02), "tail": ((-0.09, 0.0, 0.06), 0.02)}
@@ -65,11 +66,9 @@ def draw(result, times, volumes):
     epochs = [epoch.attrs["tick"] * result.attrs["haptic_period_s"] for epoch in result.get("epochs", {}).values()]
     if epochs:
         below.plot(epochs, np.zeros(len(epochs)), linestyle="", marker="|", markersize=10, color=ap.GREY, label="new cells")
-        below.legend(loc="upper right")
     for number, name in enumerate(ap.MODES):
         for first, last in ap.spans(mode == number):
-            if name != "push":
-                above.axvspan(time[first], time[last], color=ap.COLOURS[number % len(ap.COLOURS)], alpha=0.12, linewidth=0)
+            above.axvspan(time[first], time[last], color=ap.COLOURS[number % len(ap.COLOURS)], alpha=0.12, linewidth=0)
             if time[last] - time[first] > 0.8:
                 above.text(0.5 * (time[first] + time[last]), 0.97, name, transform=above.get_xaxis_transform(), ha="center",
                            va="top", fontsize=8, color=ap.GREY)
@@ -78,6 +77,8 @@ def draw(result, times, volumes):
     below.set_ylabel("change of the\nskin's volume [%]")
     below.set_xlabel("time [s]")
     below.margins(x=0)
+    if epochs:
+        put_legend(figure, *entries_of(below))
     return figure
 
 

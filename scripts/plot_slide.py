@@ -91,7 +91,7 @@ def draw(measured):
         path, size, change, _ = measured[name]
         style = {"color": ap.COLOURS[number], "linestyle": ap.DASHES[number]}
         sizes.plot(path, size, label=name, **style)
-        changes.plot(path[1:], change, **style)
+        changes.plot(path[1:], change, color=ap.COLOURS[number], linewidth=0.8)  # spikes: dashes would break them
     sizes.set_ylabel("force over its mean [–]")
     changes.set_ylabel("change in a tick\n[% of the mean force]")
     changes.set_xlabel("path of the tool [mm]")

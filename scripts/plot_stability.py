@@ -60,8 +60,8 @@ def draw_panel(axes, rows, body):
     axes.set_ylim(6.0, 3.5 * MOST)
     axes.set_title(title)
     axes.set_xlabel("operator's damping b [N s/m]")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), title="hollow triangles, side by side: where it bounces,\nwith the passivity controller",
-                title_fontsize=8)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), title_fontsize=8,
+                title="hollow triangles, side by side: where it bounces,\nwith the passivity controller")
 
 
 def draw(rows):
