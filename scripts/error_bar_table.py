@@ -163,6 +163,8 @@ def main():
             axis.set_xlim(touching[0], touching[-1])
         axis.title.set_fontsize(9)
     print(f"{100 * np.mean(all_ticks):.1f} % of {len(all_ticks)} ticks are within their factor")
+    for axis in axes.flat[len(scenes):]:
+        axis.remove()
     put_legend(figure, *entries_of(axes.flat[0]))
     write_table(options.output.with_suffix(".csv"), ["scene", "tets", "tets_of_truth", "peak_N", "error_at_peak_percent",
                 "estimate_at_peak_percent", "mesh_percent", "step_percent", "contact_percent", "solver_percent", "left_out_percent",
