@@ -2,7 +2,7 @@
 """Draws the body of one or more runs at chosen moments, with the tool and the force that the hand feels.
 
 Usage: render.py A.h5 [B.h5 ...] [--labels A B ...] [--frames before,during,after] [--field saturation]
-                 [--up x|y|z] [--view AZIMUTH ELEVATION] [--dpi 300] [-o FILE.png]
+                 [--up x|y|z] [--view AZIMUTH ELEVATION] [--path] [--dpi 300] [-o FILE.png]
        render.py A.h5 --movie FILE.mp4|FILE.gif [--field saturation]
 
 One row a run, one column a moment; of one moment all runs beside each other. A moment is before (the first frame), wetting
@@ -99,7 +99,7 @@ def draw_sheet(options, labels):
                          FIELDS[options.field].shows_scene)
                  for shot, moment in zip(row, moments)] for row, label in zip(rows, labels)]
     with render_vtk.display():
-        images, top = render_vtk.render_rows(rows, options.field, view_of(options), options.cage)
+        images, top = render_vtk.render_rows(rows, options.field, view_of(options), options.cage, options.path)
     if len(moments) == 1:
         images, captions = [sum(images, [])], [sum(captions, [])]
     figure = compose(images, captions, options.field, top)
@@ -121,7 +121,7 @@ def draw_movie(options, labels):
         ap.refuse(f"{options.movie}: there is no ffmpeg (package ffmpeg); a .gif needs none")
     shots = render_shots.read_all_shots(options.files[0], options.field)
     with render_vtk.display():
-        (images,), top = render_vtk.render_rows([shots], options.field, view_of(options), options.cage)
+        (images,), top = render_vtk.render_rows([shots], options.field, view_of(options), options.cage, options.path)
     duration = shots[-1].time - shots[0].time
     writer = (PillowWriter if is_gif else FFMpegWriter)(fps=max(1.0, (len(shots) - 1) / max(duration, 1e-3)))
     figure = compose([images[:1]], [[caption(shots[0], labels[0])]], options.field, top)
@@ -147,6 +147,7 @@ def main():
     parser.add_argument("--view", nargs=2, type=float, metavar=("AZIMUTH", "ELEVATION"),
                         help="of the eye, in degrees; default: the side that the tool touches, from a little above")
     parser.add_argument("--cage", action="store_true", help="draw the edges of the cage too")
+    parser.add_argument("--path", action="store_true", help="draw the tool's whole path too")
     parser.add_argument("--movie", metavar="FILE.mp4|FILE.gif", help="every frame of one result, no sheet")
     parser.add_argument("--dpi", type=int, default=300, help="points an inch of a sheet; default: %(default)s")
     parser.add_argument("-o", "--output", default="body.png", metavar="FILE.png", help="default: %(default)s")

@@ -12,6 +12,7 @@ MODES_OF = {"wetting": ("wet",), "drying": ("dry",), "push": ("push",), "pull": 
 CLAY = (0.80, 0.56, 0.43)
 
 
+PATH_POINTS = 1000  # of the tool's path, about
 FOOT = 0.3  # of a body's height, at most
 NEAREST = 60  # tets around a skin vertex among which the containing one is looked for
 
@@ -69,6 +70,7 @@ class Shot:
             turned = mesh["tool_vertices"][:] @ rotation_matrix(haptic["tool_orientation"][sample]).T
             self.tool_points = turned + self.tool_position
             self.force = haptic["force"][sample]
+            self.path = haptic["tool_position"][:: max(1, len(haptic["time"]) // PATH_POINTS)]
 
 
 def rotation_matrix(quaternion):

@@ -13,6 +13,7 @@ PANEL_PIXELS = {"wide": (1280, 960), "tall": (720, 960)}
 BACKGROUND = (0.965, 0.968, 0.972)
 TOOL = (0.86, 0.90, 0.94)
 ARROW = (0.10, 0.10, 0.12)
+PATH = (0.12, 0.30, 0.60)
 EDGE = 0.94  # of half a panel, up to which arrows go
 
 
@@ -82,6 +83,23 @@ def tool_actor(vtk, shot):
     actor.GetProperty().BackfaceCullingOn()  # its far side would shine through in patches
     actor.GetProperty().SetSpecular(0.5)
     actor.GetProperty().SetSpecularPower(40)
+    return actor
+
+
+def path_actor(vtk, path):
+    """Where the hand's point goes over the whole motion, where the body does not hide it."""
+    points = vtk.vtkPoints()
+    for place in path:
+        points.InsertNextPoint(*place)
+    line = vtk.vtkPolyLineSource()
+    line.SetPoints(points)
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputConnection(line.GetOutputPort())
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(*PATH)
+    actor.GetProperty().SetLineWidth(5)
+    actor.GetProperty().LightingOff()
     return actor
 
 
@@ -261,7 +279,7 @@ def fit_arrows(camera, points, shots, largest_force):
     return scale
 
 
-def render_rows(rows, field, view, shows_cage):
+def render_rows(rows, field, view, shows_cage=False, shows_path=False):
     """Images of all shots by one camera, one scale of colours and of forces; and the colours' top."""
     import vtk
 
@@ -284,6 +302,8 @@ def render_rows(rows, field, view, shows_cage):
             actors.append(cage_actor(vtk, shot))
         if shows_tool and shot.tool_points is not None:
             actors.append(tool_actor(vtk, shot))
+            if shows_path:
+                actors.append(path_actor(vtk, shot.path))
         if any(shot is one for one in with_arrow):
             actors.append(arrow_actor(vtk, shot, metres_per_newton * np.linalg.norm(shot.force)))
         return actors

@@ -240,6 +240,12 @@ class Figures(unittest.TestCase):
         shots[0].force = np.array([0.0, 0.004123, 0.0])
         self.assertEqual(render.caption(shots[0], "dry"), "dry\n0.15 s, 0.00412 N")
 
+    def test_the_path_is_that_of_the_tool(self):
+        with h5py.File(self.file("dry.h5"), "r+") as result:
+            result["haptic/tool_position"][:, 2] = np.linspace(0.0, 0.1, 200)
+            shot = render_shots.Shot(result, result["frames/000006"], "saturation")
+            np.testing.assert_array_equal(shot.path, result["haptic/tool_position"][:])
+
     def test_rotations_follow_the_quaternion(self):
         half = np.sqrt(0.5)
         np.testing.assert_allclose(render_shots.rotation_matrix([half, 0, 0, half]) @ [0, 0, 1], [0, -1, 0], atol=1e-15)
