@@ -104,9 +104,9 @@ class New(unittest.TestCase):
     def test_a_motion_out_of_all_reason_beside_the_body_is_taken_in_millimetres(self):
         write_tap(self.folder / "fast.csv", 0.055, 0.011, unit=1e-3)  # 11 m in 0.05 s if it were metres
         for name, words in (("fast.csv", "fast.csv: taken in mm: the motion is 11 m wide"),
-                            ("tap.csv", "tap.csv: taken in mm: in metres the motion would be ")):
+                            ("tap.csv", "tap.csv: taken in mm: place ")):
             with self.subTest(name):
-                if name == "tap.csv":  # slower than a hand and narrower than 5 m, but 37 times as wide as the body
+                if name == "tap.csv":  # slower than a hand and narrower than 5 m, but 50 m from the origin if it were metres
                     write_tap(self.folder / name, 0.0455, 0.0026, unit=1e-3, ticks=2000)
                 out = self.call("new", "cube.obj", name, "--force")
                 self.assertIn(words, out)
