@@ -360,7 +360,7 @@ class Figures(unittest.TestCase):
         self.folder.joinpath("text.h5").write_text("no HDF5")
         with h5py.File(self.file("other.h5"), "w"):
             pass
-        self.expect_refusal("cannot be read", "plot_force.py", "text.h5")
+        self.expect_refusal("text.h5: is no HDF5 file", "plot_force.py", "text.h5")
         self.expect_refusal("is not a result file of argil run", "plot_water.py", "other.h5")
         self.expect_refusal("2 files but 1 labels", "plot_force.py", "dry.h5", "wet.h5", "--labels", "dry")
 
