@@ -109,12 +109,10 @@ bool holds_all_that_is_read(const Parser& parser) {
 
 /// As where several sensors take turns in one table, or a tracker lost its target.
 bool holds_no_place(const Parser& parser) {
-  bool is_empty = true;
-  for (const Role role : {kX, kY, kZ}) {
-    if (is_lost(parser.cell(role))) return true;
-    is_empty = is_empty && trim(parser.cell(role)).empty();
-  }
-  return is_empty;
+  constexpr std::array kPlace = {kX, kY, kZ};
+  return std::all_of(std::begin(kPlace), std::end(kPlace), [&](Role role) {
+    return is_lost(parser.cell(role)) || trim(parser.cell(role)).empty();
+  });
 }
 
 }  // namespace

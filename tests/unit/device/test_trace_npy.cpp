@@ -109,7 +109,7 @@ TEST_F(Npy, WhatIsNoTableOfNumbersIsRefused) {
                  "holds 120 bytes");  // 3 times it wraps round
   expect_refused(make_file("<f8", "False", "(0, 5)", ""), "holds 0 bytes");
   std::vector<double> broken = kByRows;
-  broken[8] = std::numeric_limits<double>::quiet_NaN();
+  for (const std::size_t place : {6U, 8U, 9U}) broken[place] = std::numeric_limits<double>::quiet_NaN();
   const Trace found = read(make_file("<f8", "False", "(3, 5)", bytes_of<double>(broken)));
   EXPECT_EQ(found.time, (std::vector<double>{0.0, 0.02}));
   EXPECT_EQ(found.notes, (std::vector<std::string>{"rows without a place, left out: 1, the first in row 1"}));

@@ -264,7 +264,7 @@ TEST(ResultReader, RefusesWhatIsNoResultFile) {
   const TempFolder folder;
   ARGIL_EXPECT_THROW_WITH(ResultReader(folder / "absent.h5"), IoError, "cannot be read: No such file");
   ARGIL_EXPECT_THROW_WITH(ResultReader(folder.write("text.h5", "not HDF5 at all")), IoError,
-                          "file signature");
+                          "is no HDF5 file");
   hdf5::File::create(folder / "other.h5").close();
   ARGIL_EXPECT_THROW_WITH(ResultReader(folder / "other.h5"), InputError, "not a result file");
   {
