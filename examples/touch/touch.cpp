@@ -242,6 +242,7 @@ void* open_device(const char* argument, const char** reason) {
   const HDerror fault = take_fault();
   if (touch->handle == HD_INVALID_HANDLE || fault != HD_SUCCESS) {
     problem = fault != HD_SUCCESS ? explain(fault) : "no device: check its cable, its power and its name";
+    if (touch->handle != HD_INVALID_HANDLE) hdDisableDevice(touch->handle);
     *reason = problem.c_str();
     return nullptr;
   }

@@ -85,6 +85,14 @@ bool has_fault(const StandIn& s) {
   return now(s) >= find_time(s, "fault=");
 }
 
+/// The library notes the error that the script has for this place, as start_error=770.
+void fail_where_asked(StandIn& s, const std::string& place) {
+  const std::size_t at = s.script.find(place + "_error=");
+  if (at == std::string::npos) return;
+  const char* const code = s.script.c_str() + at + place.size() + std::strlen("_error=");
+  s.errors.push_back(static_cast<HDerror>(std::strtoul(code, nullptr, 10)));
+}
+
 /// From 2 mm over the ball 2.5 mm into it and out again.
 double find_height(double t) {
   const double share = t < kStill ? 0.0 : 0.5 - 0.5 * std::cos(2.0 * 3.14159265358979323846 * (t - kStill));
@@ -175,6 +183,7 @@ HHD hdInitDevice(HDstring name) {
   s.is_calibrated = s.script.find("uncalibrated") == std::string::npos;
   s.is_outdated = s.script.find("outdated") != std::string::npos;
   if (s.log != nullptr) s.log->is_disabled = 0;
+  fail_where_asked(s, "open");
   return kHandle;
 }
 
@@ -282,7 +291,8 @@ HDenum hdCheckCalibration() {
   StandIn& s = here();
   const Lock lock(s);
   if (!s.is_in_frame) misuse(s);
-  if (!s.is_calibrated) return HD_CALIBRATION_NEEDS_MANUAL_INPUT;
+  fail_where_asked(s, "look");
+  if (!s.is_calibrated && now(s) < find_time(s, "put_in@")) return HD_CALIBRATION_NEEDS_MANUAL_INPUT;
   return s.is_outdated ? HD_CALIBRATION_NEEDS_UPDATE : HD_CALIBRATION_OK;
 }
 
@@ -302,6 +312,7 @@ void hdStartScheduler() {
   s.is_ending = false;
   s.start = Clock::now();
   if (s.log != nullptr) s.log->is_stopped = 0;
+  fail_where_asked(s, "start");
   s.servo = std::thread([&s] { serve(s); });
 }
 
@@ -316,6 +327,7 @@ void hdStopScheduler() {
 HDSchedulerHandle hdScheduleAsynchronous(HDSchedulerCallback call, void* data, HDushort) {
   StandIn& s = here();
   const Lock lock(s);
+  fail_where_asked(s, "schedule");
   return schedule(s, call, data, nullptr);
 }
 

@@ -24,6 +24,7 @@ MOST = 3.3  # [N] that the stand-in declares
 HEAD = ["num_rows", "num_misuses", "is_enabled", "is_stopped", "is_disabled", "num_updates"]
 ROW = numpy.dtype([("time", "f8"), ("pen_height", "f8"), ("force", "f8", 3), ("buttons", "i8"), ("fault", "i8")])
 NUM_ROWS = 60000
+NONE, SAMPLE = 0, 1  # of plugin_api.h
 # The device's axes (x right, y up, z to the user) in the world, whose z is up: (x, y, z) is (x, -z, y).
 TO_WORLD = numpy.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)
 SCENE = {
@@ -152,6 +153,30 @@ class Sessions(WithLog):
         self.assertFalse((self.folder / "live.h5").exists())
         self.assertEqual((self.log.is_stopped, self.log.is_disabled, self.log.num_misuses), (1, 1, 0))
 
+    def test_a_pen_that_is_put_into_its_inkwell_in_time(self):
+        code, said = self.call("uncalibrated put_in@0.5", "--duration", "0.5")
+        self.assertEqual(code, 0, said)
+        self.assertEqual(said.count("put the pen into its inkwell"), 1)
+
+    def test_an_error_on_the_way_to_the_first_sample_is_said(self):
+        header = (Path(__file__).parents[2] / "support/openhaptics/HD/hd.h").read_text()
+        code = header.split("#define HD_COMM_ERROR ")[1].split("u")[0]
+        for place in "open", "start", "look", "schedule":
+            with self.subTest(place):
+                self.log = Log(self.folder / "log")
+                exit_code, said = self.call(f"{place}_error={code}", "--duration", "0.5")
+                self.assertEqual(exit_code, 4, said)
+                self.assertIn("check its cable", said)
+                self.assertEqual((self.log.is_disabled, self.log.num_misuses), (1, 0))
+                self.assertFalse((self.folder / "live.h5").exists())
+
+    def test_what_the_device_says_of_itself_is_in_SI_units(self):
+        # The data sheet's workspace, 160 W x 120 H x 70 D mm, and a stiffness of 1 N/mm.
+        done = subprocess.run([ARGIL, "devices", f"plugin:{TOUCH}"], capture_output=True, text=True, timeout=60, check=False,
+                              env={**os.environ, "ARGIL_STAND_IN": "", "ARGIL_STAND_IN_LOG": self.log.file})
+        self.assertIn("ready, Stand-in for a Touch, largest force 3.3 N, torque not stated, stiffness 1000 N/m, rate 1000 Hz, "
+                      "workspace 0.16 x 0.12 x 0.07 m", done.stdout)
+
     def test_a_calibration_that_is_out_of_date_is_updated_once(self):
         code, said = self.call("outdated", "--duration", "0.5")
         self.assertEqual(code, 0, said)
@@ -246,6 +271,16 @@ class ByHand(WithLog):
             self.plugin.close(self.device)
         self.device = None
 
+    def open_again(self, script):
+        self.close()
+        self.log = Log(self.folder / "log")
+        os.environ["ARGIL_STAND_IN"] = script
+        self.device = self.plugin.open(b"", ctypes.byref(self.reason))
+        self.assertTrue(self.device, self.reason.value)
+
+    def read(self):
+        return self.plugin.read(self.device, ctypes.byref(Sample()), ctypes.byref(self.reason))
+
     def write(self, x, y, z):
         self.plugin.write(self.device, (ctypes.c_double * 3)(x, y, z), (ctypes.c_double * 3)())
 
@@ -262,6 +297,26 @@ class ByHand(WithLog):
         self.hold((30.0, 0.0, 40.0), (0.6 * MOST, 0.0, 0.8 * MOST))
         self.hold((1e300, 0.0, 0.0), (MOST, 0.0, 0.0))
         self.hold((1.0, 2.0, -0.5), (1.0, 2.0, -0.5))
+
+    def test_a_place_is_given_once(self):
+        self.open_again("stalls@0.3")
+        self.assertEqual(self.read(), SAMPLE)
+        time.sleep(0.4)
+        self.assertIn(self.read(), (SAMPLE, NONE))  # the last one before it stalls
+        self.assertEqual([self.read() for _ in range(5)], [NONE] * 5)
+
+    def test_after_a_fault_the_motors_rest_whatever_is_asked(self):
+        header = (Path(__file__).parents[2] / "support/openhaptics/HD/hd.h").read_text()
+        self.open_again("fault=" + header.split("#define HD_WARM_MOTORS ")[1].split("u")[0] + "@0.3")
+        end = time.monotonic() + 0.8
+        while time.monotonic() < end:
+            self.write(1.0, 0.0, 0.0)
+            time.sleep(0.001)
+        rows = self.log.rows
+        first = int(numpy.argmax(rows["fault"]))
+        self.assertGreater(first, 0)
+        self.assertGreater(self.log.norms[:first].max(), 0.9)
+        self.assertEqual(self.log.norms[first + 1:].max(), 0.0)
 
     def test_a_force_that_is_no_number_is_none(self):
         for wrong in float("nan"), float("inf"):
