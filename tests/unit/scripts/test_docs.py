@@ -15,6 +15,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -99,6 +100,7 @@ class Newcomer:
         self.has_viewer = Path(build, "share/argil/viewer.html").exists()
         self.helps = {}
         self.failures = []
+        self.seconds = float("nan")  # of the five commands
         tests = subprocess.run(["ctest", "--test-dir", build, "-N"], capture_output=True, text=True, check=True)
         self.tests = set(re.findall(r"Test +#\d+: (\S+)", tests.stdout))
 
@@ -148,7 +150,10 @@ class Newcomer:
                 os.symlink(ROOT / name, Path(folder, name))
             os.symlink(self.build, Path(folder, "build"))
             for block in blocks:
+                start = time.monotonic()
                 self.type(page, shortened(block), folder)
+                if "\n".join(FIVE_COMMANDS) in block:
+                    self.seconds = time.monotonic() - start
             if page == Path("README.md"):
                 self.failures += find_faults_of_five_commands(Path(folder, "tour"), self.has_viewer)
             for command in dict.fromkeys(commands):
@@ -177,6 +182,7 @@ def main(build):
     if find_changes() != changes:
         newcomer.failures.append("the commands of the pages changed results, scenarios or traces of the project")
     print("\n".join(newcomer.failures))
+    print(f"the five commands took {newcomer.seconds:.0f} s")
     print(f"{len(pages)} pages: {blocks} blocks were typed, {commands} commands in the text held against their help")
     return 1 if newcomer.failures or blocks < 7 or commands < 50 else 0
 
