@@ -139,6 +139,14 @@ void fix_and_load(const Scenario& s, const Halvings& halvings, Scene& scene) {
 
 namespace {
 
+bool holds_all(const Scenario& s, const sim::Body& body) {
+  const solid::Elements elements = solid::make_elements(body.mesh, body.topology, s.params.solid.element);
+  const solid::Constraints constraints = solid::find_constraints(elements, body.supports);
+  int node = 0;
+  while (node < elements.rest.cols() && constraints.is_held(node)) ++node;
+  return node == elements.rest.cols();
+}
+
 std::string find_free_motion(const Scenario& s, const sim::Body& body) {
   const solid::Elements elements = solid::make_elements(body.mesh, body.topology, s.params.solid.element);
   return solid::find_rigid_motion(elements, body.topology, solid::find_constraints(elements, body.supports));
@@ -155,6 +163,10 @@ void check_equilibrium_supports(const Scenario& s, const sim::Body& body) {
 
 std::string describe_free_motion(const Scenario& s, const sim::Body& body) {
   if (body.supports.empty()) return "";  // which is a doubt of the scenario
+  if (holds_all(s, body))
+    return "supports: /body/fixed holds every vertex: the body cannot give way; hold its foot alone, and "
+           "check "
+           "that places are in metres";
   const std::string motion = find_free_motion(s, body);
   if (motion.empty()) return "";
   return "supports: " + motion +

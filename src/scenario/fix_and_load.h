@@ -16,7 +16,8 @@ void check_supports_of_vertices(const Scenario& s, const Scene& scene);
 /// InputError.
 void check_equilibrium_supports(const Scenario& s, const sim::Body& body);
 
-/// In a motion a body may turn or move as a whole: a note of how its supports leave it free to, or empty.
+/// In a motion a body may turn or move as a whole, or not at all: a note of how its supports leave it free to, or of
+/// supports that hold all of it; empty elsewhere.
 std::string describe_free_motion(const Scenario& s, const sim::Body& body);
 
 }  // namespace argil::scenario

@@ -72,6 +72,10 @@ class FreeMotion(unittest.TestCase):
         self.assertEqual(self.validate(FOOT), "")
         self.assertEqual(self.validate(CORNER, OTHER_CORNER, box((0.04, 0.04, 0), (0.04, 0.04, 0))), "")
 
+    def test_where_all_is_held_that_is_said(self):
+        self.assertIn("/body/fixed holds every vertex: the body cannot give way",
+                      self.validate({"kind": "half_space", "normal": [0, 0, 1], "offset_m": 25}))
+
     def test_where_nothing_is_held_that_is_all_that_is_said(self):
         self.assertEqual(self.validate(), "")
         self.assertIn("nothing holds the body", self.call("validate", "scene.json")[1])
