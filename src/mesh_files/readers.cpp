@@ -1,6 +1,7 @@
 #include "mesh_files/readers.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <utility>
 
@@ -60,12 +61,20 @@ mesh::TetMesh read_all_tets(const std::string& file, double scale) {
                    "use .msh, .mesh, .node/.ele, .vtk, .vtu or .veg");
 }
 
+using SurfaceReader = mesh::TriangleMesh (*)(const std::string& file, double scale);
+
+// By its ending; null where it is no surface's.
+SurfaceReader find_surface_reader(const std::string& ending) {
+  constexpr std::array<std::pair<std::string_view, SurfaceReader>, 4> kReaders = {
+      {{".obj", read_obj}, {".off", read_off}, {".ply", read_ply}, {".stl", read_stl}}};
+  for (const auto& [known, reader] : kReaders)
+    if (ending == known) return reader;
+  return nullptr;
+}
+
 mesh::TriangleMesh read_all_triangles(const std::string& file, double scale) {
   const std::string ending = find_ending(file);
-  if (ending == ".obj") return read_obj(file, scale);
-  if (ending == ".off") return read_off(file, scale);
-  if (ending == ".stl") return read_stl(file, scale);
-  if (ending == ".ply") return read_ply(file, scale);
+  if (const SurfaceReader read = find_surface_reader(ending)) return read(file, scale);
   throw InputError(file, "", "ending \"" + ending + "\" is no known surface format",
                    "use .obj, .off, .ply or .stl");
 }
@@ -79,17 +88,20 @@ int FileVertices::find(int place) const {
 }
 
 std::string FileVertices::describe(const std::string& file, const std::string& element) const {
-  const std::string turned = is_mirrored
-                                 ? file + ": every " + element +
-                                       " is numbered the other way round, with a negative volume; two of its "
-                                       "corners are swapped"
-                                 : "";
+  std::string turned;
+  if (is_mirrored)
+    turned = file + ": every " + element +
+             " is numbered the other way round, with a negative volume; two of its corners are swapped";
   if (num_left_out() == 0) return turned;
   int first = 0;
   while (find(first) >= 0) ++first;
   return file + ": " + std::to_string(num_left_out()) + " of " + std::to_string(num_in_file) +
          " vertices belong to no " + element + " and are left out, number " + std::to_string(first) +
          " (from 0) the first" + (turned.empty() ? "" : "; " + turned);
+}
+
+bool is_surface(const std::string& file) {
+  return find_surface_reader(find_ending(file)) != nullptr;
 }
 
 mesh::TetMesh read_tet_mesh(const std::string& file, double scale, FileVertices* vertices) {

@@ -22,6 +22,9 @@ struct FileVertices {
   std::string describe(const std::string& file, const std::string& element) const;
 };
 
+/// By its ending: does read_triangle_mesh read the file?
+bool is_surface(const std::string& file);
+
 /// Reads a tetrahedral mesh by its ending: Gmsh .msh 2 and 4.1 (ASCII, binary), Medit .mesh (ASCII), TetGen
 /// .node/.ele (either name), legacy .vtk (ASCII, binary), .vtu (ASCII, base64 or raw, plain or zlib), Vega
 /// .veg. `scale` > 0 multiplies coordinates to metres. One number per tet in the file becomes a cell field:

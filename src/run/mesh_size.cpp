@@ -2,13 +2,11 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <sstream>
 #include <utility>
 
 #include "base/error.h"
-#include "base/lower_case.h"
 #include "contact/tool_shape.h"
 #include "mesh_files/readers.h"
 #include "output/text.h"
@@ -43,13 +41,8 @@ double size_of(const mesh::Box& box) {
   return (box.high - box.low).norm();
 }
 
-bool is_surface(const std::string& file) {
-  const std::string ending = to_lower_case(std::filesystem::path(file).extension().string());
-  return ending == ".obj" || ending == ".off" || ending == ".stl" || ending == ".ply";
-}
-
 mesh::Box read_box(const std::string& file) {
-  if (!is_surface(file)) return box_of(mesh_files::read_tet_mesh(file).vertices);
+  if (!mesh_files::is_surface(file)) return box_of(mesh_files::read_tet_mesh(file).vertices);
   const mesh::TriangleMesh surface = mesh_files::read_triangle_mesh(file);
   mesh::Box box;
   for (const int v : surface.triangles.reshaped()) box.include(surface.vertices.col(v));
@@ -57,7 +50,7 @@ mesh::Box read_box(const std::string& file) {
 }
 
 std::string find_hole(const std::string& file) {
-  if (!is_surface(file)) return "";
+  if (!mesh_files::is_surface(file)) return "";
   try {
     contact::require_closed_surface(mesh_files::read_triangle_mesh(file), "");
   } catch (const InputError& error) {

@@ -12,9 +12,6 @@ void say(const std::string& subject, const std::string& text);
 /// Of a box, from corner to corner [m].
 double size_of(const mesh::Box& box);
 
-/// By its ending: does the file hold triangles?
-bool is_surface(const std::string& file);
-
 /// Of the vertices that the body has, in the file's unit: a surface's may hold others. Throws InputError.
 mesh::Box read_box(const std::string& file);
 

@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/print.h"
 #include "base/read_file.h"
+#include "mesh_files/readers.h"
 #include "output/text.h"
 #include "run/files.h"
 #include "run/mesh_size.h"
@@ -133,7 +134,7 @@ void Draft::set_trace(const std::string& key, const std::string& value) {
 }
 
 std::string Draft::print(const std::vector<Setting>& fixed) const {
-  const std::string kind = is_surface(m_options.mesh) ? "/body/surface" : "/body/mesh";
+  const std::string kind = mesh_files::is_surface(m_options.mesh) ? "/body/surface" : "/body/mesh";
   std::vector<Setting> all = {
       {"/$schema", scenario::quote(kSchemaName)},
       {"/about", scenario::quote(fs::path(m_options.mesh).filename().string() + ", touched as in " +
