@@ -30,10 +30,6 @@ bool is_second_header(const Parser& parser) {
   return !parser.options.columns.empty() && parser.raw.line.empty() && names_a_place(parser.fields);
 }
 
-bool is_comment(std::string_view line) {
-  return line.starts_with('#') || line.starts_with('%');
-}
-
 /// Those above the first row.
 std::vector<Comment> read_comments(std::string_view bytes, const Start& start) {
   std::vector<Comment> comments;

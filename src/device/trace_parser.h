@@ -55,6 +55,9 @@ void read_header_line(Parser& parser, std::size_t line, std::string_view comment
 /// Refuses a body that is not the one whose hash the header states.
 void check_body(const Parser& parser, std::string_view body);
 
+/// Is a line of a table left to people?
+bool is_comment(std::string_view line);
+
 /// The row from which a table is read: its names or, where something else names the columns, its first
 /// sample. Lines above it are free text.
 struct Start {

@@ -16,10 +16,6 @@ struct Line {
   std::size_t number = 0;
 };
 
-bool is_comment(std::string_view line) {
-  return line.starts_with('#') || line.starts_with('%');
-}
-
 /// The first lines without comments and empty ones.
 std::vector<Line> read_lines(std::string_view bytes) {
   std::vector<Line> found;
@@ -110,6 +106,10 @@ std::size_t find_numbers(const std::vector<Line>& lines, const std::vector<std::
 }
 
 }  // namespace
+
+bool is_comment(std::string_view line) {
+  return line.starts_with('#') || line.starts_with('%');
+}
 
 Start find_start(std::string_view bytes, const TraceOptions& options) {
   const std::vector<Line> lines = read_lines(bytes);
