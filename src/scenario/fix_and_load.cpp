@@ -139,23 +139,27 @@ void fix_and_load(const Scenario& s, const Halvings& halvings, Scene& scene) {
 
 namespace {
 
-bool holds_all(const Scenario& s, const sim::Body& body) {
-  const solid::Elements elements = solid::make_elements(body.mesh, body.topology, s.params.solid.element);
-  const solid::Constraints constraints = solid::find_constraints(elements, body.supports);
-  int node = 0;
-  while (node < elements.rest.cols() && constraints.is_held(node)) ++node;
-  return node == elements.rest.cols();
-}
+/// The body's elements and what its supports hold of them.
+struct Held {
+  Held(const Scenario& s, const sim::Body& body)
+      : elements(solid::make_elements(body.mesh, body.topology, s.params.solid.element)),
+        constraints(solid::find_constraints(elements, body.supports)) {}
 
-std::string find_free_motion(const Scenario& s, const sim::Body& body) {
-  const solid::Elements elements = solid::make_elements(body.mesh, body.topology, s.params.solid.element);
-  return solid::find_rigid_motion(elements, body.topology, solid::find_constraints(elements, body.supports));
-}
+  bool is_whole() const {
+    int node = 0;
+    while (node < elements.rest.cols() && constraints.is_held(node)) ++node;
+    return node == elements.rest.cols();
+  }
+
+  solid::Elements elements;
+  solid::Constraints constraints;
+};
 
 }  // namespace
 
 void check_equilibrium_supports(const Scenario& s, const sim::Body& body) {
-  const std::string motion = find_free_motion(s, body);
+  const Held held(s, body);
+  const std::string motion = solid::find_rigid_motion(held.elements, body.topology, held.constraints);
   if (!motion.empty())
     throw InputError(s.file, "/body/fixed", "does not hold the body: " + motion,
                      "hold at least three vertices of it that are not on a line");
@@ -163,11 +167,11 @@ void check_equilibrium_supports(const Scenario& s, const sim::Body& body) {
 
 std::string describe_free_motion(const Scenario& s, const sim::Body& body) {
   if (body.supports.empty()) return "";  // which is a doubt of the scenario
-  if (holds_all(s, body))
-    return "supports: /body/fixed holds every vertex: the body cannot give way; hold its foot alone, and "
-           "check "
-           "that places are in metres";
-  const std::string motion = find_free_motion(s, body);
+  const Held held(s, body);
+  if (held.is_whole())
+    return "supports: /body/fixed holds every vertex: the body cannot give way; hold its foot alone, "
+           "and check that places are in metres";
+  const std::string motion = solid::find_rigid_motion(held.elements, body.topology, held.constraints);
   if (motion.empty()) return "";
   return "supports: " + motion +
          ", held by its mass alone; where that is not meant, hold at least three vertices of it that are not "
