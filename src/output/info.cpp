@@ -225,9 +225,8 @@ std::string describe_failure(const Failure& failure) {
   if (says("volume ratio"))
     remedy =
         "; the clay would turn inside out there, pressed further than cell, step or law bear: smaller cells "
-        "(/body/cells/near_tool_m), shorter steps (/haptics/physics_period_ticks), a /dynamics/model of "
-        "large "
-        "strain, or /dynamics/strict false, which limits the motion";
+        "(/body/cells/near_tool_m), shorter steps (/haptics/physics_period_ticks), a "
+        "/dynamics/model of large strain, or /dynamics/strict false, which limits the motion";
   else if (says("trembles"))
     remedy =
         "; hand and contact shake each other: a lower /contact/stiffness_Pa_per_m, shorter steps "
@@ -238,14 +237,12 @@ std::string describe_failure(const Failure& failure) {
         "/dynamics/integrator backward_euler";
   else if (says("Newton") || says("line search"))
     remedy =
-        "; the step is too long for its iterations: shorter steps (/haptics/physics_period_ticks), or more "
-        "of "
-        "/dynamics/newton/max_iterations";
+        "; the step is too long for its iterations: shorter steps (/haptics/physics_period_ticks), or "
+        "more of /dynamics/newton/max_iterations";
   else if (says("residual") || says("positive definite") || says("balance"))
     remedy =
-        "; the system is too stiff for its solver: /dynamics/solver/kind cholesky, shorter steps, or a mesh "
-        "without "
-        "flat tets";
+        "; the system is too stiff for its solver: /dynamics/solver/kind cholesky, shorter steps, or a "
+        "mesh without flat tets";
   return to_string(failure) + remedy;
 }
 

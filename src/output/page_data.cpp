@@ -109,7 +109,7 @@ PageSurface add_surface(PageBlock& block, const SurfaceFrames& surface,
   PageSurface page{frames, extent.low, extent.high, (extent.high - extent.low).maxCoeff() / kGridSteps, {}};
   page.fields.push_back({"saturation", "saturation S", "–", "wet", 1.0});
   if (extent.plastic_strain > 0.0)
-    page.fields.push_back({"plastic_strain", "plastic strain ‖ε_p‖", "–", "strained", extent.plastic_strain});
+    page.fields.push_back({"plastic_strain", "plastic strain ‖εₚ‖", "–", "strained", extent.plastic_strain});
   if (extent.influence > 0.0)
     page.fields.push_back({"influence", "region of influence", "–", "strained", 1.0});
 

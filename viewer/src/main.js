@@ -11,9 +11,6 @@ function fillList(list, texts) {
   list.replaceChildren(...texts.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
 }
 
-/** A title with its index as one. */
-const readable = (title) => title.replace("ε_p", "εₚ");
-
 function say(words) {
   $("trouble").hidden = false;
   $("trouble").textContent = words;
@@ -50,7 +47,7 @@ class Page {
     $("title").textContent = result.file;
     $("summary").textContent = result.summary;
     fillList($("notes"), result.notes);
-    $("field").replaceChildren(...result.fields_shown.map((field) => new Option(readable(field.title), field.name)));
+    $("field").replaceChildren(...result.fields_shown.map((field) => new Option(field.title, field.name)));
     $("slider").max = result.frames.length - 1;
   }
 
@@ -68,7 +65,7 @@ class Page {
     this.field = this.result.fields_shown.find((field) => field.name === $("field").value);
     this.table = rampTable(this.field.ramp);
     drawLegend($("legend-bar"), this.table);
-    $("legend-title").textContent = `${readable(this.field.title)} [${this.field.unit}]`;
+    $("legend-title").textContent = `${this.field.title} [${this.field.unit}]`;
     fillList($("legend-ticks"), [1, 0.75, 0.5, 0.25, 0].map((part) => +(part * this.field.top).toPrecision(3)));
     this.show(this.frame);
   }
