@@ -15,8 +15,11 @@ def open_file(file):
     try:
         result = h5py.File(os.fspath(file), "r")
     except OSError as error:
-        reason = "a run writes it at present; wait for its end" if "unable to lock" in str(error) else \
-            "is no HDF5 file, as results of argil run are" if "file signature not found" in str(error) else f"cannot be read: {error}"
+        reason = f"cannot be read: {error}"
+        if "unable to lock" in str(error):
+            reason = "a run writes it at present; wait for its end"
+        elif "file signature not found" in str(error):
+            reason = "is no HDF5 file, as results of argil run are"
         raise IoError(f"{os.fspath(file)}: {reason}") from None
     if _attributes(result).get("format", "") != "argil-result":
         result.close()
