@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/utf16.h"
 #include "unit/device/recordings.h"
 
 namespace argil::device {
@@ -68,14 +69,10 @@ TEST(RecordingFiles, MayEndLinesByACarriageReturn) {
 }
 
 TEST(RecordingFiles, InUtf16WithoutAByteOrderMarkAreRefusedByName) {
-  std::string little;
-  std::string big;
-  for (const char c : kTable) {
-    little += {c, '\0'};
-    big += {'\0', c};
-  }
-  expect_refused(little, "is text in UTF-16LE without a byte order mark", "iconv -f UTF-16LE -t UTF-8 ");
-  expect_refused(big, "is text in UTF-16BE without a byte order mark", "iconv -f UTF-16BE -t UTF-8 ");
+  expect_refused(argil::test::to_utf16(kTable, false), "is text in UTF-16LE without a byte order mark",
+                 "iconv -f UTF-16LE -t UTF-8 ");
+  expect_refused(argil::test::to_utf16(kTable, true), "is text in UTF-16BE without a byte order mark",
+                 "iconv -f UTF-16BE -t UTF-8 ");
 }
 
 TEST(RecordingFiles, ThatArePackedAreRefusedWithTheWayToUnpackThem) {

@@ -1,6 +1,7 @@
 // Recordings as other programs write them: separators, decimal commas, names of columns. Values by hand.
 #include <gtest/gtest.h>
 
+#include "support/utf16.h"
 #include "unit/device/recordings.h"
 
 namespace argil::device {
@@ -173,14 +174,8 @@ TEST(Recordings, WithAPlainNameAndAnotherOfItsKindTakeThePlainOne) {
 
 TEST(Recordings, InUtf16AreRead) {
   const std::string text = "t,x,y,z\n0,1.5,-2,3\n0.5,4,5,0.25\n";
-  std::string little = "\xFF\xFE";
-  std::string big = "\xFE\xFF";
-  for (const char c : text) {
-    little += {c, '\0'};
-    big += {'\0', c};
-  }
-  expect_two_samples(read(little), "little");
-  expect_two_samples(read(big), "big");
+  expect_two_samples(read("\xFF\xFE" + argil::test::to_utf16(text, false)), "little");
+  expect_two_samples(read("\xFE\xFF" + argil::test::to_utf16(text, true)), "big");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "sample_files.h"
 #include "support/surface_report.h"
 #include "support/temp_folder.h"
+#include "support/utf16.h"
 
 namespace argil::mesh_files {
 namespace {
@@ -103,12 +104,8 @@ TEST(ReadSurfaces, AByteOrderMarkAndUtf16AreNoPartOfTheText) {
   for (const SampleFile& sample : test::make_surface_samples()) {
     if (sample.content.find('\0') != std::string::npos) continue;  // binary
     expect_tetrahedron(read_text(folder, sample.name, "\xEF\xBB\xBF" + sample.content), sample.name);
-    std::string little = "\xFF\xFE";
-    std::string big = "\xFE\xFF";
-    for (const char c : sample.content) {
-      little += {c, '\0'};
-      big += {'\0', c};
-    }
+    const std::string little = "\xFF\xFE" + test::to_utf16(sample.content, false);
+    const std::string big = "\xFE\xFF" + test::to_utf16(sample.content, true);
     expect_tetrahedron(read_text(folder, sample.name, little), sample.name);
     expect_tetrahedron(read_text(folder, sample.name, big), sample.name);
   }
@@ -137,12 +134,8 @@ TEST(RefuseSurfaces, Utf16WithoutAMarkIsNamed) {
   const test::TempFolder folder;
   for (const SampleFile& sample : test::make_surface_samples()) {
     if (sample.content.find('\0') != std::string::npos) continue;  // binary
-    std::string little;
-    std::string big;
-    for (const char c : sample.content) {
-      little += {c, '\0'};
-      big += {'\0', c};
-    }
+    const std::string little = test::to_utf16(sample.content, false);
+    const std::string big = test::to_utf16(sample.content, true);
     for (const std::string& wide : {little, big, "\xFF\xFE" + little.substr(0, little.size() - 1)})
       ARGIL_EXPECT_THROW_WITH(
           read_text(folder, sample.name, wide), InputError,

@@ -13,6 +13,7 @@
 #include "mesh_files/readers.h"
 #include "sample_files.h"
 #include "support/temp_folder.h"
+#include "support/utf16.h"
 
 namespace argil::mesh_files {
 namespace {
@@ -91,16 +92,13 @@ TEST(RefuseTets, Utf16WithoutAMarkIsNamed) {
   const test::TempFolder folder;
   for (const SampleFile& sample : test::make_tet_samples()) {
     if (sample.content.find('\0') != std::string::npos) continue;  // binary
-    SampleFile little{sample.name, "", sample.beside, sample.beside_content};
-    SampleFile big = little;
-    for (const char c : sample.content) {
-      little.content += {c, '\0'};
-      big.content += {'\0', c};
-    }
-    for (const SampleFile& wide : {little, big})
+    SampleFile wide = sample;
+    for (const bool is_big : {false, true}) {
+      wide.content = test::to_utf16(sample.content, is_big);
       ARGIL_EXPECT_THROW_WITH(
           read_sample(folder, wide), InputError,
           sample.name + ": is text in UTF-16, without a byte order mark or cut; save it as UTF-8");
+    }
   }
 }
 
