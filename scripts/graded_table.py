@@ -28,6 +28,7 @@ DEMONSTRATION = ["/dynamics/model=hencky", "/material/plasticity/enabled=false",
                  "/haptics/physics_period_ticks=10"]
 DEMONSTRATION_LIMIT = 1.914  # [N], to 0.004: 60 000 and 240 000 graded tets, whose error falls as the square root of their number
 FLOW = ["/trace/duration_s=0.9", "/haptics/physics_period_ticks=5", "/material/plasticity/strength_Pa=1500", "/material/youngs_modulus_Pa=140000"]
+SMALL = {"near_tool_m": 0.001 / 2.4, "growth": 0.35}  # under a patch of 1 mm
 PUNCH, RIM = 0.001, 48  # its radius [m]; balls of small cells along its rim
 
 
@@ -40,11 +41,12 @@ def run(argil, folder, scenario, *settings):
         return np.linalg.norm(file["haptic/force"][:], axis=1), len(file["mesh/tets"])
 
 
-def write_press(folder, name, tool, height, depth, cells=None):
-    """A tool that goes slowly down into the middle of a large elastic block and waits; `height`: of its place over its tip."""
+def write_press(folder, name, tool, height, depth, cells=None, place=(0, 0)):
+    """A tool that goes slowly down into a large elastic block and waits; `height`: of its place over its tip, `place`: from the
+    middle [m]."""
     t = np.arange(0, SECONDS + 1e-9, 0.001)
     z = EDGE + height + GAP - (GAP + depth) * np.minimum(1, t / DOWN)
-    np.savetxt(folder / f"{name}.csv", np.c_[t, 0 * t, 0 * t, z], delimiter=",", header="t,x,y,z", comments="")
+    np.savetxt(folder / f"{name}.csv", np.c_[t, 0 * t + place[0], 0 * t + place[1], z], delimiter=",", header="t,x,y,z", comments="")
     scenario = {
         "about": "A small tool on a large elastic block.",
         "body": {"shape": {"kind": "box", "size_m": EDGE, "skin_triangles": 0}, "cells": {"kind": "graded", **(cells or {})},
@@ -59,8 +61,8 @@ def write_press(folder, name, tool, height, depth, cells=None):
     return folder / f"{name}.json"
 
 
-def write_tip(folder, radius, depth):
-    return write_press(folder, "tip", {"shape": {"kind": "sphere", "radius_m": radius}}, radius, depth)
+def write_tip(folder, radius, depth, cells=None, place=(0, 0)):
+    return write_press(folder, "tip", {"shape": {"kind": "sphere", "radius_m": radius}}, radius, depth, cells, place)
 
 
 def write_punch(folder, depth, size, growth):
@@ -92,6 +94,12 @@ def press_hertz(argil, folder, add):
     for element, number in (("p1", 5000), ("p1", 10000), ("p1", 20000), ("p1", 60000), ("p2", 5000)):
         force, tets = run(argil, folder, scenario, f"/dynamics/element={element}", f"/body/shape/target_tets={number}")
         add("sphere of 10 mm", "graded" if element == "p1" else "graded, ten nodes", tets, force[-1] / hertz)
+    radius, depth = 0.1, 1e-5  # a slope of 0.01
+    hertz = 4 / 3 * REDUCED * radius**0.5 * depth**1.5
+    for where, cells, number in (("", None, 20000), ("", SMALL, 300), (", beside the middle", SMALL, 300)):
+        scenario = write_tip(folder, radius, depth, cells, (0.004, 0.001) if where else (0, 0))
+        force, tets = run(argil, folder, scenario, "/dynamics/model=linear", f"/body/shape/target_tets={number}")
+        add("sphere of 100 mm, linear" + where, "a/2.4, growth 0.35" if cells else "graded", tets, force[-1] / hertz)
     depth = 0.05 * PUNCH
     for cells, growth in ((8, 0.8), (8, 0.5), (8, 0.4), (6, 0.3)):
         force, tets = run(argil, folder, write_punch(folder, depth, PUNCH / cells, growth), "/dynamics/model=linear",

@@ -19,7 +19,9 @@
 namespace argil::scenario {
 namespace {
 
-constexpr double kStep = 0.002;         // of a ball between two looks, over its radius
+constexpr double kStep = 0.002;  // of a ball between two looks, over its radius
+constexpr double kSteps = 10.0;  // that its deepest look is deep; else it is looked at in finer ones
+constexpr double kFinestStep = 1e-7;
 constexpr double kPlaceSpacing = 0.25;  // of touched places, over their radius
 constexpr double kReach = 1.5;          // of the small cells, over the radius of a touched place
 constexpr double kBestPower = 1.2;      // of the distance, for the least error of linear tets
@@ -67,6 +69,33 @@ bool is_run(const Scenario& s, const device::Trace& trace, std::size_t sample) {
   return trace.time[sample] >= begin && trace.time[sample] <= end;
 }
 
+/// Adds the places that a motion takes a ball of a tool into, looked at in steps over its radius; how deep
+/// the deepest look was [m]; negative: how near the ball came, as far as that was looked for.
+double add_places_of_ball(const Scenario& s, const device::Trace& trace, const contact::InnerBall& ball,
+                          const embed::TriangleTree& surface, double step,
+                          std::vector<sim::TouchedPlace>& places) {
+  const std::size_t first = places.size();
+  const double beyond = (1.0 + kSteps * step) * ball.radius;
+  double deepest = -std::numeric_limits<double>::infinity();
+  Vec3 last = Vec3::Constant(std::numeric_limits<double>::infinity());  // looked at
+  for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+    if (!is_run(s, trace, i)) continue;
+    const device::DeviceSample& sample = trace.samples[i];
+    const Vec3 centre = sample.position + sample.orientation * ball.centre;
+    if ((centre - last).norm() < step * ball.radius) continue;
+    last = centre;
+    const bool is_inside = surface.compute_winding_number(centre) > 0.5;
+    const double reach = is_inside ? std::numeric_limits<double>::infinity() : beyond;
+    const embed::TriangleTree::Nearest nearest = surface.find_nearest(centre, reach);
+    if (!is_inside && !(nearest.distance < reach)) continue;
+    const double depth = ball.radius + (is_inside ? nearest.distance : -nearest.distance);
+    deepest = std::max(deepest, depth);
+    if (depth > 0.0)
+      add_place({nearest.point, std::sqrt(ball.radius * std::min(depth, ball.radius))}, first, places);
+  }
+  return deepest;
+}
+
 /// Places of a body at rest that a motion takes balls in the tool into, each at the deepest and a quarter of
 /// its radius from the next; in order of time for each of the balls.
 std::vector<sim::TouchedPlace> find_places_of_balls(const Scenario& s, const device::Trace& trace,
@@ -76,19 +105,10 @@ std::vector<sim::TouchedPlace> find_places_of_balls(const Scenario& s, const dev
   std::vector<sim::TouchedPlace> places;
   for (const contact::InnerBall& ball : tool.inner_balls()) {
     const std::size_t first = places.size();
-    Vec3 last = Vec3::Constant(std::numeric_limits<double>::infinity());  // looked at
-    for (std::size_t i = 0; i < trace.samples.size(); ++i) {
-      if (!is_run(s, trace, i)) continue;
-      const device::DeviceSample& sample = trace.samples[i];
-      const Vec3 centre = sample.position + sample.orientation * ball.centre;
-      if ((centre - last).norm() < kStep * ball.radius) continue;
-      last = centre;
-      const bool is_inside = surface.compute_winding_number(centre) > 0.5;
-      const double reach = is_inside ? std::numeric_limits<double>::infinity() : ball.radius;
-      const embed::TriangleTree::Nearest nearest = surface.find_nearest(centre, reach);
-      if (!is_inside && !(nearest.distance < reach)) continue;
-      const double depth = ball.radius + (is_inside ? nearest.distance : -nearest.distance);
-      add_place({nearest.point, std::sqrt(ball.radius * std::min(depth, ball.radius))}, first, places);
+    for (double step = kStep; step > kFinestStep; step *= 0.1) {
+      places.resize(first);
+      const double deepest = add_places_of_ball(s, trace, ball, surface, step, places);
+      if (std::abs(deepest) >= kSteps * step * ball.radius) break;
     }
   }
   return places;

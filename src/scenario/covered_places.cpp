@@ -14,6 +14,7 @@ namespace {
 constexpr double kStep = 0.02;  // of a tool that covers nothing between two looks, over its thickness
 constexpr double kPart = 0.05;  // of one that does, over the largest disc
 constexpr double kMostLooks = 2000.0;
+constexpr double kFiner = 20.0;    // looks, where none found anything
 constexpr double kCovered = 0.75;  // of a disc
 constexpr double kApart = 1.4;     // discs of one moment, over the larger radius
 constexpr double kSame = 0.25;     // places, over the larger radius
@@ -52,27 +53,18 @@ void add_place(const sim::TouchedPlace& place, std::vector<sim::TouchedPlace>& p
   places.push_back(place);
 }
 
-}  // namespace
-
-std::vector<sim::TouchedPlace> find_covered_places(std::span<const contact::Pose> poses,
-                                                   contact::ToolSolid tool,
-                                                   const mesh::TriangleMesh& surface) {
-  const double reach = tool.reach();
-  const double thickness = tool.thickness();
-  const Field one = Field::Ones(surface.num_triangles());
-  contact::PressureContact contact(surface.triangles, surface.num_vertices(), std::move(tool), {one, one});
+/// `ways`: up to each pose [m]. `finer`: so many times more looks.
+std::vector<sim::TouchedPlace> look_for_places(std::span<const contact::Pose> poses,
+                                               std::span<const double> ways, double finer, double thickness,
+                                               contact::PressureContact& contact, const Points& vertices) {
   contact::Contacts found;
   found.with_touched = false;
   std::vector<sim::TouchedPlace> places;
   std::vector<std::size_t> order;
-  std::vector<double> ways(poses.size(), 0.0);  // up to each pose [m]
-  for (std::size_t i = 1; i < poses.size(); ++i)
-    ways[i] = ways[i - 1] + (poses[i].position - poses[i - 1].position).norm() +
-              reach * poses[i].orientation.angularDistance(poses[i - 1].orientation);
   double next = 0.0;  // way of the next look [m]
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (ways[i] < next) continue;
-    contact.find_unpressed(surface.vertices, poses[i], found);
+    contact.find_unpressed(vertices, poses[i], found);
     const std::vector<double> radii = find_disc_radii(found.contacts);
     order.resize(radii.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -88,9 +80,28 @@ std::vector<sim::TouchedPlace> find_covered_places(std::span<const contact::Pose
       discs.emplace_back(middle, radii[k]);
       add_place({middle, radii[k] / std::numbers::sqrt2}, places);
     }
-    const double step = discs.empty() ? kStep * thickness : kPart * discs.front().second;
-    next = ways[i] + std::max(step, ways.back() / kMostLooks);
+    const double step = discs.empty() ? kStep / finer * thickness : kPart * discs.front().second;
+    next = ways[i] + std::max(step, ways.back() / (finer * kMostLooks));
   }
+  return places;
+}
+
+}  // namespace
+
+std::vector<sim::TouchedPlace> find_covered_places(std::span<const contact::Pose> poses,
+                                                   contact::ToolSolid tool,
+                                                   const mesh::TriangleMesh& surface) {
+  const double reach = tool.reach();
+  const double thickness = tool.thickness();
+  const Field one = Field::Ones(surface.num_triangles());
+  contact::PressureContact contact(surface.triangles, surface.num_vertices(), std::move(tool), {one, one});
+  std::vector<double> ways(poses.size(), 0.0);
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    ways[i] = ways[i - 1] + (poses[i].position - poses[i - 1].position).norm() +
+              reach * poses[i].orientation.angularDistance(poses[i - 1].orientation);
+  std::vector<sim::TouchedPlace> places =
+      look_for_places(poses, ways, 1.0, thickness, contact, surface.vertices);
+  if (places.empty()) places = look_for_places(poses, ways, kFiner, thickness, contact, surface.vertices);
   return places;
 }
 

@@ -93,6 +93,20 @@ TEST_F(GradedCells, ArePlacedAtTheDeepestContactWithHertzsRadius) {
     }
 }
 
+TEST_F(GradedCells, ArePlacedWhereALargeBallBarelyTouches) {
+  constexpr double kBall = 0.1, kTop = 0.03, kDeep = 1e-5;
+  const std::string trace =
+      test::write_press_trace(folder / "press.csv", kTop + kBall + 0.002, kTop + kBall - kDeep, 0.1, "push");
+  const scenario::Scene scene = scenario::build_scene(
+      load(test::make_ball_scenario(trace),
+           {"/body/shape/kind=box", "/body/shape/size_m=0.03", "/body/cells/kind=graded",
+            "/body/cells/near_tool_m=0.0005", "/tool/shape/radius_m=" + std::to_string(kBall)}));
+  ASSERT_EQ(scene.body.touched_places.size(), 1U);
+  const double radius = std::sqrt(kBall * kDeep);
+  EXPECT_NEAR(scene.body.touched_places[0].radius, radius, 0.05 * radius);
+  EXPECT_LT((scene.body.touched_places[0].position - Vec3(0.001, 0.0007, kTop)).norm(), 1e-6);
+}
+
 /// A block of 30 mm and a cube of 10 mm over it, a mesh as all tools that are not round.
 class GradedUnderACube : public GradedCells {
  protected:
@@ -100,8 +114,8 @@ class GradedUnderACube : public GradedCells {
   static constexpr double kHalf = 0.005;  // of the cube's edge
   static constexpr double kDepth = 0.002;
 
-  /// The cube turned, its lowest point pressed kDepth deep.
-  scenario::Scene press(const Quat& turn) {
+  /// The cube turned, its lowest point pressed this deep.
+  scenario::Scene press(const Quat& turn, double depth = kDepth) {
     std::ofstream out(folder / "cube.obj");
     out.precision(17);
     double lowest = 0.0;
@@ -115,7 +129,7 @@ class GradedUnderACube : public GradedCells {
     return build({"/body/shape/kind=box", "/body/shape/size_m=0.03", "/body/cells/kind=graded",
                   "/body/cells/near_tool_m=0.0008",
                   R"(/tool/shape={"kind": "mesh", "file": ")" + (folder / "cube.obj") + "\"}"},
-                 kTop - lowest - kDepth);
+                 kTop - lowest - depth);
   }
 };
 
@@ -123,6 +137,12 @@ TEST_F(GradedUnderACube, ItsFaceCoversOnePlaceAsLargeAsTheFace) {
   const sim::TouchedPlace& place = press(Quat::Identity()).body.touched_places.at(0);
   EXPECT_LT((place.position - Vec3(0.001, 0.0007, kTop)).norm(), 0.3 * kHalf);  // a quarter is seen
   // A ball that covers as much has √2 times Hertz's radius there.
+  const double radius = std::sqrt(4.0 * kHalf * kHalf / std::numbers::pi / 2.0);
+  EXPECT_NEAR(place.radius, radius, 0.15 * radius);
+}
+
+TEST_F(GradedUnderACube, ItsFaceCoversAsMuchWhereItBarelyTouches) {
+  const sim::TouchedPlace& place = press(Quat::Identity(), 1e-5).body.touched_places.at(0);
   const double radius = std::sqrt(4.0 * kHalf * kHalf / std::numbers::pi / 2.0);
   EXPECT_NEAR(place.radius, radius, 0.15 * radius);
 }
