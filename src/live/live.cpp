@@ -228,7 +228,7 @@ int conduct(sim::Simulation& simulation, device::HapticDevice& device, const Ses
 int run_live(const LiveOptions& options) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error of the write, like a full disk
   run::RunOptions run_options = options.run;
-  run_options.is_live = true;
+  run_options.has_own_hand = true;
   const scenario::Scenario s = run::load(run_options);
   if (s.accuracy > 0.0)
     throw InputError(s.file, "/fidelity/accuracy", "is given, but cells are chosen by a motion that is known",

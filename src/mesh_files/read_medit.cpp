@@ -2,15 +2,16 @@
 // RT-0253].
 #include <cctype>
 
+#include "base/lower_case.h"
 #include "mesh_files/tet_file.h"
 
 namespace argil::mesh_files {
 namespace {
 
 // Keywords of elements that a body of 4-node tets cannot contain.
-bool is_other_volume(std::string_view keyword) {
-  return keyword.starts_with("Hexahedra") || keyword.starts_with("Prisms") ||
-         keyword.starts_with("Pyramids") || keyword.starts_with("TetrahedraP");
+bool is_other_volume(std::string_view keyword) {  // in small letters
+  return keyword.starts_with("hexahedra") || keyword.starts_with("prisms") ||
+         keyword.starts_with("pyramids") || keyword.starts_with("tetrahedrap");
 }
 
 void read_vertices(FileCursor& cursor, TetFile& out) {
@@ -49,28 +50,28 @@ mesh::TetMesh read_medit(const std::string& file, double scale) {
   FileCursor cursor(file);
   cursor.set_comment_mark('#');
   const auto header = cursor.find_word();
-  if (!header || *header != "MeshVersionFormatted")
+  if (!header || to_lower_case(*header) != "meshversionformatted")
     cursor.fail("does not begin with MeshVersionFormatted", "save it as ASCII Medit .mesh");
   const std::int64_t version = cursor.integer("the format version");
   if (version < 1 || version > 4)
     cursor.fail("format version " + std::to_string(version), "save it in version 1 to 4");
   TetFile out;
   while (const auto word = cursor.find_word()) {
-    const std::string_view keyword = *word;
-    if (keyword == "End") break;
-    if (keyword == "Dimension") {
+    const std::string keyword = to_lower_case(*word);
+    if (keyword == "end") break;
+    if (keyword == "dimension") {
       const std::int64_t dimension = cursor.integer("the dimension");
       if (dimension != 3) cursor.fail("Dimension " + std::to_string(dimension), "a body needs dimension 3");
-    } else if (keyword == "Vertices") {
+    } else if (keyword == "vertices") {
       read_vertices(cursor, out);
-    } else if (keyword == "Tetrahedra") {
+    } else if (keyword == "tetrahedra") {
       read_tetrahedra(cursor, out);
     } else if (is_other_volume(keyword)) {
       if (cursor.integer("the number of elements") != 0)
-        cursor.fail("section " + std::string(keyword) + " holds elements that are not 4-node tetrahedra",
+        cursor.fail("section " + std::string(*word) + " holds elements that are not 4-node tetrahedra",
                     "mesh the volume with first-order tetrahedra only");
     } else if (std::isalpha(static_cast<unsigned char>(keyword.front())) == 0) {
-      cursor.fail("\"" + std::string(keyword.substr(0, 40)) + "\" where a keyword was expected",
+      cursor.fail("\"" + std::string(word->substr(0, 40)) + "\" where a keyword was expected",
                   "check the count of the section above");
     } else {
       skip_section(cursor);

@@ -1,4 +1,5 @@
 // Wavefront OBJ: vertices and polygons; texture, normals, groups and materials are passed over.
+#include "base/lower_case.h"
 #include "mesh_files/surface_file.h"
 
 namespace argil::mesh_files {
@@ -36,7 +37,7 @@ mesh::TriangleMesh read_obj(const std::string& file, double scale) {
       joined += *more;
     }
     WordsOf words(drop_comment(joined));
-    const std::string_view keyword = words.next();
+    const std::string keyword = to_lower_case(words.next());
     if (keyword == "v") {
       out.vertex_offsets.push_back(offset);
       for (int c = 0; c < 3; ++c) {

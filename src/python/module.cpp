@@ -37,6 +37,7 @@ LoadedScenario load(const std::string& file, const std::string& text,
   loaded.options.patches = patches;
   loaded.options.trace = trace;
   loaded.options.remedy = "go on with resume=True";
+  loaded.options.has_own_hand = true;
   loaded.s = run::load(loaded.options);
   return loaded;
 }
@@ -50,6 +51,7 @@ LoadedScenario load(const std::string& file, const std::string& text,
 
 void run_to_file(const LoadedScenario& loaded, const std::string& result, int threads, bool resume,
                  bool writes_xdmf, bool quiet) {
+  run::require_motion(loaded.s, "add it, or move the tool tick by tick (start)");
   LoadedScenario run = with_threads(loaded, threads);
   run.options.output = result;
   run.options.resume = resume;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "run/loop.h"
+#include "run/run.h"
 #include "solid/elements.h"
 
 namespace argil::run {
@@ -37,8 +38,9 @@ std::string describe_miss(const scenario::Scenario& s, const scenario::Scene& sc
   std::ostringstream text;
   text.precision(3);
   text << "the tool never comes nearer than " << nearest.distance << " m to the body at rest, at "
-       << static_cast<double>(nearest.pose) * s.params.rates.haptic_period << " s; argil place " << s.file
-       << (given_trace.empty() ? "" : " --trace " + given_trace) << " brings the motion onto it";
+       << static_cast<double>(nearest.pose) * s.params.rates.haptic_period << " s; argil place "
+       << quote_word(s.file) << (given_trace.empty() ? "" : " --trace " + quote_word(given_trace))
+       << " brings the motion onto it";
   return text.str();
 }
 

@@ -62,6 +62,13 @@ void check_result_name(const scenario::Scenario& s, const std::string& result, c
                          std::filesystem::path(result).replace_extension(".h5").filename().string());
   require_no_input(s, result, option);
   require_no_input(s, name_xdmf(result), option);
+  for (const char* ending : {".csv", ".txt", ".json", ".npy", ".npz", ".vtu", ".pvd", ".vtk", ".html", ".msh",
+                             ".obj", ".stl", ".ply"})
+    if (has_ending(result, ending))
+      throw InputError(result, "", std::string("ends in ") + ending + ", and a result is written as HDF5",
+                       "give " + option + " a name such as " +
+                           std::filesystem::path(result).replace_extension(".h5").filename().string() +
+                           "; argil export makes pages and VTK files of it");
 }
 
 void check_cage_name(const std::string& surface, const std::string& cage) {

@@ -6,7 +6,7 @@ namespace argil::run {
 
 HandMotion::HandMotion(const scenario::Scenario& s, const device::Trace& trace)
     : m_scenario(s), m_trace(trace) {
-  if (s.hand.kind == scenario::HandKind::simulated)
+  if (s.hand.kind == scenario::HandKind::simulated && !trace.samples.empty())
     m_hand.emplace(s.hand.params, trace, s.params.rates.haptic_period, s.trace.start);
 }
 

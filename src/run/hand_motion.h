@@ -11,6 +11,7 @@ namespace argil::run {
 /// Where the tool goes, tick by tick: along the trace, or with a simulated hand that means to.
 class HandMotion {
  public:
+  /// Of an empty trace nothing is asked.
   HandMotion(const scenario::Scenario& s, const device::Trace& trace);
   /// The hand at the end of tick k, one after the last call's; `felt`: what the device renders meanwhile [N],
   /// after passivity and gate.

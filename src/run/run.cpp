@@ -155,7 +155,7 @@ scenario::Scenario load(const RunOptions& options) {
   const bool is_text = !options.text.empty();
   if (!is_text) require_input_file(options.scenario);
   if (!options.trace.empty()) require_input_file(options.trace);
-  const auto motion = options.is_live ? scenario::MotionSource::device : scenario::MotionSource::trace;
+  const auto motion = options.has_own_hand ? scenario::MotionSource::device : scenario::MotionSource::trace;
   scenario::Scenario s =
       is_text
           ? scenario::load_text(options.text, options.scenario, settings, motion, scenario::find_scene_faults)
@@ -166,19 +166,25 @@ scenario::Scenario load(const RunOptions& options) {
   return s;
 }
 
+void require_motion(const scenario::Scenario& s, const std::string& remedy) {
+  if (s.mode == scenario::Mode::dynamic && s.trace.file.empty())
+    throw InputError(s.file, "/trace/file", "is missing", remedy);
+}
+
+std::string quote_word(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./,:@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
 std::string repeat_words(const RunOptions& options) {
-  const auto quote = [](const std::string& word) {
-    constexpr std::string_view kPlain =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./,:@%";
-    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-    std::string quoted = "'";
-    for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-    return quoted + "'";
-  };
-  std::string words = quote(options.scenario);
-  for (const std::string& patch : options.patches) words += " --patch " + quote(patch);
-  for (const std::string& setting : options.settings) words += " --set " + quote(setting);
-  if (!options.trace.empty()) words += " --trace " + quote(options.trace);
+  std::string words = quote_word(options.scenario);
+  for (const std::string& patch : options.patches) words += " --patch " + quote_word(patch);
+  for (const std::string& setting : options.settings) words += " --set " + quote_word(setting);
+  if (!options.trace.empty()) words += " --trace " + quote_word(options.trace);
   return words;
 }
 

@@ -22,7 +22,7 @@ struct RunOptions {
   bool writes_xdmf = true;
   bool dry_run = false;  ///< check and build everything, run and write nothing
   bool quiet = false;
-  bool is_live = false;                        ///< a device gives the motion: /trace need not
+  bool has_own_hand = false;                   ///< a device or a program gives the motion: /trace need not
   bool strict = false;                         ///< /dynamics/strict
   std::vector<std::string> notes;              ///< for the user, beside the scene's
   bool is_planned = false;                     ///< /fidelity/accuracy has been looked after
@@ -31,6 +31,9 @@ struct RunOptions {
 };
 
 inline constexpr int kMostThreads = 256;
+
+/// As a shell reads it.
+std::string quote_word(const std::string& word);
 
 /// Scenario, patches, settings and trace of a call as words of a shell, for the command that a message asks
 /// for.
@@ -48,6 +51,9 @@ enum ExitCode : int {
 
 /// Loads and checks a scenario with the options' settings and trace.
 scenario::Scenario load(const RunOptions& options);
+
+/// Throws InputError where a scenario has ticks and no motion.
+void require_motion(const scenario::Scenario& s, const std::string& remedy);
 
 /// The result file's name, given or made of the scenario's.
 std::string name_result(const scenario::Scenario& s, const RunOptions& options);

@@ -6,15 +6,17 @@
 #include "base/print.h"
 #include "run/files.h"
 #include "run/replay.h"
+#include "run/run.h"
 #include "run/start.h"
 
 namespace argil::run {
 namespace {
 
-const scenario::Scenario& require_ticks(const scenario::Scenario& s) {
+const scenario::Scenario& require_ticks(const scenario::Scenario& s, bool has_start) {
   if (s.mode == scenario::Mode::equilibrium)
     throw InputError(s.file, "/dynamics/mode", "\"static\" has no ticks to step",
                      "run it to a file, or set it to \"dynamic\"");
+  if (!has_start) require_motion(s, "add it, or give the position at which a hand of your own starts");
   return s;
 }
 
@@ -28,9 +30,9 @@ bool is_unit(const Quat& q) {
 
 Stepper::Stepper(const scenario::Scenario& s, const StepperOptions& options)
     : m_options(options),
-      m_run(require_ticks(s), options.given_trace, "", options.start),
+      m_run(require_ticks(s, options.start.has_value()), options.given_trace, "", options.start),
       m_remesher(m_run.s, nullptr, true),
-      m_num_ticks(count_ticks(m_run.s, m_run.scene.trace)),
+      m_num_ticks(m_run.scene.trace.samples.empty() ? 0 : count_ticks(m_run.s, m_run.scene.trace)),
       m_hand(options.start ? *options.start : sample_at(m_run.s, m_run.scene.trace, 0)) {
   if (!m_options.record.empty()) check_result_name(m_run.s, m_options.record, "the record");
 }
@@ -56,6 +58,7 @@ void Stepper::check_sample(const device::DeviceSample& sample) const {
 StepStatus Stepper::tick() {
   if (m_mover == Mover::program)
     refuse("the hand has been a program's own so far, and a run has one hand", "give its position");
+  require_motion(m_run.s, "give the hand's position");
   const Tick k = m_run.simulation.clock().tick + 1;
   if (k > m_num_ticks)
     refuse("the scenario's motion has " + std::to_string(m_num_ticks) + " ticks", "stop before it");

@@ -21,7 +21,8 @@ struct StepperOptions {
 /// `argil run`, or with a hand of the program's own. The first tick decides which.
 class Stepper {
  public:
-  /// Throws InputError, also for a scenario without ticks.
+  /// Throws InputError, also for a scenario without ticks, and for one without a motion where `start` is
+  /// none.
   Stepper(const scenario::Scenario& s, const StepperOptions& options);
 
   /// The next tick of the scenario's motion. A failed one leaves all as it was before. Throws InputError past

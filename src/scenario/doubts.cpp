@@ -11,7 +11,7 @@ namespace {
 constexpr double kSoftest = 100.0;  // [Pa]
 constexpr double kStiffest = 1e12;  // [Pa]
 constexpr double kLargestYieldStrain = 1.0;
-constexpr double kLeastStrength = 1.0;  // [Pa]
+constexpr double kLeastStrength = 10.0;  // [Pa]
 // Of the contact's stiffness over Young's modulus. The chosen one is tens of moduli a cell, and cells are
 // from tens of micrometres to decimetres; a pair's is about a modulus times a cell.
 constexpr double kLeastPressureStiffness = 10.0;   // [1/m]
@@ -65,8 +65,11 @@ void doubt_flow(const Scenario& s, Doubts& doubts) {
                "a strength of " + print(flow.yield) +
                    " Pa is written strength_Pa in its place; yield strains are about 0.01");
   if (flow.strength > 0.0 && flow.strength < kLeastStrength)
-    doubts.add(place + "strength_Pa", print(flow.strength) + " Pa is weaker than water seems",
-               "a yield strain of " + print(flow.strength) + " is written yield, with creep_per_s");
+    doubts.add(place + "strength_Pa", print(flow.strength) + " Pa is that of a soup",
+               flow.strength < kLargestYieldStrain
+                   ? "a yield strain of " + print(flow.strength) + " is written yield, with creep_per_s"
+                   : "clay has thousands of pascals; " + print(flow.strength) + " kPa is " +
+                         print(1e3 * flow.strength));
   if (flow.strength > s.params.elastic.youngs_modulus)
     doubts.add(place + "strength_Pa",
                print(flow.strength) + " Pa is more than Young's modulus, so that the clay does not flow",

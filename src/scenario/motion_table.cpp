@@ -38,7 +38,7 @@ void bind_trace(Binder& b, TraceSpec& t, const std::string& folder) {
   using device::QuaternionOrder;
   using device::TimeUnit;
   b.path("/trace/file", t.file, folder,
-         "Recorded motion (CSV, NPY or HDF5); argil live with a device needs none.")
+         "Recorded motion (CSV, NPY or HDF5); a device and a hand of a program's own need none.")
       .required = true;
   b.choice<device::ToolMode>("/trace/default_mode", t.options.default_mode,
                              {{device::ToolMode::push, "push"},

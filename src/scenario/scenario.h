@@ -140,7 +140,7 @@ Setting parse_setting(const std::string& text);
 /// Where the motion of a scenario comes from.
 enum class MotionSource {
   trace,   ///< /trace/file must be there
-  device,  ///< it need not
+  device,  ///< it need not: a device, or a program
 };
 
 /// Reads, applies the preset and the settings, checks every key, type and range, and the combinations that

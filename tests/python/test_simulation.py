@@ -162,6 +162,28 @@ class SameBits(Folder):
         np.testing.assert_array_equal(sim.tool_orientation, [1, 0, 0, 0])
         np.testing.assert_array_equal(sim.force, 0.0)
 
+    def test_a_hand_of_ones_own_needs_no_motion(self):
+        with open(BALL, encoding="utf-8") as file:
+            scene = json.load(file)
+        del scene["trace"]
+        scenario = argil.Scenario(scene, folder=os.path.dirname(BALL), set=SET)
+        with self.assertRaisesRegex(argil.InputError, "/trace/file: is missing; add it, or give the position"):
+            scenario.start()
+        with self.assertRaisesRegex(argil.InputError, "/trace/file: is missing; add it, or move the tool tick by tick"):
+            scenario.run(self.file("a.h5"))
+        start = self.position[0] + [0, 0, 0.03]
+        sim = scenario.start(position=start, record=self.file("own.h5"))
+        with self.assertRaisesRegex(argil.InputError, "/trace/file: is missing; give the hand's position"):
+            sim.tick()
+        sim.run(5, hand=lambda at, force: start)
+        sim.close()
+        with argil.open(self.file("own.h5")) as result:
+            self.assertEqual((result.outcome, len(result.time)), ("done", 5))
+        # a simulated hand has nothing to mean without a motion, and one's own is no simulated one
+        argil.Scenario(scene, folder=os.path.dirname(BALL), set={"/hand/kind": "simulated"}).start(position=start).tick(start)
+        again = argil.Scenario(scenario.resolved, folder=os.path.dirname(BALL))
+        again.start(position=start).tick(start)
+
     def test_a_motion_that_is_left_early_leaves_an_interrupted_record(self):
         with argil.load(BALL, set=SET).start(record=self.file("a.h5")) as sim:
             sim.run(50)

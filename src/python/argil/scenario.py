@@ -27,7 +27,7 @@ class Scenario:
     folder: of a dict; paths in it are relative to this folder.
     set: {"/json/pointer": value}, put in the place of the scenario's own values. Numpy's numbers and arrays are taken.
     patches: a JSON file or several with some of a scenario's keys, put in its place before `set`.
-    trace: a recorded motion (CSV or HDF5) in the place of the scenario's.
+    trace: a recorded motion (CSV or HDF5) in the place of the scenario's. With a hand of one's own there need not be one.
 
     Raises InputError for what cannot run, IoError for what cannot be read.
     """

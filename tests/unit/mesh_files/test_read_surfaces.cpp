@@ -84,6 +84,11 @@ TEST(ReadSurfaces, AnObjFaceMayStandBeforeItsVertices) {
   EXPECT_EQ(read_text(folder, "p.obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").num_triangles(), 1);
 }
 
+TEST(ReadSurfaces, KeywordsOfAnObjMayBeInEitherCase) {
+  const test::TempFolder folder;
+  EXPECT_EQ(read_text(folder, "p.obj", "V 0 0 0\nv 1 0 0\nV 0 1 0\nVN 0 0 1\nF 1 2 3\n").num_triangles(), 1);
+}
+
 TEST(ReadSurfaces, StlMergesEqualCornersOnly) {
   const test::TempFolder folder;
   const std::string facet = "facet normal 0 0 1\nouter loop\n";

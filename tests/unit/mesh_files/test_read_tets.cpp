@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -63,6 +64,13 @@ TEST(ReadTets, ScaleMultipliesCoordinates) {
   const test::TempFolder folder;
   for (const SampleFile& sample : test::make_tet_samples())
     expect_two_tets(read_sample(folder, sample, 0.001), sample.name, 0.001);
+}
+
+TEST(ReadTets, KeywordsOfMeditMayBeInSmallLetters) {
+  const test::TempFolder folder;
+  SampleFile sample = find_sample("medit.mesh");
+  for (char& c : sample.content) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  expect_two_tets(read_sample(folder, sample), sample.name);
 }
 
 TEST(ReadTets, LineEndsOfOtherSystemsReadTheSame) {

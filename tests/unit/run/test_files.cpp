@@ -37,6 +37,14 @@ TEST_F(OutputName, OfTheScenarioIsRefused) {
   expect_refused("scene.json", "scene.json", "scene.json: is the scenario and would be overwritten; give");
 }
 
+TEST_F(OutputName, OfAnotherFormatIsRefused) {
+  for (const char* name : {"force.csv", "body.vtu", "page.html"}) {
+    options.output = folder / name;
+    ARGIL_EXPECT_THROW_WITH(run::run(options), InputError, "and a result is written as HDF5; give");
+    EXPECT_FALSE(std::filesystem::exists(options.output));
+  }
+}
+
 TEST_F(OutputName, OfTheTraceIsRefused) {
   expect_refused("press.csv", "press.csv", "press.csv: is a file that the run reads (/trace/file)");
 }

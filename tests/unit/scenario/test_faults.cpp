@@ -257,6 +257,8 @@ TEST_F(Doubtful, EachIsAnsweredByTheWordThatHelps) {
                "/material/plasticity/yield", "a strength of 1500 Pa is written strength_Pa");
   expect_doubt({"/material/plasticity/strength_Pa=0.02"}, "/material/plasticity/strength_Pa",
                "is written yield");
+  expect_doubt({"/material/plasticity/strength_Pa=1.5"}, "/material/plasticity/strength_Pa",
+               "1.5 kPa is 1500");
   expect_doubt({"/material/plasticity/strength_Pa=2e5"}, "/material/plasticity/strength_Pa",
                "50 to 200 strengths");
   expect_doubt({R"(/material/plasticity={"yield": 0.01, "creep_per_s": 0})"},
