@@ -50,7 +50,7 @@ struct PhysicsRecord {
   double kinetic_energy = 0.0;       ///< [J]
   double elastic_energy = 0.0;       ///< [J]
   double plastic_dissipation = 0.0;  ///< [J] since the start
-  double contact_work = 0.0;         ///< [J] done by contact forces on the body since the start
+  double contact_work = 0.0;         ///< [J] by contact forces at the ends of steps, since the start
   double water_mass = 0.0;           ///< [kg]
   double water_added = 0.0;          ///< [kg] since the start
   double water_removed = 0.0;        ///< [kg] since the start

@@ -24,7 +24,7 @@ def force(*results, labels=None, align_press=False, smooth=0.0, start=None):
 @styled
 def energy(*results, labels=None):
     """What the hand and the contact give, what the body holds and what flow dissipates [J] against time [s], a panel a
-    run."""
+    run. While a press grows the contact gives more than the hand, by the length of a physics step."""
     return energy_figure.make_figure(results, labels)
 
 

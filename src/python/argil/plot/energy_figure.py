@@ -3,6 +3,10 @@
 The hand's work counts while it pushes or pulls, for what it feels when it wets or dries deforms nothing. The rest is
 the contact's work less what the body holds more than at the first step and what flow dissipated: damping, the clay's
 kernel, moduli that water changed, and the work of weight and loads, which no file records.
+
+The contact's work counts the force at the end of a physics step along all of the step, the hand's work what it feels
+meanwhile. While a press grows the first is larger, by the length of the step: 6 % with 2 ms and 19 % with 5 ms in
+scenarios/study_light_press.json.
 """
 from typing import NamedTuple
 
