@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """How much the contact's stiffness changes what is felt: a ball pressed into an elastic block and out again, by a tool that pushes and by
-one that pulls, with κ as argil chooses it and 2 to 100 times that, on four-node tets; on ten-node ones with --elements.
+one that pulls, with κ as argil chooses it and 2 to 100 times that, in steps of 1 and of 14 ticks, on four-node tets; on ten-node ones with
+--elements.
 
 Usage: stiffness_table.py ARGIL [-o FILE.csv] [--elements p1 p2]      writes results/contact/stiffness.csv
 
-Columns: element; κ over the chosen one (0: chosen by itself); force where the ball is deepest; how far the force is off that with the
+Columns: element; ticks of a step; κ over the chosen one (0: chosen by itself); force where the ball is deepest; how far the force is off that with the
 chosen κ, a pull's until the ball lets go, at most, over its range; of a push also over the force of that tick, where Hertz's radius is two
 cells and more, and where it is three and more. Of a pull besides: force over height by a straight line; how
 far it is off the line, at most over its range; the largest pull; the height above the block's top at which the ball lets go.
@@ -28,6 +29,7 @@ DOWN, REST, UP = 150, 100, 1200  # ticks
 HIGH = 0.004  # the end of the way out, above the top [m]
 CHOSEN = 80  # κ is so many times E* over the cell
 TIMES = (2, 10, 100)
+TICKS = (1, 14)  # of a step
 TETS = {"p1": 8000, "p2": 2000}  # about as many nodes
 CELLS = (2, 3)  # to the radius of contact, from which on a change is looked for
 
@@ -39,7 +41,7 @@ def make_motion():
     return [(*AT, z) for z in heights]
 
 
-def make_scene(element, mode, stiffness):
+def make_scene(element, ticks, mode, stiffness):
     return {
         "about": "A ball presses on a block and goes out again.",
         "body": {"shape": {"kind": "box", "size_m": EDGE, "target_tets": TETS[element], "skin_triangles": 0},
@@ -49,7 +51,7 @@ def make_scene(element, mode, stiffness):
         "tool": {"shape": {"kind": "sphere", "radius_m": RADIUS}, "mode": mode},
         "contact": {"law": "pressure", "stiffness_Pa_per_m": stiffness, "grip_strength_Pa": STRENGTH},
         "dynamics": {"element": element, "solver": {"tolerance": 1e-6}},
-        "haptics": {"physics_period_ticks": 1, "water_period_ticks": 1, "frame_period_ticks": 100, "chatter_limit": 1},
+        "haptics": {"physics_period_ticks": ticks, "water_period_ticks": ticks, "frame_period_ticks": 100 * ticks, "chatter_limit": 1},
     }
 
 
@@ -85,10 +87,10 @@ def main():
     radius = np.sqrt(RADIUS * np.maximum(0, depth))  # Hertz's
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for element, mode in itertools.product(options.elements, ("push", "pull")):
+        for element, ticks, mode in itertools.product(options.elements, TICKS, ("push", "pull")):
             for times in (0, *TIMES):
                 stiffness = times * CHOSEN * MODULUS / (1 - POISSON**2) / cell if times else 0
-                force = run_along(options.argil, folder, places, make_scene(element, mode, stiffness))[:, 2]
+                force = run_along(options.argil, folder, places, make_scene(element, ticks, mode, stiffness))[:, 2]
                 if times == 0:
                     first, cell = force, find_cell(folder / "run.h5", element)
                 last, pull = measure_pull(force) if mode == "pull" else (len(force), [""] * 4)
@@ -99,10 +101,10 @@ def main():
                 if mode == "push":
                     counts = [(radius >= cells * cell) & (first > 0) for cells in CELLS]
                     wide = [f"{np.abs(force[at] / first[at] - 1).max():.4f}" for at in counts]
-                rows.append([element, mode, times, f"{cell / 1e-3:.3f}", f"{force[DOWN + REST - 1]:.4f}", f"{off.max():.4f}",
+                rows.append([element, ticks, mode, times, f"{cell / 1e-3:.3f}", f"{force[DOWN + REST - 1]:.4f}", f"{off.max():.4f}",
                              *wide, *pull])
                 print(*rows[-1], flush=True)
-    write_table(options.output, ["element", "mode", "times_chosen", "cell_mm", "deepest_N", "largest_change_over_range",
+    write_table(options.output, ["element", "ticks_of_step", "mode", "times_chosen", "cell_mm", "deepest_N", "largest_change_over_range",
                                  *(f"from_{cells}_cells_over_force" for cells in CELLS), "slope_N_per_m", "off_line",
                                  "largest_pull_N", "lets_go_mm"], rows)
 
