@@ -92,7 +92,7 @@ class Place(unittest.TestCase):
         other = (self.folder / "swing.csv").rename(self.folder / "another swing.csv").name
         words = ("--trace", other, "--set", "/material/youngs_modulus_Pa=5e4")
         note = self.call("validate", "scene.json", *words)[1]
-        self.assertIn(f"argil place scene.json --trace {other} brings the motion onto it", note)
+        self.assertIn(f"argil place scene.json --trace '{other}' brings the motion onto it", note)
         out = self.call("place", "scene.json", *words, "-o", "patch.json")[0]
         command = out.splitlines()[-1].split(": argil ", 1)[1]
         self.assertEqual(shlex.split(command), ["run", "scene.json", "--patch", "patch.json", *words[2:], *words[:2]])
