@@ -79,7 +79,7 @@ class Live(unittest.TestCase):
                 with h5py.File(self.folder / "live.h5", "r", locking=False) as file:
                     if file[table]["tick"].shape[0] >= wanted:
                         return
-            except (OSError, KeyError):
+            except (OSError, RuntimeError, KeyError):
                 pass  # between two flushes
         self.fail(process.stderr.read())
 

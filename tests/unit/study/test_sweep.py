@@ -267,7 +267,7 @@ class Sweep(unittest.TestCase):
         try:
             with h5py.File(part, "r", locking=False) as file:
                 return "checkpoint" in file
-        except OSError:
+        except (OSError, RuntimeError):
             return False  # not there, or between two flushes
 
     def stop(self, process):
