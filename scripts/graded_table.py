@@ -75,10 +75,14 @@ def write_punch(folder, depth, size, growth):
     return write_press(folder, "punch", {"shape": {"kind": "mesh", "file": "punch.obj"}}, 0, depth, {"near_tool_m": PUNCH / 4, "growth": growth, "regions": rim})
 
 
+def find_hertz(radius, depth):
+    return 4 / 3 * REDUCED * radius**0.5 * depth**1.5
+
+
 def press_tips(argil, folder, add):
     for radius in (0.001, 0.003):
         depth = 0.1 * radius
-        hertz = 4 / 3 * REDUCED * radius**0.5 * depth**1.5
+        hertz = find_hertz(radius, depth)
         scenario = write_tip(folder, radius, depth)
         for model in ("corotational", "curnier"):
             for number in NUMBERS:
@@ -89,15 +93,16 @@ def press_tips(argil, folder, add):
 def press_hertz(argil, folder, add):
     """Shallow presses, for which the closed forms are."""
     radius, depth = 0.01, 0.0001
-    hertz = 4 / 3 * REDUCED * radius**0.5 * depth**1.5
+    hertz = find_hertz(radius, depth)
     scenario = write_tip(folder, radius, depth)
     for element, number in (("p1", 5000), ("p1", 10000), ("p1", 20000), ("p1", 60000), ("p2", 5000)):
         force, tets = run(argil, folder, scenario, f"/dynamics/element={element}", f"/body/shape/target_tets={number}")
         add("sphere of 10 mm", "graded" if element == "p1" else "graded, ten nodes", tets, force[-1] / hertz)
     radius, depth = 0.1, 1e-5  # a slope of 0.01
-    hertz = 4 / 3 * REDUCED * radius**0.5 * depth**1.5
-    for where, cells, number in (("", None, 20000), ("", SMALL, 300), (", beside the middle", SMALL, 300)):
-        scenario = write_tip(folder, radius, depth, cells, (0.004, 0.001) if where else (0, 0))
+    hertz = find_hertz(radius, depth)
+    for where, place, cells, number in (("", (0, 0), None, 20000), ("", (0, 0), SMALL, 300),
+                                        (", beside the middle", (0.004, 0.001), SMALL, 300)):
+        scenario = write_tip(folder, radius, depth, cells, place)
         force, tets = run(argil, folder, scenario, "/dynamics/model=linear", f"/body/shape/target_tets={number}")
         add("sphere of 100 mm, linear" + where, "a/2.4, growth 0.35" if cells else "graded", tets, force[-1] / hertz)
     depth = 0.05 * PUNCH

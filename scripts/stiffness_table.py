@@ -5,9 +5,9 @@ one that pulls, with κ as argil chooses it and 2 to 100 times that, in steps of
 
 Usage: stiffness_table.py ARGIL [-o FILE.csv] [--elements p1 p2]      writes results/contact/stiffness.csv
 
-Columns: element; ticks of a step; κ over the chosen one (0: chosen by itself); force where the ball is deepest; how far the force is off that with the
-chosen κ, a pull's until the ball lets go, at most, over its range; of a push also over the force of that tick, where Hertz's radius is two
-cells and more, and where it is three and more. Of a pull besides: force over height by a straight line; how
+Columns: element; ticks of a step; push or pull; κ over the chosen one (0: chosen by itself); force where the ball is deepest; how far the
+force is off that with the chosen κ, a pull's until the ball lets go, at most, over its range; of a push also over the force of that tick,
+where Hertz's radius is two cells and more, and where it is three and more. Of a pull besides: force over height by a straight line; how
 far it is off the line, at most over its range; the largest pull; the height above the block's top at which the ball lets go.
 """
 import argparse

@@ -13,6 +13,10 @@ bool has_ending(const std::string& file, const char* ending) {
   return std::filesystem::path(file).extension() == ending;
 }
 
+std::string name_with_ending(const std::string& file, const char* ending) {
+  return std::filesystem::path(file).replace_extension(ending).filename().string();
+}
+
 }  // namespace
 
 void require_input_file(const std::string& file, const std::string& place) {
@@ -58,16 +62,14 @@ std::string name_xdmf(const std::string& result) {
 void check_result_name(const scenario::Scenario& s, const std::string& result, const std::string& option) {
   if (has_ending(result, ".xdmf"))
     throw InputError(result, "", "is the name of the XDMF that is written beside a result",
-                     "give " + option + " a name such as " +
-                         std::filesystem::path(result).replace_extension(".h5").filename().string());
+                     "give " + option + " a name such as " + name_with_ending(result, ".h5"));
   require_no_input(s, result, option);
   require_no_input(s, name_xdmf(result), option);
   for (const char* ending : {".csv", ".txt", ".json", ".npy", ".npz", ".vtu", ".pvd", ".vtk", ".html", ".msh",
                              ".obj", ".stl", ".ply"})
     if (has_ending(result, ending))
       throw InputError(result, "", std::string("ends in ") + ending + ", and a result is written as HDF5",
-                       "give " + option + " a name such as " +
-                           std::filesystem::path(result).replace_extension(".h5").filename().string() +
+                       "give " + option + " a name such as " + name_with_ending(result, ".h5") +
                            "; argil export makes pages and VTK files of it");
 }
 
@@ -75,8 +77,7 @@ void check_cage_name(const std::string& surface, const std::string& cage) {
   require_other_file(cage, surface, "the surface");
   if (!has_ending(cage, ".msh"))
     throw InputError(cage, "", "does not end in .msh, and a cage is written as Gmsh",
-                     "give -o a name such as " +
-                         std::filesystem::path(cage).replace_extension(".msh").filename().string());
+                     "give -o a name such as " + name_with_ending(cage, ".msh"));
 }
 
 }  // namespace argil::run
