@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Friction of the pressure law: a ball slides over an elastic block at constant depth, for several coefficients, moduli, meshes and
-lengths of a step.
+"""Friction of the pressure law: a ball slides over an elastic block at constant depth, for several coefficients, moduli, meshes,
+lengths of a step and ways to find the force between steps.
 
 Usage: friction_table.py ARGIL [-o FILE.csv] [--tets COUNT …] [--only-steps]      writes results/contact/friction.csv, friction_steps.csv
 
@@ -21,6 +21,7 @@ from table_file import write_table
 ROOT = Path(__file__).resolve().parent.parent
 RADIUS, DEPTH, GAP, OFF = 0.008, 0.002, 0.0002, 0.001  # of the ball, below the top, above it at first, off the middle [m]
 START, END = -0.006, 0.004  # of the slide [m]
+RATES = ((1, "hold"), (5, "hold"), (14, "hold"), (14, "re_evaluate"), (14, "compliant"))  # ticks of a step, between them
 DOWN, REST, SLIDE, SETTLED = 112, 56, 420, 182  # ticks; the last: of the slide before the first that counts
 
 
@@ -60,14 +61,14 @@ def main():
     rows = []
     places = make_motion()
     with tempfile.TemporaryDirectory() as folder:
-        for tets, modulus, step, friction in itertools.product(options.tets, (3e4, 1e5), (1, 5, 14), (0.2, 0.5, 1.0)):
+        for tets, modulus, (step, between), friction in itertools.product(options.tets, (3e4, 1e5), RATES, (0.2, 0.5, 1.0)):
             force = find_force(options.argil, Path(folder), places, radius=RADIUS, friction=friction, ticks_of_step=step,
-                               modulus=modulus, target_tets=tets)[DOWN + REST + SETTLED::step]
+                               between=between, modulus=modulus, target_tets=tets)[DOWN + REST + SETTLED::step]
             ratio = -force[:, 0] / force[:, 2] / friction
             buzz = np.abs(np.diff(ratio, 2)).max()
-            rows.append([tets, modulus, step, friction, f"{ratio.mean():.4f}", f"{buzz:.4f}", f"{force[:, 2].mean():.4f}"])
+            rows.append([tets, modulus, step, between, friction, f"{ratio.mean():.4f}", f"{buzz:.4f}", f"{force[:, 2].mean():.4f}"])
             print(*rows[-1], flush=True)
-    write_table(options.output, ["target_tets", "modulus_Pa", "ticks_of_step", "friction", "side_over_normal_over_friction",
+    write_table(options.output, ["target_tets", "modulus_Pa", "ticks_of_step", "between_steps", "friction", "side_over_normal_over_friction",
                                  "largest_buzz", "normal_N"], rows)
 
 

@@ -15,6 +15,14 @@ Vec3 carry(const Vec3& point, const contact::Pose& from, const contact::Pose& to
   return to.position + to.orientation * (from.orientation.conjugate() * (point - from.position));
 }
 
+/// Coefficient of the patch as a whole, whose answer was these forces: on a round patch pressures add up to
+/// less than their sum, on a hemisphere to half of it, and friction is a share of each.
+double find_friction(double coefficient, const Vec3& along, double pressing) {
+  constexpr double kHemisphere = 2.0;
+  if (!(along.norm() > coefficient * pressing)) return coefficient;
+  return std::min(kHemisphere * coefficient, along.norm() / std::max(pressing, 0.0));
+}
+
 }  // namespace
 
 ForceBetweenSteps::ForceBetweenSteps(const RateParams& rates, double lag)
@@ -131,12 +139,13 @@ device::Wrench ForceBetweenSteps::forecast(const contact::Pose& tool, const Limi
   const Vec3 path = carry(place.centre, place.tool, tool) - place.centre;
   const Vec3 answered = m_state.answer.force - m_state.friction;
   double pressing = n.dot(answered) - place.stiffness * n.dot(path);
-  Vec3 along = m_state.answer.force - n.dot(answered) * n;
+  const Vec3 along_answered = m_state.answer.force - n.dot(answered) * n;
+  Vec3 along = along_answered;
   if (limits.holds || limits.friction > 0.0)
     along -= kAlongSurface * place.stiffness * (path - n.dot(path) * n);
   if (!limits.holds) {
     pressing = std::max({0.0, pressing, place.share * n.dot(limits.at_least)});
-    const double most = limits.friction * pressing;
+    const double most = find_friction(limits.friction, along_answered, n.dot(answered)) * pressing;
     if (const double length = along.norm(); length > most) along *= most / length;
   }
   const Vec3 force = pressing * n + along;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solid/body.h"
 #include "solid/contact_search.h"
@@ -122,6 +123,29 @@ Vec3 compute_contact_change(const Body& body, std::span<const PointStiffness> co
   // Newmark's step takes the mean of both ends.
   const double share = params.integrator == Integrator::newmark ? 0.5 : 1.0;
   return -share * body.step_contacts(contacts).compute_fall(i, body.trial.x, body.contacts);
+}
+
+double find_contact_norm(Body& body, std::span<const PointStiffness> contacts) {
+  Points& force = body.scratch.product;
+  const auto each_node = [&](auto call) {
+    for (const PointStiffness& contact : contacts)
+      for (std::size_t k = 0; k < contact.count(); ++k) call(contact.vertex[k]);
+  };
+  each_node([&](int n) { force.col(n).setZero(); });
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Vec3 given = contacts[i].is_near ? Vec3(Vec3::Zero()) : contacts[i].force;
+    spread(contacts[i], given + compute_contact_change(body, contacts, i), force);
+  }
+  constexpr double kCounted = std::numeric_limits<double>::infinity();
+  double now = 0.0, before = 0.0;
+  each_node([&](int n) {
+    if (force(0, n) == kCounted) return;
+    now += force.col(n).squaredNorm();
+    before += body.forces.internal.col(n).squaredNorm();
+    force(0, n) = kCounted;
+  });
+  each_node([&](int n) { force.col(n).setZero(); });
+  return std::sqrt(std::max(now, before));
 }
 
 void apply_contact_stiffness(const Body& body, std::span<const PointStiffness> contacts, Points& force) {

@@ -91,6 +91,10 @@ void spread(const PointStiffness& contact, const Vec3& f, Points& force);
 /// newmark takes the mean of both ends.
 Vec3 compute_contact_change(const Body& body, std::span<const PointStiffness> contacts, std::size_t i);
 
+/// Euclidean norm over all nodes of the forces that act on them by the contacts of a step at its iterate [N];
+/// where it is larger, that of the internal forces at the same nodes, which held the contacts before.
+double find_contact_norm(Body& body, std::span<const PointStiffness> contacts);
+
 /// Turns the contact forces that were given to a step into those that acted.
 void apply_contact_stiffness(const Body& body, std::span<const PointStiffness> contacts, Points& force);
 

@@ -6,6 +6,7 @@
 
 #include "solid/body.h"
 #include "solid/matrix.h"
+#include "solid/solve.h"
 
 namespace argil::solid {
 namespace {
@@ -109,9 +110,7 @@ bool correct_solution(Body& body, const Part& part, const StepLoads& loads) {
   Product product(body, part, loads.contacts);
   const double share = tau * loads.slack;
   double left = estimate_left(body, part, product, share);
-  const double enough =
-      std::min(2.0 * std::max(body.model.params.solver.tolerance * body.newton.first_residual, share),
-               tau * loads.limit);
+  const double enough = std::min(2.0 * std::max(find_enough(body), share), tau * loads.limit);
   if (left > enough) left = find_left(body, part, product);
   body.history.solver->set_goal(0.5 * enough);
   bool has_changed = false;

@@ -17,7 +17,7 @@ linear::SolveReport solve_system(Body& body, const Part& part, const StepLoads& 
   solver.set_goal(0.0);
   const linear::SolveReport report =
       solver.solve(body.system.matrix, product, body.system.rhs, body.system.delta);
-  if (is_first) body.newton.first_residual = report.first;
+  if (is_first) body.newton.solve_scale = report.first;
   count_solve(body, report);
   return report;
 }

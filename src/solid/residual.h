@@ -13,7 +13,7 @@ struct NewtonMeasures {
   bool is_follow_up = false;        ///< it is solved once more about where it came to
   bool has_moved = false;           ///< the internal forces are to be found anew
   double tolerance = 0.0;           ///< of the residual over residual_scale
-  double first_residual = 0.0;      ///< of the first guess of the step's first solve
+  double solve_scale = 0.0;         ///< norm that what a step's solves leave is small beside
   double residual_scale = 0.0;      ///< loads, momenta and reactions, which the residual is small against
   double corner_scale = 0.0;        ///< Σ‖corner force‖²
   Field rounding;                   ///< what rounding alone leaves of the internal force at each node [N]

@@ -35,6 +35,10 @@ void guess(Body& body, const Part& part, bool is_anew) {
         delta(k, row) = 0.0;
 }
 
+double find_enough(const Body& body) {
+  return body.model.params.solver.tolerance * body.newton.solve_scale;
+}
+
 void count_solve(Body& body, const linear::SolveReport& report) {
   StepCounters& counters = body.history.counters;
   counters.linear_iterations += report.iterations;

@@ -16,6 +16,9 @@ linear::SolverParams make_exact(linear::SolverParams solver);
 /// First guess of δ: the body goes on as before the step (`is_anew`), else δ as it is; Newton's is 0.
 void guess(Body& body, const Part& part, bool is_anew);
 
+/// Norm of the residual that a step's solves may leave.
+double find_enough(const Body& body);
+
 /// Books what a solve took and left in the step's counters.
 void count_solve(Body& body, const linear::SolveReport& report);
 

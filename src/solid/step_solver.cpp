@@ -32,13 +32,11 @@ class OneStep {
     guess(m_body, m_region.part(), m_is_first);
     linear::Solver& solver = *m_body.history.solver;
     const double slack = m_body.prediction.tau * m_loads.slack;
-    // With other contacts the same step goes on: to where its first solve was to end.
-    const double goal = m_body.model.params.solver.tolerance * m_body.newton.first_residual;
-    solver.set_goal(m_is_first ? slack : std::max(slack, goal));
+    solver.set_goal(m_is_first ? slack : std::max(slack, find_enough(m_body)));
     const bool follows_force = m_region.is_used() && m_loads.region_slack > 0.0;
     if (follows_force) m_region.grow_by_force(m_loads);
     linear::SolveReport report = solve_once();
-    if (m_is_first) m_body.newton.first_residual = report.first;
+    if (m_is_first) m_body.newton.solve_scale = report.first;
     solver.set_goal(slack);
     if (follows_force) follow_force(report);
     const bool is_number = report.iterations > 0 || !std::isnan(report.relative_residual);
@@ -75,7 +73,7 @@ class OneStep {
     guess(m_body, m_region.part(), true);
     report = solve_once();
     report.iterations += before;
-    if (m_is_first) m_body.newton.first_residual = report.first;
+    if (m_is_first) m_body.newton.solve_scale = report.first;
   }
 
   Body& m_body;
@@ -84,6 +82,14 @@ class OneStep {
   Product m_product;
   bool m_is_first;
 };
+
+/// At the first guess a stiff contact presses with many times the force that it ends with. What a solve
+/// leaves is to be small beside that force, too, or beside the one that the step began with.
+void limit_solve_scale(Body& body, std::span<const PointStiffness> contacts) {
+  if (contacts.empty()) return;
+  const double force = find_contact_norm(body, contacts);
+  body.newton.solve_scale = std::min(body.newton.solve_scale, body.prediction.tau * force);
+}
 
 /// The step is to be solved once more about where it came to, from the contacts that it has. False where it
 /// has been, is not asked for, or the body would turn inside out there.
@@ -106,15 +112,17 @@ StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loa
   // Contacts and flow may leave undone what the solve may; where there is slack, that has taken all of it.
   constexpr double kMostLeft = 2e-4;  // of what presses
   const double tolerance = loads.slack > 0.0 ? 0.0 : body.model.params.solver.tolerance;
+  limit_solve_scale(body, loads.contacts);
+  const double enough = std::max(body.prediction.tau * loads.slack, find_enough(body));
   const auto settle = [&] {
     return settle_contacts(body, region.part(), loads.contacts, std::min(kMostLeft, tolerance));
   };
-  solved = settle();
+  solved = settle() && report.relative_residual * report.first <= enough;
   if (solved && loads.slack > 0.0 && correct_solution(body, region.part(), loads)) {
     set_iterate(body, region.part(), 1.0);
     solved = settle();
   }
-  solved = solved && !find_unloading(body, region.part(), tolerance * body.newton.first_residual);
+  solved = solved && !find_unloading(body, region.part(), loads.slack > 0.0 ? 0.0 : find_enough(body));
   if (!solved)
     set_iterate(body, region.part(), 0.0);  // the same step anew
   else
