@@ -68,8 +68,8 @@ def main():
             buzz = np.abs(np.diff(ratio, 2)).max()
             rows.append([tets, modulus, step, between, friction, f"{ratio.mean():.4f}", f"{buzz:.4f}", f"{force[:, 2].mean():.4f}"])
             print(*rows[-1], flush=True)
-    write_table(options.output, ["target_tets", "modulus_Pa", "ticks_of_step", "between_steps", "friction", "side_over_normal_over_friction",
-                                 "largest_buzz", "normal_N"], rows)
+    write_table(options.output, ["target_tets", "modulus_Pa", "ticks_of_step", "between_steps", "friction",
+                                 "side_over_normal_over_friction", "largest_buzz", "normal_N"], rows)
 
 
 if __name__ == "__main__":
