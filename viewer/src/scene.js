@@ -77,8 +77,9 @@ function pointsToShow(result, { middle, box, size }) {
     if (!frame.has_tool || place.distanceTo(middle) > size) continue;
     const turn = new Quaternion(...frame.tool_orientation);
     for (const corner of corners) points.push(corner.clone().applyQuaternion(turn).add(place));
-    if (result.peak_force_N > 0)
-      points.push(place.addScaledVector(new Vector3(...frame.force_N), (PEAK_ARROW * size) / result.peak_force_N));
+    if (!(result.peak_force_N > 0)) continue;
+    for (const way of frame.mode === "pull" ? [1, -1] : [1])
+      points.push(place.clone().addScaledVector(new Vector3(...frame.force_N), (way * PEAK_ARROW * size) / result.peak_force_N));
   }
   return points;
 }
@@ -189,7 +190,21 @@ export class View {
     geometry.computeBoundingSphere();
   }
 
-  /** Tool and arrow of a frame; the arrow is as long as the force is large, the peak a third of the body. */
+  /** Of the body where it is nearest to a place. */
+  outwardNear(place) {
+    const { position, normal } = this.body.geometry.attributes;
+    const at = new Vector3();
+    let nearest = 0;
+    let least = Infinity;
+    for (let i = 0; i < position.count; ++i) {
+      const squared = at.fromBufferAttribute(position, i).distanceToSquared(place);
+      if (squared < least) [nearest, least] = [i, squared];
+    }
+    return at.fromBufferAttribute(normal, nearest);
+  }
+
+  /** Tool and arrow of a frame; the arrow is as long as the force is large, the peak a third of the body. It begins at the hand's
+   * point; one that would go into the body, which would hide it, ends there. */
   placeTool(frame, isShown) {
     const force = new Vector3(...frame.force_N);
     const size = force.length();
@@ -199,9 +214,12 @@ export class View {
     this.tool.position.set(...frame.tool_position_m);
     this.tool.quaternion.set(...frame.tool_orientation);
     if (!this.arrow.visible) return;
+    const length = (PEAK_ARROW * this.extent.size * size) / this.peak;
+    const way = force.normalize();
     this.arrow.position.copy(this.tool.position);
-    this.arrow.quaternion.copy(new Quaternion().setFromUnitVectors(UP, force.normalize()));
-    this.arrow.scale.setScalar((PEAK_ARROW * this.extent.size * size) / this.peak);
+    if (way.dot(this.outwardNear(this.tool.position)) < 0) this.arrow.position.addScaledVector(way, -length);
+    this.arrow.quaternion.copy(new Quaternion().setFromUnitVectors(UP, way));
+    this.arrow.scale.setScalar(length);
   }
 
   draw() { this.renderer.render(this.scene, this.camera); }

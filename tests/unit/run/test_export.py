@@ -246,6 +246,29 @@ class Pages(Folder):
             self.assertAlmostEqual(self.browser.evaluate(fitted), 1 / 1.06, delta=0.01)  # no farther away than that needs
         self.browser.call("Emulation.clearDeviceMetricsOverride")
 
+    def test_an_arrow_that_would_go_into_the_body_ends_at_the_hand(self):
+        pulled = self.path("pulled.h5")
+        press_a_ball(pulled, "/tool/mode=pull", "/contact/grip_strength_Pa=1e5")
+        self.open("--cage", result=pulled)
+        ends = self.browser.evaluate("""argil.result.frames.map((frame, number) => {
+          argil.show(number);
+          const {arrow, tool} = argil.view;
+          arrow.updateMatrixWorld();
+          const [tail, tip] = [0, 1].map((y) => arrow.localToWorld(argil.view.target.clone().set(0, y, 0)).distanceTo(tool.position));
+          return arrow.visible ? [tail, tip] : null;
+        })""")
+        with h5py.File(pulled) as result:
+            middle = result["mesh/rest_position"][:].mean(axis=0)
+            inward = 0
+            for frame, end in zip(self.browser.evaluate("argil.result.frames"), ends, strict=True):
+                if end is None:
+                    continue
+                is_inward = int(np.dot(frame["force_N"], np.array(frame["tool_position_m"]) - middle) < 0)
+                inward += is_inward
+                self.assertAlmostEqual(end[is_inward], 0.0, delta=1e-6)
+                self.assertGreater(end[not is_inward], 1e-4)
+            self.assertTrue(0 < inward < len(ends))
+
     def test_the_axis_that_is_chosen_points_up(self):
         self.open("--cage")
         self.assertEqual(self.browser.evaluate("document.getElementById('up').value"), "z")
