@@ -190,7 +190,7 @@ HHD hdInitDevice(HDstring name) {
 void hdDisableDevice(HHD handle) {
   StandIn& s = here();
   const Lock lock(s);
-  if (!s.is_open || handle != kHandle || s.is_running) misuse(s);
+  if (!s.is_open || handle != kHandle || s.is_running || !s.tasks.empty()) misuse(s);
   s.is_open = false;
   if (s.log != nullptr) s.log->is_disabled = 1;
 }
