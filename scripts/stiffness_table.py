@@ -5,11 +5,11 @@ of 14 ticks, on four-node tets; on ten-node ones with --elements. The solver is 
 
 Usage: stiffness_table.py ARGIL [-o FILE.csv] [--elements p1 p2]      writes results/contact/stiffness.csv
 
-Columns: element; law of elasticity; ticks of a step; speed on the way in; push or pull; κ over the chosen one (0: chosen by itself);
-force where the ball is deepest; how far the force is off that with the chosen κ, a pull's until the ball lets go, at most, over its
-range; of a push also over the force of that tick, where Hertz's radius is two cells and more, and where it is three and more. Of a pull
-besides: force over height by a straight line; how far it is off the line, at most over its range; the largest pull; the height above the
-block's top at which the ball lets go.
+Columns: element; law of elasticity; ticks of a step; how forces go on between steps; speed on the way in; push or pull; κ over the chosen
+one (0: chosen by itself); force where the ball is deepest; how far the force is off that with the chosen κ, a pull's until the ball lets
+go, at most, over its range; of a push also over the force of that tick, where Hertz's radius is two cells and more, and where it is three
+and more. Of a pull besides: force over height by a straight line; how far it is off the line, at most over its range; the largest pull;
+the height above the block's top at which the ball lets go.
 """
 import argparse
 import itertools
@@ -30,8 +30,10 @@ WAYS = {"slow": (150, 100, 1200), "fast": (40, 98, 110)}  # ticks down, at rest,
 HIGH = 0.004  # the end of the way out, above the top [m]
 CHOSEN = 80  # κ is so many times E* over the cell
 TIMES = (2, 10, 100)
-CASES = ((1, "slow", "push", "curnier"), (1, "slow", "pull", "curnier"), (1, "slow", "pull", "linear"), (14, "slow", "push", "curnier"),
-         (14, "slow", "pull", "curnier"), (7, "fast", "push", "curnier"), (14, "fast", "push", "curnier"))
+CASES = ((1, "slow", "push", "curnier", "hold"), (1, "slow", "pull", "curnier", "hold"), (1, "slow", "pull", "linear", "hold"),
+         (14, "slow", "push", "curnier", "hold"), (14, "slow", "pull", "curnier", "hold"), (7, "fast", "push", "curnier", "hold"),
+         (14, "fast", "push", "curnier", "hold"), (14, "fast", "push", "curnier", "re_evaluate"),
+         (14, "fast", "push", "curnier", "compliant"))
 TETS = {"p1": 8000, "p2": 2000}  # about as many nodes
 CELLS = (2, 3)  # to the radius of contact, from which on a change is looked for
 
@@ -43,7 +45,7 @@ def make_motion(way):
     return [(*AT, z) for z in heights]
 
 
-def make_scene(element, model, ticks, mode, stiffness):
+def make_scene(element, model, ticks, between, mode, stiffness):
     return {
         "about": "A ball presses on a block and goes out again.",
         "body": {"shape": {"kind": "box", "size_m": EDGE, "target_tets": TETS[element], "skin_triangles": 0},
@@ -53,7 +55,8 @@ def make_scene(element, model, ticks, mode, stiffness):
         "tool": {"shape": {"kind": "sphere", "radius_m": RADIUS}, "mode": mode},
         "contact": {"law": "pressure", "stiffness_Pa_per_m": stiffness, "grip_strength_Pa": STRENGTH},
         "dynamics": {"element": element, "model": model},
-        "haptics": {"physics_period_ticks": ticks, "water_period_ticks": ticks, "frame_period_ticks": 100 * ticks, "chatter_limit": 1},
+        "haptics": {"physics_period_ticks": ticks, "water_period_ticks": ticks, "frame_period_ticks": 100 * ticks, "between_frames": between,
+                    "chatter_limit": 1},
     }
 
 
@@ -86,13 +89,13 @@ def main():
     rows = []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for element, (ticks, way, mode, model) in itertools.product(options.elements, CASES):
+        for element, (ticks, way, mode, model, between) in itertools.product(options.elements, CASES):
             places = make_motion(way)
             down, rest, _ = WAYS[way]
             radius = np.sqrt(RADIUS * np.maximum(0, EDGE + RADIUS - np.array(places)[1:, 2]))  # Hertz's
             for times in (0, *TIMES):
                 stiffness = times * CHOSEN * MODULUS / (1 - POISSON**2) / cell if times else 0
-                force = run_along(options.argil, folder, places, make_scene(element, model, ticks, mode, stiffness))[:, 2]
+                force = run_along(options.argil, folder, places, make_scene(element, model, ticks, between, mode, stiffness))[:, 2]
                 if times == 0:
                     first, cell = force, find_cell(folder / "run.h5", element)
                 last, pull = measure_pull(force, places, down + rest) if mode == "pull" else (len(force), [""] * 4)
@@ -104,10 +107,10 @@ def main():
                     counts = [(radius >= cells * cell) & (first > 0) for cells in CELLS]
                     wide = [f"{np.abs(force[at] / first[at] - 1).max():.4f}" for at in counts]
                 speed = 1e3 * (GAP + DEPTH) / (down * PERIOD)
-                rows.append([element, model, ticks, f"{speed:.0f}", mode, times, f"{cell / 1e-3:.3f}", f"{force[down + rest - 1]:.4f}",
+                rows.append([element, model, ticks, between, f"{speed:.0f}", mode, times, f"{cell / 1e-3:.3f}", f"{force[down + rest - 1]:.4f}",
                              f"{off.max():.4f}", *wide, *pull])
                 print(*rows[-1], flush=True)
-    write_table(options.output, ["element", "model", "ticks_of_step", "speed_mm_per_s", "mode", "times_chosen", "cell_mm", "deepest_N",
+    write_table(options.output, ["element", "model", "ticks_of_step", "between_steps", "speed_mm_per_s", "mode", "times_chosen", "cell_mm", "deepest_N",
                                  "largest_change_over_range",
                                  *(f"from_{cells}_cells_over_force" for cells in CELLS), "slope_N_per_m", "off_line",
                                  "largest_pull_N", "lets_go_mm"], rows)

@@ -28,8 +28,8 @@ double find_friction(double coefficient, const Vec3& along, double pressing) {
 ForceBetweenSteps::ForceBetweenSteps(const RateParams& rates, double lag)
     : m_period(rates.haptic_period), m_planned(rates.physics_period_ticks), m_lag(lag) {}
 
-void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::Pose& from,
-                             const contact::Pose& to) {
+void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::Patch& patch,
+                             const contact::Pose& from, const contact::Pose& to) {
   Place& told = m_state.told;
   told.tool = {to.position + m_lag * (from.position - to.position),
                to.orientation.slerp(m_lag, from.orientation)};
@@ -46,6 +46,8 @@ void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::P
     inward += c.spring * c.normal;
   }
   if (!(told.springs > 0.0)) return;
+  const double of_half_space = 2.0 * patch.modulus * patch.radius;
+  if (of_half_space > 0.0) told.stiffness = 1.0 / (1.0 / of_half_space + 1.0 / told.springs);
   told.centre = carry(centre / told.springs, to, told.tool);
   told.outward = -inward.normalized();
   m_state.shares.clear();

@@ -4,6 +4,7 @@
 
 #include "base/archive.h"
 #include "contact/contact.h"
+#include "contact/pressure.h"
 #include "device/gate.h"
 #include "sim/compliance.h"
 #include "sim/contact_load.h"
@@ -25,8 +26,10 @@ class ForceBetweenSteps {
   /// `lag`: how far before the end of its way the tool was that a step answers for, in steps.
   ForceBetweenSteps(const RateParams& rates, double lag);
 
-  /// The body is told of these contacts, found while the tool went from `from` to `to`.
-  void tell(const contact::Contacts& contacts, const contact::Pose& from, const contact::Pose& to);
+  /// The body is told of these contacts, found while the tool went from `from` to `to`. K is that of a
+  /// half-space under a disc as large as their patch, 2 E* a; not known where that has no radius.
+  void tell(const contact::Contacts& contacts, const contact::Patch& patch, const contact::Pose& from,
+            const contact::Pose& to);
   /// Gives the body its part of what is owed, as forces in `load`.
   void repay(bool has_left, LoadCollector& load);
   /// The body has answered with this on the hand; `friction` is a part of its force [N].

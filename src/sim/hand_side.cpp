@@ -32,14 +32,14 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
   if (params.contact.law == contact::ContactLaw::pressure)
     m_pressure.emplace(surface.triangles(), surface.num_vertices(),
                        contact::make_tool_solid(params.contact.round_tool, tool),
-                       body.find_surface_stiffness(), params.solid.takes_contact_at_end(),
+                       body.find_surface_stiffness(), params.solid.solves_contact(),
                        params.contact.penalty);
   m_stiffness_before.reserve(static_cast<std::size_t>(surface.triangles().cols()));
   if (m_pressure && params.contact.friction > 0.0)
     m_friction.emplace(params.contact.friction, surface.num_vertices());
   if (m_pressure && params.rates.between_frames != BetweenFrames::hold &&
       params.rates.physics_period_ticks > 1)
-    m_between.emplace(params.rates, params.solid.takes_contact_at_end() ? 0.0 : 0.5);
+    m_between.emplace(params.rates, params.solid.solves_contact() ? 0.0 : 0.5);
   m_unpressed.with_touched = false;
   const Field& moduli = body.body().youngs_modulus;
   const double modulus = moduli.size() > 0 ? moduli.maxCoeff() : params.elastic.youngs_modulus;
@@ -278,7 +278,8 @@ void HandSide::gather_contact_forces() {
 
 void HandSide::hand_over(ContactLoad& load) {
   if (m_between) {
-    m_between->tell(keeps_shape() ? contact::Contacts{} : m_contacts, m_told_tool, m_state.tool);
+    const contact::Patch patch = m_grip.holds() ? contact::Patch{} : m_pressure->find_patch();
+    m_between->tell(keeps_shape() ? contact::Contacts{} : m_contacts, patch, m_told_tool, m_state.tool);
     m_between->repay(keeps_shape() || m_contacts.contacts.empty(), m_collector);
   }
   HandPose hand = pose();

@@ -118,7 +118,7 @@ void HandSide::find_pressure() {
   meet_surface();
   update_grip();
   if (m_grip.holds()) {
-    const contact::Pose& from = m_params.solid.takes_contact_at_end() ? m_state.tool : m_state.contact_tool;
+    const contact::Pose& from = m_params.solid.solves_contact() ? m_state.tool : m_state.contact_tool;
     return m_grip.find_contacts(m_touched.x_t1(), from, m_state.tool, m_contacts);
   }
   m_pressure->find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.tool, m_state.yielding,

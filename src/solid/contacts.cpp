@@ -120,9 +120,7 @@ void spread(const PointStiffness& contact, const Vec3& f, Points& force) {
 Vec3 compute_contact_change(const Body& body, std::span<const PointStiffness> contacts, std::size_t i) {
   const SolidParams& params = body.model.params;
   if (!params.implicit_contact || body.is_explicit()) return Vec3::Zero();
-  // Newmark's step takes the mean of both ends.
-  const double share = params.integrator == Integrator::newmark ? 0.5 : 1.0;
-  return -share * body.step_contacts(contacts).compute_fall(i, body.trial.x, body.contacts);
+  return -body.step_contacts(contacts).compute_fall(i, body.trial.x, body.contacts);
 }
 
 double find_contact_norm(Body& body, std::span<const PointStiffness> contacts) {

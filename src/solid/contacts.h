@@ -87,8 +87,7 @@ void add_contact_product(const StepContacts& contacts, const ContactActivity& ac
 void spread(const PointStiffness& contact, const Vec3& f, Points& force);
 
 /// How the force of contact i, of which a step was told, changed while the body moved: what to add [N] for
-/// the force that acted. An implicit step takes it at its end, f − k n n·(x' − x), or 0 where it let it go;
-/// newmark takes the mean of both ends.
+/// the force that acted. An implicit step takes it at its end, f − k n n·(x' − x), or 0 where it let it go.
 Vec3 compute_contact_change(const Body& body, std::span<const PointStiffness> contacts, std::size_t i);
 
 /// Euclidean norm over all nodes of the forces that act on them by the contacts of a step at its iterate [N];

@@ -279,14 +279,13 @@ void update_nodal_stiffness(Body& body) {
 
 void add_contacts(Body& body, std::span<const PointStiffness> contacts) {
   linear::BlockMatrix& matrix = body.system.matrix;
-  const double tau = body.prediction.tau;
+  const double scale = find_contact_share(body) * body.prediction.tau * body.prediction.tau;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const PointStiffness& contact = contacts[c];
     if (!body.contacts.is_acting(contact.group)) continue;
-    const Mat3 block =
-        contact.friction > 0.0
-            ? Mat3(tau * tau * body.step_contacts(contacts).stiffness(c, body.contacts))
-            : Mat3(tau * tau * contact.stiffness * contact.normal * contact.normal.transpose());
+    const Mat3 block = contact.friction > 0.0
+                           ? Mat3(scale * body.step_contacts(contacts).stiffness(c, body.contacts))
+                           : Mat3(scale * contact.stiffness * contact.normal * contact.normal.transpose());
     for (std::size_t i = 0; i < contact.count(); ++i)
       for (std::size_t j = 0; j < contact.count(); ++j) {
         const int row = body.model.row_of_node[static_cast<std::size_t>(contact.vertex[i])];
@@ -337,6 +336,11 @@ MatrixShares compute_shares(const Body& body) {
   const double viscous = tau * body.model.params.rayleigh_stiffness;
   const double mass = 1.0 + tau * body.model.params.rayleigh_mass;
   return is_exact ? MatrixShares{mass, viscous, elastic} : MatrixShares{mass, elastic + viscous, 0.0};
+}
+
+double find_contact_share(const Body& body) {
+  const bool is_mean = !body.prediction.is_static && body.model.params.integrator == Integrator::newmark;
+  return is_mean ? 2.0 : 1.0;
 }
 
 Mat3 kept_rotation(const Body& body, int point) {

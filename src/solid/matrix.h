@@ -16,6 +16,11 @@ bool needs_tangents(const Body& body);
 /// Of the present step.
 MatrixShares compute_shares(const Body& body);
 
+/// τ² of the contacts' stiffness, and τ of their fall, are so many times the step's. Newmark's rule for
+/// clay takes the mean force of both ends, and contacts by that rule gain energy wherever they come and go;
+/// so theirs is the force at the end [Kane1999].
+double find_contact_share(const Body& body);
+
 /// Frame of the stiffness whose rotation is kept: the present one, or that of the step's start.
 Mat3 kept_rotation(const Body& body, int point);
 

@@ -46,10 +46,9 @@ struct SolidParams {
   /// Tets whose law splits flow off by logarithms and that are at their yield resist a step as they flow.
   bool flows_in_solve = false;
   double min_volume_ratio = 0.0;  ///< det F at or below which the run stops
-  /// Does a step in time solve for its contacts' forces?
+  /// Does a step in time solve for its contacts' forces? Then it takes them as they are at its end, and lets
+  /// go what would draw there.
   bool solves_contact() const { return implicit_contact && integrator != Integrator::symplectic_euler; }
-  /// And does it take them as they are at its end, so that it lets go what would draw there?
-  bool takes_contact_at_end() const { return solves_contact() && integrator != Integrator::newmark; }
 };
 
 }  // namespace argil::solid

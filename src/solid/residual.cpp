@@ -9,6 +9,7 @@
 #include "base/ordered_sum.h"
 #include "base/parallel.h"
 #include "solid/body.h"
+#include "solid/matrix.h"
 #include "solid/product.h"
 
 namespace argil::solid {
@@ -124,8 +125,9 @@ void assemble_residual(Body& body, const Part& part, const StepLoads& loads) {
   if (is_viscous) compute_stiffness_product(body, part, v, params.rayleigh_stiffness, 0.0, product);
   if (!body.prediction.is_static && params.implicit_contact) {
     const StepContacts contacts = body.step_contacts(loads.contacts);
+    const double share = find_contact_share(body);
     for (std::size_t i = 0; i < loads.contacts.size(); ++i)
-      spread(loads.contacts[i], contacts.compute_fall(i, body.trial.x, body.contacts), product);
+      spread(loads.contacts[i], share * contacts.compute_fall(i, body.trial.x, body.contacts), product);
   }
   set_rhs(body, part, loads);
   if (body.is_newton()) set_residual_scale(body, loads);
@@ -191,7 +193,7 @@ double compute_potential(Body& body, const Part& part, const StepLoads& loads) {
     if (model.params.implicit_contact) {
       const StepContacts contacts = body.step_contacts(loads.contacts);
       for (std::size_t i = 0; i < loads.contacts.size(); ++i)
-        add(contacts.compute_potential(i, trial.x, body.contacts));
+        add(find_contact_share(body) * contacts.compute_potential(i, trial.x, body.contacts));
     }
   }
   body.newton.potential_scale = magnitude;

@@ -9,6 +9,7 @@
 #include "solid/contact_search.h"
 #include "solid/frame_lag.h"
 #include "solid/matrix.h"
+#include "solid/momentum.h"
 #include "solid/move.h"
 #include "solid/newton.h"
 #include "solid/solve.h"
@@ -108,6 +109,8 @@ StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loa
   ++body.history.counters.newton_iterations;
   const linear::SolveReport report = OneStep(body, region, loads, is_first).solve();
   if (!report.converged) return describe_failure(report, body.model.params.solver.tolerance, tick);
+  const bool balances = !region.is_used() && !linear::is_direct(body.model.params.solver.kind);
+  if (balances) balance_momentum(body, region.part(), loads.contacts);
   set_iterate(body, region.part(), 1.0);
   // Contacts and flow may leave undone what the solve may; where there is slack, that has taken all of it.
   constexpr double kMostLeft = 2e-4;  // of what presses
@@ -119,6 +122,7 @@ StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loa
   };
   solved = settle() && report.relative_residual * report.first <= enough;
   if (solved && loads.slack > 0.0 && correct_solution(body, region.part(), loads)) {
+    if (balances) balance_momentum(body, region.part(), loads.contacts);
     set_iterate(body, region.part(), 1.0);
     solved = settle();
   }

@@ -35,23 +35,21 @@ PointStiffness make_contact(Rng& rng, double mass, int j) {
 }
 
 /// Velocity of a mass after a step in which the contacts of `set` (bits) act, if that set is the right one:
-/// what acts presses, what does not would draw. m (v' − v) = h Σ forces, at the end of the step with x' − x
-/// = h v', or the mean of both ends with x' − x = ½ h (v + v').
+/// what acts presses, what does not would draw. m (v' − v) = h Σ forces, at the end of the step, with x' − x
+/// = h v' or, with Newmark's rule, ½ h (v + v').
 std::optional<Vec3> find_velocity(const std::vector<PointStiffness>& contacts, unsigned set, double mass,
                                   const Vec3& v, const Vec3& load, bool is_newmark) {
   const double tau = is_newmark ? 0.5 * kStep : kStep;
   const Vec3 start = is_newmark ? Vec3(tau * v) : Vec3::Zero();  // x' − x = start + tau v'
-  Vec3 right = mass * v + tau * load;
+  Vec3 right = mass * v + kStep * load;
   Mat3 left = mass * Mat3::Identity();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const PointStiffness& c = contacts[i];
-    if (is_newmark) right += tau * c.force;
     if ((set >> i & 1U) == 0) continue;
     const Mat3 K = c.stiffness * c.normal * c.normal.transpose();
-    right += tau * (c.force - K * start);
-    left += tau * tau * K;
+    right += kStep * (c.force - K * start);
+    left += kStep * tau * K;
   }
-  if (is_newmark) right += tau * load;
   const Vec3 after = left.inverse() * right;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const PointStiffness& c = contacts[i];
