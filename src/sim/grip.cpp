@@ -38,52 +38,83 @@ Vec3 place_in_world(const contact::Pose& tool, const Vec3& place) {
   return tool.position + tool.orientation * place;
 }
 
-/// Of a disc on which a ball would press as far apart [m]: the mean square distance of Hertz's pressure from
-/// the middle is 2/5 of its radius squared. `get`: force [N] and place of each of `parts`.
-template <class Parts, class Get>
-double find_radius(const Parts& parts, Get get) {
+/// Of a disc on which a ball would press as far from the middle [m]: the mean distance of Hertz's pressure
+/// from it is 3π/16 of its radius. The force on the vertices hardly hangs on κ, nor does their mean distance;
+/// the area that the tool covers, and the points of faces that bear it, do.
+double find_radius(const std::vector<VertexForce>& forces, const Points& x) {
   double sum = 0.0;
   Vec3 centre = Vec3::Zero();
-  for (const auto& part : parts) {
-    const auto [force, place] = get(part);
-    if (!(force > 0.0)) continue;
-    sum += force;
-    centre += force / sum * (place - centre);
+  for (const auto& [vertex, force] : forces) {
+    sum += force.norm();
+    centre += force.norm() / sum * (x.col(vertex) - centre);
   }
-  double square = 0.0;
-  for (const auto& part : parts) {
-    const auto [force, place] = get(part);
-    if (force > 0.0) square += force / sum * (place - centre).squaredNorm();
-  }
-  return std::sqrt(2.5 * square);
+  double distance = 0.0;
+  for (const auto& [vertex, force] : forces) distance += force.norm() / sum * (x.col(vertex) - centre).norm();
+  return 16.0 / (3.0 * std::numbers::pi) * distance;
 }
 
 }  // namespace
 
+void Grip::release() {
+  m_state.bonds.clear();
+  m_state.has_let_go = false;
+}
+
+void Grip::remember(const contact::Contacts& contacts) {
+  m_state.pressed.clear();
+  for (const auto* list : {&contacts.contacts, &contacts.near})
+    for (const contact::Contact& c : *list)
+      m_state.pressed.push_back({c.vertex, c.weight, c.normal, c.force.dot(c.normal), c.stiffness});
+}
+
+bool Grip::find_pressed(const Points& x_before, const Points& x, contact::Contacts& contacts) const {
+  if (m_state.pressed.empty()) return false;
+  contacts.clear();
+  for (const Pressed& pressed : m_state.pressed) {
+    Vec3 point = Vec3::Zero(), way = Vec3::Zero();
+    for (std::size_t k = 0; k < 3 && pressed.vertex[k] >= 0; ++k) {
+      point += pressed.weight[k] * x.col(pressed.vertex[k]);
+      way += pressed.weight[k] * (x.col(pressed.vertex[k]) - x_before.col(pressed.vertex[k]));
+    }
+    contact::Contact c;
+    c.end_force = pressed.force - pressed.stiffness * pressed.normal.dot(way);
+    if (!(c.end_force > 0.0)) continue;
+    c.vertex = pressed.vertex;
+    c.weight = pressed.weight;
+    c.normal = pressed.normal;
+    c.force = c.end_force * c.normal;
+    c.point = point;
+    contacts.contacts.push_back(c);
+  }
+  return true;
+}
+
 void Grip::hold(const contact::Contacts& contacts, const contact::Patch& patch, const Points& x,
                 const Vec3& on_hand, const contact::Pose& tool) {
   const std::vector<VertexForce> forces = find_vertex_forces(contacts);
-  const double of_vertices = find_radius(
-      forces, [&](const VertexForce& f) { return std::pair(f.force.norm(), Vec3(x.col(f.vertex))); });
-  const double stiffness = kStiffness * 2.0 * patch.modulus * std::max(patch.radius, of_vertices);
-  double squares = 0.0;
-  for (const VertexForce& f : forces) squares += f.force.squaredNorm();
+  const double radius = std::max(patch.radius, find_radius(forces, x));
+  const double stiffness = kStiffness * 2.0 * patch.modulus * radius;
+  double sum = 0.0, squares = 0.0;
+  Vec3 pressing = Vec3::Zero();
+  for (const VertexForce& f : forces) {
+    sum += f.force.norm();
+    squares += f.force.squaredNorm();
+    pressing += f.force;
+  }
+  // Friction is a part of it.
+  const Vec3 missing = -on_hand - pressing;
   const Quat to_tool = tool.orientation.conjugate();
   m_state.bonds.clear();
-  Vec3 on_body = Vec3::Zero();
   for (const auto& [vertex, force] : forces) {
-    on_body += force;
     const double part = force.squaredNorm() / squares * stiffness;
-    const Vec3 place = x.col(vertex) + force / part;
+    const Vec3 place = x.col(vertex) + (force + force.norm() / sum * missing) / part;
     m_state.bonds.push_back({vertex, to_tool * (place - tool.position), to_tool * force.normalized(), part});
   }
-  // In a dent a ball touches faces in their middles alone: the patch reaches as far as what presses.
-  const double of_points = find_radius(
-      contacts.contacts, [](const contact::Contact& c) { return std::pair(c.end_force, c.point); });
-  const double radius = std::max(patch.radius, of_points);
   m_state.area = std::numbers::pi * radius * radius;
-  const Vec3 normal = find_normal(tool);
-  m_state.pressing_force = holds() ? std::max({0.0, on_body.dot(normal), -on_hand.dot(normal)}) : 0.0;
+  m_state.pressing_force = holds() ? std::max(0.0, -on_hand.dot(find_normal(tool))) : 0.0;
+  m_state.answer = on_hand;
+  m_state.centre = find_centre(tool);
+  forget();
 }
 
 Vec3 Grip::find_normal(const contact::Pose& tool) const {
@@ -92,9 +123,20 @@ Vec3 Grip::find_normal(const contact::Pose& tool) const {
   return tool.orientation * normal.normalized();
 }
 
+Vec3 Grip::find_centre(const contact::Pose& tool) const {
+  Vec3 centre = Vec3::Zero();
+  double sum = 0.0;
+  for (const Bond& bond : m_state.bonds) {
+    sum += bond.stiffness;
+    centre += bond.stiffness / sum * (bond.place - centre);
+  }
+  return place_in_world(tool, centre);
+}
+
 void Grip::go_on_from(const Grip& before, const Points& x_before, const Points& x,
                       const contact::Pose& tool) {
   m_state = before.m_state;
+  forget();
   const double radius = std::sqrt(m_state.area / std::numbers::pi);
   double whole = 0.0, lost = 0.0;
   for (Bond& bond : m_state.bonds) {
@@ -112,13 +154,32 @@ void Grip::go_on_from(const Grip& before, const Points& x_before, const Points& 
   commit();
 }
 
-void Grip::test(const Vec3& on_hand, const contact::Pose& tool) {
+/// As the force has changed on as long a way before it, whether the clay has flowed or not; farther, by a
+/// half-space's stiffness under the patch.
+Vec3 Grip::forecast(const Vec3& on_hand, const Vec3& centre, const Vec3& now) const {
+  double stiffness = 0.0;
+  for (const Bond& bond : m_state.bonds) stiffness += bond.stiffness / kStiffness;
+  const Vec3 before = centre - m_state.centre;
+  const Vec3 way = now - centre;
+  const double length = before.squaredNorm();
+  const double share = length > 0.0 ? std::clamp(way.dot(before) / length, 0.0, 1.0) : 0.0;
+  return on_hand + share * (on_hand - m_state.answer) - stiffness * (way - share * before);
+}
+
+bool Grip::bears(const Vec3& on_hand, const Vec3& normal) const {
+  const Vec3 pull = on_hand + std::max(0.0, -on_hand.dot(normal)) * normal;
+  return pull.norm() <= m_strength * m_state.area;
+}
+
+void Grip::test(const Vec3& on_hand, const contact::Pose& tool, const contact::Pose& now) {
   if (!holds()) return;
   const Vec3 normal = find_normal(tool);
-  const double pressing = std::max(0.0, -on_hand.dot(normal));
-  if (pressing > m_state.pressing_force) return release();
-  const Vec3 pull = on_hand + pressing * normal;
-  if (pull.norm() <= m_strength * m_state.area) return;
+  if (-on_hand.dot(normal) > m_state.pressing_force) return release();
+  const Vec3 centre = find_centre(tool);
+  const Vec3 next = forecast(on_hand, centre, find_centre(now));
+  m_state.answer = on_hand;
+  m_state.centre = centre;
+  if (bears(on_hand, normal) && bears(next, find_normal(now))) return;
   m_state.bonds.clear();
   m_state.has_let_go = true;
 }
@@ -144,7 +205,9 @@ void Grip::find_contacts(const Points& x, const contact::Pose& from, const conta
 }
 
 void Grip::serialize(Archive& archive) {
-  archive.number("grip/has_let_go", m_state.has_let_go);
+  int phase = (m_state.has_let_go ? 1 : 0) + (m_state.pressed.empty() ? 0 : 2);
+  archive.number("grip/has_let_go", phase);
+  m_state.has_let_go = phase % 2 != 0;
   archive.number("grip/area", m_state.area);
   archive.number("grip/pressing_force", m_state.pressing_force);
   archive.records("grip/bonds", m_state.bonds, [](Bond& bond, auto field) {
@@ -153,6 +216,19 @@ void Grip::serialize(Archive& archive) {
     for (double& value : bond.normal) field(value);
     field(bond.stiffness);
   });
+  if (holds()) {
+    archive.array("grip/answer", m_state.answer);
+    archive.array("grip/centre", m_state.centre);
+  }
+  if (archive.is_restoring()) m_state.pressed.clear();
+  if (phase >= 2)
+    archive.records("grip/pressed", m_state.pressed, [](Pressed& pressed, auto field) {
+      for (int& vertex : pressed.vertex) field(vertex);
+      for (double& weight : pressed.weight) field(weight);
+      for (double& value : pressed.normal) field(value);
+      field(pressed.force);
+      field(pressed.stiffness);
+    });
   if (archive.is_restoring()) commit();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "base/archive.h"
@@ -22,15 +23,23 @@ class Grip {
   /// It has torn off, and holds nothing more until release().
   bool has_let_go() const { return m_state.has_let_go; }
 
-  /// Bonds what these contacts press on to the tool. The bonds carry the same forces, and hold until the tool
-  /// presses harder than now. `x`: the touched surface's vertices (3×n) [m].
+  /// Bonds what these contacts press on to the tool. The bonds carry `on_hand` [N], which the body has
+  /// answered to the tool there, shared out as the contacts press, and hold until the tool presses harder.
+  /// The patch is no smaller than `patch` says. `x`: the touched surface's vertices (3×n) [m].
   void hold(const contact::Contacts& contacts, const contact::Patch& patch, const Points& x,
             const Vec3& on_hand, const contact::Pose& tool);
-  void release() { m_state = {}; }
-  /// `on_hand` [N]: the force that the patch exerts on the tool. Lets go when it pulls by more than the grip
-  /// bears; what presses does not count. Where the tool presses harder than when it took hold, it holds
-  /// nothing: its patch grows.
-  void test(const Vec3& on_hand, const contact::Pose& tool);
+  /// The body gets these contacts for a step.
+  void remember(const contact::Contacts& contacts);
+  /// What the body has made of those, as its surface has gone from x_before to x: contacts that press with
+  /// the forces of its step. False where none are remembered.
+  bool find_pressed(const Points& x_before, const Points& x, contact::Contacts& contacts) const;
+  void forget() { m_state.pressed.clear(); }
+  void release();
+  /// `on_hand` [N]: the force on the tool that the body has answered to it at `tool`; it is at `now` when the
+  /// body gets the next one. Lets go when the patch pulls by more than the grip bears, or will there; what
+  /// presses does not count. Where the tool presses harder than when it took hold, it holds nothing: its
+  /// patch grows.
+  void test(const Vec3& on_hand, const contact::Pose& tool, const contact::Pose& now);
 
   /// The bonds as contacts with a surface at x (3×vertices), means over the tool's way.
   void find_contacts(const Points& x, const contact::Pose& from, const contact::Pose& to,
@@ -51,14 +60,28 @@ class Grip {
     Vec3 normal = Vec3::Zero();  ///< in the tool frame: the way out of the tool, unit
     double stiffness = 0.0;      ///< [N/m], in all directions
   };
+  /// Of a contact that presses, or that is near enough to do so in a step.
+  struct Pressed {
+    std::array<int, 3> vertex = {-1, -1, -1};
+    std::array<double, 3> weight = {};
+    Vec3 normal = Vec3::Zero();
+    double force = 0.0;      ///< along that [N], negative where it is apart
+    double stiffness = 0.0;  ///< [N/m]
+  };
   struct State {
     std::vector<Bond> bonds;
-    double area = 0.0;            ///< of the patch [m²]
-    double pressing_force = 0.0;  ///< [N] when it took hold
+    std::vector<Pressed> pressed;  ///< in the last step, while nothing is held
+    double area = 0.0;             ///< of the patch [m²]
+    double pressing_force = 0.0;   ///< [N] when it took hold
+    Vec3 answer = Vec3::Zero();    ///< the last one [N], on the hand
+    Vec3 centre = Vec3::Zero();    ///< of the places, with the tool for which that was [m]
     bool has_let_go = false;
   };
 
   Vec3 find_normal(const contact::Pose& tool) const;
+  Vec3 find_centre(const contact::Pose& tool) const;
+  Vec3 forecast(const Vec3& on_hand, const Vec3& centre, const Vec3& now) const;
+  bool bears(const Vec3& on_hand, const Vec3& normal) const;
 
   double m_strength;  // [Pa]
   State m_state, m_committed;

@@ -180,7 +180,7 @@ void HandSide::note_answer(const StepResult& result) {
   const double change = (answer - m_state.last_answer).norm();
   const bool follows = m_params.rates.between_frames != BetweenFrames::hold;
   m_state.force_jump = std::max(0.0, follows ? jump - change / m_params.rates.physics_period_ticks : jump);
-  m_state.last_answer = answer;
+  if (!result.is_held) m_state.last_answer = answer;
 }
 
 /// A force that is held, or carried on, is off by a share of the last jump that grows from tick to tick.

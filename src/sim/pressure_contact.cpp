@@ -13,6 +13,8 @@ using device::ToolMode;
 
 namespace {
 
+constexpr double kSurelyCovered = 0.75;  // of a patch's radius, which counts what is just beside it as well
+
 /// Of the least disc [m] that bears such a force [N] on clay that flows: a flat one of a rough punch bears
 /// 6.05 c_u, and nothing more. 0: the clay does not flow, or not at once.
 double find_least_radius(const Params& params, double force) {
@@ -41,18 +43,26 @@ bool HandSide::keeps_shape() const {
 /// A pulling tool presses in like a pushing one until the hand turns back; then it holds what it touches. Of
 /// a body that keeps its shape nothing would come along.
 void HandSide::update_grip() {
-  if (m_state.mode != ToolMode::pull || keeps_shape()) return m_grip.release();
-  m_grip.test(m_state.hand_force, m_state.contact_tool);
+  if (m_state.mode != ToolMode::pull || keeps_shape()) {
+    m_grip.forget();
+    return m_grip.release();
+  }
+  m_grip.test(m_state.last_answer, m_state.contact_tool, m_state.tool);
   if (m_grip.has_let_go() && m_state.num_contacts == 0) m_grip.release();
   const bool turns_back =
       (m_state.tool.position - m_state.contact_tool.position).dot(m_state.hand_force) > 0.0;
   if (m_grip.holds() || m_grip.has_let_go() || m_state.num_contacts == 0 || !turns_back) return;
   m_pressure->find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.contact_tool, m_state.yielding,
                             m_contacts);
+  // What is left of the depth after a step is not what has pressed in it: as the patch changes, its points
+  // are weighed anew, the more the stiffer κ.
+  m_grip.find_pressed(m_touched.x_t0(), m_touched.x_t1(), m_contacts);
+  // A step that does not take its contacts as they are at its end answers with a mean over the tool's way.
+  const Vec3 answer = m_params.solid.takes_contact_at_end() ? m_state.last_answer : m_contacts.force_on_tool;
   // Facets of a thin or coarse part touch with a corner or a ridge alone.
   contact::Patch patch = m_pressure->find_patch();
-  patch.radius = std::max(patch.radius, find_least_radius(m_params, m_state.hand_force.norm()));
-  m_grip.hold(m_contacts, patch, m_touched.x_t1(), m_state.hand_force, m_state.contact_tool);
+  patch.radius = std::max(kSurelyCovered * patch.radius, find_least_radius(m_params, answer.norm()));
+  m_grip.hold(m_contacts, patch, m_touched.x_t1(), answer, m_state.contact_tool);
 }
 
 void HandSide::meet_surface() {
@@ -123,6 +133,8 @@ void HandSide::find_pressure() {
   }
   m_pressure->find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.tool, m_state.yielding,
                             m_contacts);
+  const bool may_grip = m_state.mode == ToolMode::pull && !keeps_shape() && !m_grip.has_let_go();
+  if (may_grip && m_params.solid.takes_contact_at_end()) m_grip.remember(m_contacts);
   if (m_friction && !keeps_shape())
     m_friction->stretch(m_touched.x_t0(), m_touched.x_t1(), m_state.contact_tool, m_state.tool, m_contacts);
 }

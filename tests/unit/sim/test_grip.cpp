@@ -118,6 +118,17 @@ TEST(Grip, TakesHoldWithTheForcesThatPress) {
   EXPECT_LT((found.torque_on_tool - torque).norm(), 1e-15);
 }
 
+/// What the contacts press with may be off what the body has answered, which has friction too.
+TEST(Grip, TakesHoldWithWhatTheBodyHasAnswered) {
+  Scene patch;
+  const Vec3 answer = 0.8 * patch.on_hand + Vec3(0.05, -0.02, 0.0);
+  patch.grip.hold(patch.pressed, kPatch, patch.x, answer, patch.tool);
+  const contact::Contacts found = patch.find(patch.tool);
+  EXPECT_LT((found.force_on_tool - answer).norm(), 1e-12);
+  for (const contact::Contact& c : found.contacts)
+    EXPECT_LT((c.force + find_pressing(c.vertex[0]) / 0.6 * answer).norm(), 1e-12);
+}
+
 TEST(Grip, PullsAsItPushesInAllDirections) {
   for (const double contact : {10.0, 1e6}) {  // stiffness of the contact, which does not matter
     Scene patch;
@@ -136,19 +147,23 @@ TEST(Grip, PullsAsItPushesInAllDirections) {
   }
 }
 
-/// Where triangles are larger than the patch, the bonds are as stiff as befits the cells that bear it: the
-/// forces have the mean square distance from their middle of Hertz's pressure on a disc, 2/5 a².
+/// Of a disc on which Hertz's pressure lies as far from its middle in the mean, 3π/16 of the radius, as the
+/// scene's forces on vertices.
+double find_radius_of_forces(const Scene& patch) {
+  Vec3 centre = Vec3::Zero();
+  for (int v = 0; v < 3 * kPoints; ++v) centre += find_pressing(v) / 0.6 * patch.x.col(v);
+  double distance = 0.0;
+  for (int v = 0; v < 3 * kPoints; ++v) distance += find_pressing(v) / 0.6 * (patch.x.col(v) - centre).norm();
+  return 16.0 / (3.0 * std::numbers::pi) * distance;
+}
+
+/// Where triangles are larger than the patch, the bonds are as stiff as befits the cells that bear it.
 TEST(Grip, IsAsStiffAsTheCellsThatBearIt) {
   Scene patch;
   patch.grip.hold(patch.pressed, {1e-4, kPatch.modulus}, patch.x, patch.on_hand, patch.tool);
-  Vec3 centre = Vec3::Zero();
-  for (int v = 0; v < 3 * kPoints; ++v) centre += find_pressing(v) / 0.6 * patch.x.col(v);
-  double square = 0.0;
-  for (int v = 0; v < 3 * kPoints; ++v)
-    square += find_pressing(v) / 0.6 * (patch.x.col(v) - centre).squaredNorm();
   double all = 0.0;
   for (const contact::Contact& c : patch.find(patch.tool).contacts) all += c.stiffness;
-  EXPECT_NEAR(all / (50.0 * 2.0 * kPatch.modulus * std::sqrt(2.5 * square)), 1.0, 1e-12);
+  EXPECT_NEAR(all / (50.0 * 2.0 * kPatch.modulus * find_radius_of_forces(patch)), 1.0, 1e-12);
 }
 
 TEST(Grip, TurnsWithTheTool) {
@@ -191,10 +206,10 @@ TEST(Grip, LetsGoBeyondItsStrengthTimesItsArea) {
   for (const Vec3& direction : {Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0.6, 0, -0.8)}) {
     Scene patch;
     patch.hold();
-    patch.grip.test(0.999 * most * direction, patch.tool);
+    patch.grip.test(0.999 * most * direction, patch.tool, patch.tool);
     EXPECT_TRUE(patch.grip.holds()) << direction.transpose();
     EXPECT_FALSE(patch.grip.has_let_go());
-    patch.grip.test(1.001 * most * direction, patch.tool);
+    patch.grip.test(1.001 * most * direction, patch.tool, patch.tool);
     EXPECT_FALSE(patch.grip.holds()) << direction.transpose();
     EXPECT_TRUE(patch.grip.has_let_go());
     EXPECT_TRUE(patch.find(patch.tool).contacts.empty());
@@ -204,30 +219,58 @@ TEST(Grip, LetsGoBeyondItsStrengthTimesItsArea) {
 }
 
 /// In a dent a ball touches faces in their middles alone: less is covered than what presses lies apart.
-/// Hertz's pressure on a disc of radius a has the mean square distance 2/5 a² from its middle.
 TEST(Grip, BearsAsMuchAsADiscAsWideAsWhatPresses) {
-  Vec3 centre = Vec3::Zero();
-  const Scene scene;
-  for (std::size_t i = 0; i < kPoints; ++i)
-    centre += static_cast<double>(i + 1) / 6.0 * scene.pressed.contacts[i].point;
-  double square = 0.0;
-  for (std::size_t i = 0; i < kPoints; ++i)
-    square += static_cast<double>(i + 1) / 6.0 * (scene.pressed.contacts[i].point - centre).squaredNorm();
-  const double most = kStrength * std::numbers::pi * 2.5 * square;  // [N]
+  const double radius = find_radius_of_forces(Scene());
+  const double most = kStrength * std::numbers::pi * radius * radius;  // [N]
   for (const double share : {0.999, 1.001}) {
     Scene patch;
     patch.grip.hold(patch.pressed, {1e-4, kPatch.modulus}, patch.x, patch.on_hand, patch.tool);
-    patch.grip.test(-share * most * Vec3::UnitZ(), patch.tool);
+    patch.grip.test(-share * most * Vec3::UnitZ(), patch.tool, patch.tool);
     EXPECT_EQ(patch.grip.holds(), share < 1.0);
+  }
+}
+
+/// The force goes on as it has changed over as long a way before: lets go where the next answer would be more
+/// than the grip bears, not after it. Back from there it holds.
+TEST(Grip, LetsGoBeforeTheForceThatItCannotBear) {
+  const double most = kStrength * std::numbers::pi * kPatch.radius * kPatch.radius;  // [N]
+  const Vec3 way(0.0, 0.0, 1e-4);
+  const double answer = 0.5 * most;                    // of pull, after as much way
+  const double change = answer + Scene().on_hand.z();  // [N]
+  const double share = (most - answer) / change;       // of the way on which the rest is gone
+  for (const double part : {-1.0, 0.99 * share, 1.01 * share}) {
+    Scene patch;
+    patch.hold();
+    const contact::Pose there = shift(patch.tool, way);
+    patch.grip.test(-answer * Vec3::UnitZ(), there, shift(there, part * way));
+    EXPECT_EQ(patch.grip.holds(), part < share) << part;
+    EXPECT_EQ(patch.grip.has_let_go(), part > share) << part;
+  }
+}
+
+/// On what is farther than the way before, the force grows as that of a half-space under the patch, 2 E* a.
+TEST(Grip, ExpectsOnALongerWayWhatClayWouldAnswer) {
+  const double most = kStrength * std::numbers::pi * kPatch.radius * kPatch.radius;  // [N]
+  const Vec3 way(0.0, 0.0, 1e-4);
+  const double stiffness = 2.0 * kPatch.modulus * kPatch.radius;   // [N/m]
+  constexpr double kChange = 0.01;                                 // [N] on the way before
+  const double rest = most + Scene().on_hand.z() - 2.0 * kChange;  // [N] until it lets go
+  const double longest = 1.0 + rest / (stiffness * way.z());       // of the way before
+  for (const double length : {0.99 * longest, 1.01 * longest}) {
+    Scene patch;
+    patch.hold();
+    const contact::Pose there = shift(patch.tool, way);
+    patch.grip.test(patch.on_hand - kChange * Vec3::UnitZ(), there, shift(there, length * way));
+    EXPECT_EQ(patch.grip.holds(), length < longest) << length;
   }
 }
 
 TEST(Grip, HoldsWhatPressesLessThanWhenItTookHold) {
   Scene patch;
   patch.hold();
-  patch.grip.test(0.99 * patch.on_hand, patch.tool);
+  patch.grip.test(0.99 * patch.on_hand, patch.tool, patch.tool);
   EXPECT_TRUE(patch.grip.holds());
-  patch.grip.test(1.01 * patch.on_hand, patch.tool);  // presses harder: the patch grows
+  patch.grip.test(1.01 * patch.on_hand, patch.tool, patch.tool);  // presses harder: the patch grows
   EXPECT_FALSE(patch.grip.holds());
   EXPECT_FALSE(patch.grip.has_let_go());
 }
@@ -251,7 +294,7 @@ TEST(Grip, GoesOnFromWhatWasCommittedOrSaved) {
   Snapshot saved;
   Archive saving = Archive::make_saving(saved);
   patch.grip.serialize(saving);
-  patch.grip.test(Vec3(0, 0, -1e3), patch.tool);
+  patch.grip.test(Vec3(0, 0, -1e3), patch.tool, patch.tool);
   ASSERT_TRUE(patch.grip.has_let_go());
   patch.grip.roll_back();
   EXPECT_FALSE(patch.grip.has_let_go());
@@ -263,6 +306,15 @@ TEST(Grip, GoesOnFromWhatWasCommittedOrSaved) {
   other.grip.release();
   other.grip.roll_back();  // restoring is a commit
   EXPECT_EQ(other.find(pulled).force_on_tool, wanted);
+
+  // And with the answer by which it expects the next one.
+  const double most = kStrength * std::numbers::pi * kPatch.radius * kPatch.radius;  // [N]
+  const Vec3 way(0.0, 0.0, 1e-4);
+  const contact::Pose there = shift(patch.tool, way);
+  for (Grip* grip : {&patch.grip, &other.grip}) {
+    grip->test(-0.5 * most * Vec3::UnitZ(), there, shift(there, way));
+    EXPECT_TRUE(grip->has_let_go());
+  }
 }
 
 }  // namespace

@@ -569,6 +569,89 @@ TEST(GripInTheLoop, HoldsAgainOnlyAfterTheToolHasLeft) {
   EXPECT_NEAR(weak[4], weak[0], 0.2 * weak[0]);
 }
 
+/// A ball whose patch is two cells in radius is pressed in, rests, and is drawn up.
+struct Draw {
+  double rest = 0.0;               ///< pressing at rest [N]
+  std::vector<double> force = {};  ///< [N] after each tick since then
+
+  double pull() const { return -*std::min_element(force.begin(), force.end()); }
+  /// In which it still held.
+  int last_tick() const {
+    const double some = 0.2 * pull();
+    const auto last = std::find_if(force.rbegin(), force.rend(), [&](double f) { return f < -some; });
+    return static_cast<int>(force.rend() - last);
+  }
+};
+
+struct DrawWay {
+  double height = 0.0;  ///< by which it is drawn [m]
+  int ticks = 0;        ///< until there
+};
+
+Draw draw_up(Params params, double factor, std::initializer_list<DrawWay> ways) {
+  constexpr double kLarge = 0.02, kDepth = 4e-3, kStiffness = 6e8;  // κ [Pa/m], about as it is chosen
+  params.contact.round_tool = contact::RoundTool{kLarge, 0.0, kLarge, false};
+  params.contact.pressure_stiffness = factor * kStiffness;
+  params.contact.grip_strength = 5000.0;
+  const auto hand = [](double depth) {
+    device::DeviceSample sample = press_with(kLarge, depth);
+    sample.mode = ToolMode::pull;
+    return sample;
+  };
+  Simulation simulation(argil::test::make_block_body(10, 10, 5, Vec3(0.04, 0.04, test::kBlockHeight)),
+                        contact::make_sphere_tool(kLarge, 2), params, hand(-1e-3));
+  lead(simulation, hand(kDepth), 112);
+  Draw draw{lead(simulation, hand(kDepth), 28).back().z()};
+  for (const DrawWay& way : ways)
+    for (const Vec3& force : lead(simulation, hand(kDepth - way.height), way.ticks))
+      draw.force.push_back(force.z());
+  return draw;
+}
+
+/// The area of what is gripped, and so the pull at which it lets go, does not hang on κ.
+TEST(GripInTheLoop, LetsGoAtOnePullWhateverTheStiffness) {
+  std::vector<double> pulls;
+  for (const double factor : {1.0, 10.0, 100.0}) {
+    const Draw draw = draw_up(make_pressure_params(), factor, {{2.8e-3, 140}, {4.8e-3, 420}});
+    pulls.push_back(draw.pull());
+    EXPECT_LT(draw.last_tick(), 560);
+    EXPECT_GT(draw.last_tick(), 140);
+  }
+  for (const double pull : pulls) EXPECT_NEAR(pull / pulls[0], 1.0, 0.01);
+}
+
+/// The bonds begin with what the body has answered: the part of the force that is left after two steps of the
+/// grip does not hang on κ.
+TEST(GripInTheLoop, BeginsWithTheSameForceWhateverTheStiffness) {
+  std::vector<double> left;
+  for (const double factor : {1.0, 10.0, 100.0}) {
+    const Draw draw = draw_up(make_pressure_params(14), factor, {{2e-4, 28}});
+    ASSERT_GT(draw.rest, 1.0);
+    left.push_back(draw.force.back() / draw.rest);
+  }
+  for (const double share : left) EXPECT_NEAR(share, left[0], 0.01);
+}
+
+/// In long steps it lets go within one step of when it does in short ones, and pulls by no more or less than
+/// what the force changes by in a step.
+TEST(GripInTheLoop, LetsGoInLongStepsWhenItDoesInShortOnes) {
+  constexpr int kPeriod = 14;
+  for (const int ticks : {210, 560}) {
+    const auto draw = [&](int period, BetweenFrames method) {
+      return draw_up(make_pressure_params(period, method), 1.0, {{7e-3, ticks}});
+    };
+    const Draw fine = draw(1, BetweenFrames::hold);
+    ASSERT_LT(fine.last_tick(), ticks - 2 * kPeriod);
+    const auto last = static_cast<std::size_t>(fine.last_tick());
+    const double growth = fine.force[last - 1 - kPeriod] - fine.force[last - 1];  // in a step [N]
+    for (const BetweenFrames method : kMethods) {
+      const Draw coarse = draw(kPeriod, method);
+      EXPECT_NEAR(coarse.last_tick(), fine.last_tick(), kPeriod) << name_of(method) << ' ' << ticks;
+      EXPECT_NEAR(coarse.pull(), fine.pull(), growth) << name_of(method) << ' ' << ticks;
+    }
+  }
+}
+
 /// Force against the hand's height while it draws up an elastic block: a straight line, into tension.
 TEST(GripInTheLoop, DrawsAnElasticBlockByAStraightLine) {
   Simulation simulation = make_pressed_block(make_pressure_params(), ToolMode::pull);
