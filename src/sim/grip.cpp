@@ -205,6 +205,7 @@ void Grip::find_contacts(const Points& x, const contact::Pose& from, const conta
 }
 
 void Grip::serialize(Archive& archive) {
+  // One number says what follows, so that a state without a pull is none the larger.
   int phase = (m_state.has_let_go ? 1 : 0) + (m_state.pressed.empty() ? 0 : 2);
   archive.number("grip/has_let_go", phase);
   m_state.has_let_go = phase % 2 != 0;

@@ -32,8 +32,7 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
   if (params.contact.law == contact::ContactLaw::pressure)
     m_pressure.emplace(surface.triangles(), surface.num_vertices(),
                        contact::make_tool_solid(params.contact.round_tool, tool),
-                       body.find_surface_stiffness(), params.solid.solves_contact(),
-                       params.contact.penalty);
+                       body.find_surface_stiffness(), params.solid.solves_contact(), params.contact.penalty);
   m_stiffness_before.reserve(static_cast<std::size_t>(surface.triangles().cols()));
   if (m_pressure && params.contact.friction > 0.0)
     m_friction.emplace(params.contact.friction, surface.num_vertices());

@@ -57,8 +57,8 @@ void HandSide::update_grip() {
   // What is left of the depth after a step is not what has pressed in it: as the patch changes, its points
   // are weighed anew, the more the stiffer κ.
   m_grip.find_pressed(m_touched.x_t0(), m_touched.x_t1(), m_contacts);
-  // A step that does not take its contacts as they are at its end answers with a mean over the tool's way.
-  const Vec3 answer = m_params.solid.takes_contact_at_end() ? m_state.last_answer : m_contacts.force_on_tool;
+  // A step that does not solve for its contacts answers with a mean over the tool's way.
+  const Vec3 answer = m_params.solid.solves_contact() ? m_state.last_answer : m_contacts.force_on_tool;
   // Facets of a thin or coarse part touch with a corner or a ridge alone.
   contact::Patch patch = m_pressure->find_patch();
   patch.radius = std::max(kSurelyCovered * patch.radius, find_least_radius(m_params, answer.norm()));
@@ -134,7 +134,7 @@ void HandSide::find_pressure() {
   m_pressure->find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.tool, m_state.yielding,
                             m_contacts);
   const bool may_grip = m_state.mode == ToolMode::pull && !keeps_shape() && !m_grip.has_let_go();
-  if (may_grip && m_params.solid.takes_contact_at_end()) m_grip.remember(m_contacts);
+  if (may_grip && m_params.solid.solves_contact()) m_grip.remember(m_contacts);
   if (m_friction && !keeps_shape())
     m_friction->stretch(m_touched.x_t0(), m_touched.x_t1(), m_state.contact_tool, m_state.tool, m_contacts);
 }

@@ -73,7 +73,7 @@ class Recorded {
             surface().num_vertices(),
             contact::make_tool_solid(m_params.contact.round_tool, m_tool),
             m_simulation->body_side().find_surface_stiffness(),
-            m_params.solid.takes_contact_at_end(),
+            m_params.solid.solves_contact(),
             m_params.contact.penalty};
   }
 
