@@ -40,7 +40,9 @@ void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::P
   told.share = -1.0;
   Vec3 centre = Vec3::Zero();
   Vec3 inward = Vec3::Zero();
-  for (const contact::Contact& c : contacts.contacts) {
+  // Where nothing reaches into the surface, points that it has left by little may press in the step.
+  const std::vector<contact::Contact>& list = contacts.contacts.empty() ? contacts.near : contacts.contacts;
+  for (const contact::Contact& c : list) {
     told.springs += c.spring;
     centre += c.spring * c.point;
     inward += c.spring * c.normal;
@@ -51,7 +53,7 @@ void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::P
   told.centre = carry(centre / told.springs, to, told.tool);
   told.outward = -inward.normalized();
   m_state.shares.clear();
-  for (const contact::Contact& c : contacts.contacts)
+  for (const contact::Contact& c : list)
     m_state.shares.push_back({c.vertex, c.weight, Vec3::Constant(c.spring / told.springs)});
 }
 
@@ -91,6 +93,7 @@ void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& fricti
   m_state.answer = answer;
   m_state.friction = friction;
   m_state.place = m_state.told;
+  if (answer.force.isZero(0.0)) m_state.place.outward.setZero();
   const Vec3 pressure = answer.force - friction;
   if (presses() && pressure.dot(m_state.place.outward) > 0.0)
     m_state.place.outward = pressure.normalized();  // so that of pressure nothing is along the surface

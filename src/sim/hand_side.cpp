@@ -279,7 +279,8 @@ void HandSide::hand_over(ContactLoad& load) {
   if (m_between) {
     const contact::Patch patch = m_grip.holds() ? contact::Patch{} : m_pressure->find_patch();
     m_between->tell(keeps_shape() ? contact::Contacts{} : m_contacts, patch, m_told_tool, m_state.tool);
-    m_between->repay(keeps_shape() || m_contacts.contacts.empty(), m_collector);
+    const bool has_left = keeps_shape() || (m_contacts.contacts.empty() && m_contacts.near.empty());
+    m_between->repay(has_left, m_collector);
   }
   HandPose hand = pose();
   ++hand.ticks;  // this one ends

@@ -39,5 +39,30 @@ TEST(ForceBetweenSteps, OwesWhatTheHandFeelsOfAChangedAnswer) {
   }
 }
 
+/// Clay that a stiff contact has left by a little, and that presses again in the step: the hand feels what
+/// the step answers, not nothing until the next one. Where it answers nothing, nothing is carried on.
+TEST(ForceBetweenSteps, OfAPointThatWasOnlyNearIsTheAnswer) {
+  RateParams rates;
+  rates.physics_period_ticks = 14;
+  contact::Contact near;
+  near.vertex = {0, -1, -1};
+  near.weight = {1.0, 0.0, 0.0};
+  near.normal = -Vec3::UnitZ();
+  near.spring = 1e6;
+  contact::Contacts contacts;
+  contacts.near.push_back(near);
+  const contact::Pose tool;
+  for (const double answer : {1.2, 0.0}) {
+    ForceBetweenSteps between(rates, 0.0);
+    between.tell(contacts, {}, tool, tool);
+    between.receive({Vec3(0.0, 0.0, answer), Vec3::Zero()}, Vec3::Zero());
+    between.compare(1e3, Vec3::Zero());
+    EXPECT_EQ(between.forecast(tool, {}).force, Vec3(0.0, 0.0, answer));
+    contact::Pose deeper = tool;
+    deeper.position.z() = -1e-3;
+    EXPECT_NEAR(between.forecast(deeper, {}).force.z(), answer > 0.0 ? answer + 1.0 : 0.0, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace argil::sim
