@@ -192,8 +192,9 @@ double compute_potential(Body& body, const Part& part, const StepLoads& loads) {
     }
     if (model.params.implicit_contact) {
       const StepContacts contacts = body.step_contacts(loads.contacts);
+      const double share = find_contact_share(body);
       for (std::size_t i = 0; i < loads.contacts.size(); ++i)
-        add(find_contact_share(body) * contacts.compute_potential(i, trial.x, body.contacts));
+        add(share * contacts.compute_potential(i, trial.x, body.contacts));
     }
   }
   body.newton.potential_scale = magnitude;

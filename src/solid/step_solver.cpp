@@ -126,7 +126,7 @@ StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loa
     set_iterate(body, region.part(), 1.0);
     solved = settle();
   }
-  solved = solved && !find_unloading(body, region.part(), loads.slack > 0.0 ? 0.0 : find_enough(body));
+  solved = solved && !find_unloading(body, region.part(), tolerance * body.newton.solve_scale);
   if (!solved)
     set_iterate(body, region.part(), 0.0);  // the same step anew
   else
