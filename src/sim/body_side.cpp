@@ -157,7 +157,9 @@ StepStatus BodySide::find_equilibrium() {
 }
 
 BodyBetweenSteps BodySide::between_steps(Tick tick) {
-  return {m_solid, m_region.part(), m_surface, m_state.solid, m_params.rates.step_seconds(), tick};
+  return {m_solid,       m_region.part(),    m_surface,
+          m_state.solid, m_force.contacts(), m_params.rates.step_seconds(),
+          tick};
 }
 
 StepStatus BodySide::step(const ContactLoad& load, StepResult& result) {
@@ -207,6 +209,19 @@ void BodySide::begin_step(const ContactLoad& load, StepResult& result) {
   result.friction.setZero();
   for (const solid::PointStiffness& entry : load.stiffness)
     if (entry.friction > 0.0 && !entry.is_near) result.friction -= entry.force;
+  PressedMoments pressed;
+  for (std::size_t i = load.last_detection; i < load.stiffness.size(); ++i)
+    add_pressed(load, i, Vec3::Zero(), pressed);
+  result.pressed = pressed.find_patch();
+}
+
+/// A contact of a pressure whose force on the body has changed by this in the step.
+void BodySide::add_pressed(const ContactLoad& load, std::size_t i, const Vec3& change,
+                           PressedMoments& pressed) const {
+  const solid::PointStiffness& entry = load.stiffness[i];
+  if (m_params.rates.between_frames == BetweenFrames::hold || !entry.is_alone) return;
+  const double force = entry.normal.dot((entry.is_near ? Vec3(Vec3::Zero()) : entry.force) + change);
+  pressed.add(load.levers[i].point, force, entry.stiffness);
 }
 
 void BodySide::commit() {

@@ -95,6 +95,7 @@ class BodySide {
   bool assemble_or_stop();
   StepStatus solve(bool& is_solved);
   void apply_deflection(const ContactLoad& load, StepResult& result);
+  void add_pressed(const ContactLoad& load, std::size_t i, const Vec3& change, PressedMoments& pressed) const;
   void scale_velocity(const ContactPatch& patch);
   StepStatus update_kinematics();
   void flow();

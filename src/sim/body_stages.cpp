@@ -67,6 +67,7 @@ StepStatus BodySide::solve(bool& is_solved) {
 void BodySide::apply_deflection(const ContactLoad& load, StepResult& result) {
   const StageScope scope(m_observer, Stage::solve);
   solid::apply_contact_stiffness(m_solid, load.stiffness, m_force.contacts().at);
+  PressedMoments pressed;
   for (std::size_t i = load.last_detection; i < load.stiffness.size(); ++i) {
     const Vec3 at_rest = load.levers[i].force_at_rest * load.stiffness[i].normal;
     const Vec3 change =
@@ -74,7 +75,9 @@ void BodySide::apply_deflection(const ContactLoad& load, StepResult& result) {
     result.felt.force -= change;
     if (load.stiffness[i].friction > 0.0) result.friction -= change;
     result.felt.torque -= (load.levers[i].point - load.hand.tool.position).cross(change);
+    add_pressed(load, i, change, pressed);
   }
+  result.pressed = pressed.find_patch();
 }
 
 /// v ← G_d^{h/h_ref}(r) v with r from the point of contact (eq. 9). A body that nothing presses is left free,

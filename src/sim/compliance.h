@@ -6,6 +6,7 @@
 #include "base/archive.h"
 #include "base/status.h"
 #include "sim/contact_surface.h"
+#include "sim/nodal_force.h"
 
 namespace argil::sim {
 
@@ -34,6 +35,7 @@ struct BodyBetweenSteps {
   const solid::Part& part;  ///< of it, that moves
   const ContactSurface& surface;
   const solid::SolidState& state;
+  const NodalForce& contacts;  ///< that it bore when the step ended
   double step_s = 0.0;
   Tick tick = 0;  ///< number of the tick under way
 };

@@ -127,7 +127,7 @@ void LoadCollector::add_pressure(const contact::Contact& c, bool is_near, const 
     entry.group = static_cast<int>(i);
     entry.counts = entry.is_alone = true;
     entry.is_near = is_near;
-    entry.has_pressed = c.begin_force > 0.0;
+    entry.begin_force = part(i) * c.begin_force;
   }
   for (std::size_t i = first; c.friction > 0.0 && i < end; ++i) {
     solid::PointStiffness entry = m_load.stiffness[i];
@@ -145,7 +145,7 @@ void LoadCollector::serialize(Archive& archive) {
   m_load.serialize(archive);
   if (m_params.contact.law != contact::ContactLaw::pressure) return;
   archive.records("load/pressure", m_load.stiffness, [](solid::PointStiffness& s, auto field) {
-    field(s.is_alone), field(s.has_pressed), field(s.is_near), field(s.friction), field(s.partner);
+    field(s.is_alone), field(s.begin_force), field(s.is_near), field(s.friction), field(s.partner);
   });
 }
 
@@ -193,6 +193,7 @@ void LoadCollector::hand_over(const HandPose& hand, device::ToolMode mode, int n
     for (solid::PointStiffness& entry : m_load.stiffness) {
       entry.stiffness *= m_load.scale;
       entry.force *= m_load.scale;
+      entry.begin_force *= m_load.scale;
     }
     for (ContactLever& entry : m_load.levers) entry.force_at_rest *= m_load.scale;
   }

@@ -48,8 +48,8 @@ void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::P
     inward += c.spring * c.normal;
   }
   if (!(told.springs > 0.0)) return;
-  const double of_half_space = 2.0 * patch.modulus * patch.radius;
-  if (of_half_space > 0.0) told.stiffness = 1.0 / (1.0 / of_half_space + 1.0 / told.springs);
+  told.modulus = patch.modulus;
+  told.cell = patch.cell;
   told.centre = carry(centre / told.springs, to, told.tool);
   told.outward = -inward.normalized();
   m_state.shares.clear();
@@ -85,7 +85,8 @@ double ForceBetweenSteps::ticks_ahead() const {
 
 /// Where the force grows steadily from answer to answer, by ΔF, the hand has felt (½(N − 1) + N·lag) ΔF more
 /// in N ticks than that: that the body gets with the next one.
-void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& friction) {
+void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& friction,
+                                const PressedPatch& pressed) {
   m_state.owed += m_period * (m_state.excess + (m_state.ticks - m_planned) * m_state.answer.force) +
                   ticks_ahead() * m_period * (m_state.answer.force - answer.force);
   m_state.excess.setZero();
@@ -93,10 +94,14 @@ void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& fricti
   m_state.answer = answer;
   m_state.friction = friction;
   m_state.place = m_state.told;
-  if (answer.force.isZero(0.0)) m_state.place.outward.setZero();
+  Place& place = m_state.place;
+  const double half_space = pressed.find_half_space_stiffness(place.modulus, place.cell);
+  if (place.stiffness < 0.0 && half_space > 0.0)
+    place.stiffness = 1.0 / (1.0 / half_space + 1.0 / pressed.springs);
+  if (answer.force.isZero(0.0)) place.outward.setZero();
   const Vec3 pressure = answer.force - friction;
-  if (presses() && pressure.dot(m_state.place.outward) > 0.0)
-    m_state.place.outward = pressure.normalized();  // so that of pressure nothing is along the surface
+  if (presses() && pressure.dot(place.outward) > 0.0)
+    place.outward = pressure.normalized();  // so that of pressure nothing is along the surface
 }
 
 /// At the end of the step receive() takes this answer for what the body got in N ticks and what the hand felt
@@ -107,25 +112,38 @@ void ForceBetweenSteps::change_answer(const device::Wrench& answer, const Vec3& 
   m_state.friction = friction;
 }
 
-StepStatus ForceBetweenSteps::find_stiffness(const BodyBetweenSteps& body) {
+/// Of a grip, whose forces may cancel out: as they are shared by their springs.
+void ForceBetweenSteps::share_as_springs(const ContactSurface& surface) {
+  for (const SurfaceForce& share : m_state.shares)
+    for (std::size_t i = 0; i < 3 && share.vertex[i] >= 0; ++i) {
+      const std::span<const int> nodes = surface.nodes(share.vertex[i]);
+      const std::span<const double> weights = surface.weights(share.vertex[i]);
+      for (std::size_t k = 0; k < nodes.size(); ++k)
+        m_load.col(nodes[k]) += share.weight[i] * weights[k] * share.force.x() * m_state.told.outward;
+    }
+}
+
+StepStatus ForceBetweenSteps::find_stiffness(const BodyBetweenSteps& body, const PressedPatch& pressed) {
   Place& told = m_state.told;
-  if (told.outward.isZero(0.0) || !(told.springs > 0.0)) return StepStatus::ok();
-  const auto each_node = [&](auto use) {
-    for (const SurfaceForce& share : m_state.shares)
-      for (std::size_t i = 0; i < 3 && share.vertex[i] >= 0; ++i) {
-        const std::span<const int> nodes = body.surface.nodes(share.vertex[i]);
-        const std::span<const double> weights = body.surface.weights(share.vertex[i]);
-        for (std::size_t k = 0; k < nodes.size(); ++k)
-          use(nodes[k], share.weight[i] * weights[k] * share.force.x());
-      }
-  };
+  if (told.outward.isZero(0.0)) return StepStatus::ok();
   m_load.setZero(3, body.state.x.cols());
-  each_node([&](int node, double weight) { m_load.col(node) += weight * told.outward; });
+  double sum = 0.0;
+  if (pressed.springs > 0.0)
+    for (const int node : body.contacts.nodes()) {
+      const double force = -told.outward.dot(body.contacts.at.col(node));
+      m_load.col(node) = force * told.outward;
+      sum += force;
+    }
+  if (sum > 0.0) {
+    m_load /= sum;
+  } else {
+    m_load.setZero();
+    share_as_springs(body.surface);
+  }
   solid::prepare_response(body.solid, body.part, body.state, body.step_s);
   ARGIL_TRY(solid::find_response(body.solid, body.part, m_load, body.tick, m_response));
-  double deflection = 0.0;
-  each_node([&](int node, double weight) { deflection += weight * told.outward.dot(m_response.col(node)); });
-  told.stiffness = 1.0 / (deflection + 1.0 / told.springs);
+  const double deflection = m_load.cwiseProduct(m_response).sum();
+  told.stiffness = 1.0 / (deflection + 1.0 / (sum > 0.0 ? pressed.springs : told.springs));
   return StepStatus::ok();
 }
 
@@ -169,6 +187,8 @@ void ForceBetweenSteps::serialize(Archive& archive) {
     archive.array(name + "_centre", p.centre);
     archive.array(name + "_outward", p.outward);
     archive.number(name + "_springs", p.springs);
+    archive.number(name + "_modulus", p.modulus);
+    archive.number(name + "_cell", p.cell);
     archive.number(name + "_stiffness", p.stiffness);
     archive.number(name + "_share", p.share);
   };

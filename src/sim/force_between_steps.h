@@ -9,6 +9,7 @@
 #include "sim/compliance.h"
 #include "sim/contact_load.h"
 #include "sim/params.h"
+#include "sim/pressed_patch.h"
 
 namespace argil::sim {
 
@@ -26,21 +27,22 @@ class ForceBetweenSteps {
   /// `lag`: how far before the end of its way the tool was that a step answers for, in steps.
   ForceBetweenSteps(const RateParams& rates, double lag);
 
-  /// The body is told of these contacts, found while the tool went from `from` to `to`. K is that of a
-  /// half-space under a disc as large as their patch, 2 E* a; not known where that has no radius.
+  /// The body is told of these contacts, found while the tool went from `from` to `to`, on a patch of that
+  /// modulus and of such cells.
   void tell(const contact::Contacts& contacts, const contact::Patch& patch, const contact::Pose& from,
             const contact::Pose& to);
   /// Gives the body its part of what is owed, as forces in `load`.
   void repay(bool has_left, LoadCollector& load);
-  /// The body has answered with this on the hand; `friction` is a part of its force [N].
-  void receive(const device::Wrench& answer, const Vec3& friction);
+  /// The body has answered with this on the hand; `friction` is a part of its force [N]. K is that of a
+  /// half-space where the answer presses, unless find_stiffness() has found it.
+  void receive(const device::Wrench& answer, const Vec3& friction, const PressedPatch& pressed = {});
 
   /// Between two steps that force has become this for the hand, which the body has not got.
   void change_answer(const device::Wrench& answer, const Vec3& friction);
 
-  /// K of what the body was told, from its own matrix, before it answers: how it yields in a step to forces
-  /// that are shared as those of its contacts.
-  StepStatus find_stiffness(const BodyBetweenSteps& body);
+  /// K of the answer that the body is about to give, from its own matrix: how it yields in a step to forces
+  /// that are shared as those that it bears.
+  StepStatus find_stiffness(const BodyBetweenSteps& body, const PressedPatch& pressed);
   /// The last answer has not been compared yet.
   bool wants_unpressed() const { return presses() && m_state.place.share < 0.0; }
   /// What a surface as it is after the last answer would answer to the tool of it if it had not been pressed
@@ -75,6 +77,8 @@ class ForceBetweenSteps {
     Vec3 centre = Vec3::Zero();   // of what is touched [m]
     Vec3 outward = Vec3::Zero();  // unit: from the clay to the tool; zero without contacts
     double springs = 0.0;         // stiffness of the contacts themselves [N/m]
+    double modulus = 0.0;         // E* [Pa] of the body there
+    double cell = 0.0;            // edge of its cells there [m]
     double stiffness = -1.0;      // K [N/m]; negative: not known
     double share = -1.0;          // of an unpressed surface's force that counts; negative: not known
   };
@@ -90,6 +94,8 @@ class ForceBetweenSteps {
   };
 
   bool presses() const { return !m_state.place.outward.isZero(0.0); }
+
+  void share_as_springs(const ContactSurface& surface);
 
   /// ½(N − 1) + N·lag: ticks by which the hand feels a steady growth before the body answers with it.
   double ticks_ahead() const;

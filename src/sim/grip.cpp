@@ -67,8 +67,8 @@ void Grip::remember(const contact::Contacts& contacts) {
       m_state.pressed.push_back({c.vertex, c.weight, c.normal, c.force.dot(c.normal), c.stiffness});
 }
 
-bool Grip::find_pressed(const Points& x_before, const Points& x, contact::Contacts& contacts) const {
-  if (m_state.pressed.empty()) return false;
+void Grip::find_pressed(const Points& x_before, const Points& x, contact::Contacts& contacts) const {
+  if (m_state.pressed.empty()) return;
   contacts.clear();
   for (const Pressed& pressed : m_state.pressed) {
     Vec3 point = Vec3::Zero(), way = Vec3::Zero();
@@ -86,7 +86,6 @@ bool Grip::find_pressed(const Points& x_before, const Points& x, contact::Contac
     c.point = point;
     contacts.contacts.push_back(c);
   }
-  return true;
 }
 
 void Grip::hold(const contact::Contacts& contacts, const contact::Patch& patch, const Points& x,

@@ -31,8 +31,8 @@ class Grip {
   /// The body gets these contacts for a step.
   void remember(const contact::Contacts& contacts);
   /// What the body has made of those, as its surface has gone from x_before to x: contacts that press with
-  /// the forces of its step. False where none are remembered.
-  bool find_pressed(const Points& x_before, const Points& x, contact::Contacts& contacts) const;
+  /// the forces of its step. They stay what they are where none are remembered.
+  void find_pressed(const Points& x_before, const Points& x, contact::Contacts& contacts) const;
   void forget() { m_state.pressed.clear(); }
   void release();
   /// `on_hand` [N]: the force on the tool that the body has answered to it at `tool`; it is at `now` when the

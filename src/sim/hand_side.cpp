@@ -167,7 +167,7 @@ void HandSide::receive(StepResult& result) {
     m_pressure->exchange(result.stiffness);
     m_stiffness_before.swap(result.stiffness);
   }
-  if (m_between && !result.is_held) m_between->receive(result.felt, result.friction);
+  if (m_between && !result.is_held) m_between->receive(result.felt, result.friction, result.pressed);
 }
 
 /// Keeps by how much the answer is off what the hand has felt until now, less the way that the tool has gone
@@ -277,8 +277,8 @@ void HandSide::gather_contact_forces() {
 
 void HandSide::hand_over(ContactLoad& load) {
   if (m_between) {
-    const contact::Patch patch = m_grip.holds() ? contact::Patch{} : m_pressure->find_patch();
-    m_between->tell(keeps_shape() ? contact::Contacts{} : m_contacts, patch, m_told_tool, m_state.tool);
+    m_between->tell(keeps_shape() ? contact::Contacts{} : m_contacts, m_pressure->find_patch(), m_told_tool,
+                    m_state.tool);
     const bool has_left = keeps_shape() || (m_contacts.contacts.empty() && m_contacts.near.empty());
     m_between->repay(has_left, m_collector);
   }

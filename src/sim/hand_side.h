@@ -65,7 +65,7 @@ class HandSide {
   void roll_back(ContactLoad* load);
 
   /// After a step of the body and before its result, for `compliant`.
-  StepStatus update_compliance();
+  StepStatus update_compliance(const StepResult& result);
   /// The surface stands at `x` (3×vertices), as if it had always.
   void place_surface(const Points& x);
   /// Goes on as the hand of a body whose surface, now at `x`, has other vertices besides those it had.

@@ -85,7 +85,7 @@ StepStatus Simulation::tick(const device::DeviceSample& sample, const TickPlan& 
 void Simulation::start_step(HandSide& hand) {
   hand.hand_over(m_load);
   m_step_status = body_side().step(m_load, m_result);
-  if (m_step_status.is_ok() && m_result.has_moved) m_step_status = hand.update_compliance();
+  if (m_step_status.is_ok() && m_result.has_moved) m_step_status = hand.update_compliance(m_result);
   if (m_step_status.is_ok())
     body_side().commit();
   else

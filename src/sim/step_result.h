@@ -5,6 +5,7 @@
 #include "base/types.h"
 #include "contact/pressure.h"
 #include "device/gate.h"
+#include "sim/pressed_patch.h"
 #include "sim/state.h"
 
 namespace argil::sim {
@@ -24,6 +25,7 @@ struct StepResult {
   bool is_limited = false;  ///< motion was held back: `felt` is that of the step that was solved for
 
   Vec3 friction = Vec3::Zero();  ///< [N] part of that force: of a pressure's friction
+  PressedPatch pressed;          ///< where it acts, of a pressure; found where the hand carries it on
 
   std::vector<contact::StiffnessOfTriangle> stiffness;  ///< where the water has changed it: pressure law
 

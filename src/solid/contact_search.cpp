@@ -7,12 +7,12 @@
 
 #include "solid/body.h"
 #include "solid/product.h"
+#include "solid/solve.h"
 
 namespace argil::solid {
 namespace {
 
-constexpr int kRoundsWithoutSearch = 4;
-constexpr int kMostRounds = 80;  // of a search; then contacts are only let go
+constexpr int kMostRounds = 200;  // of a search
 constexpr double kConeTolerance = 1e-3;
 constexpr double kRounding = 1e-9;
 
@@ -27,6 +27,13 @@ Vec3 limit_force(const PointStiffness& contact, double friction_limit, const Vec
 double find_limit(std::span<const PointStiffness> list, std::size_t i, const std::vector<Vec3>& trial) {
   const auto partner = static_cast<std::size_t>(list[i].partner);
   return list[i].friction * std::max(0.0, list[i].normal.dot(trial[partner]));
+}
+
+/// The same for the first guess of a step: of what its contact pressed with where the step begins. As a stiff
+/// contact follows the tool, it would press with many times that if the body did not.
+double find_first_limit(std::span<const PointStiffness> list, std::size_t i, const std::vector<Vec3>& trial) {
+  const double begin = list[static_cast<std::size_t>(list[i].partner)].begin_force;
+  return begin > 0.0 ? list[i].friction * begin : find_limit(list, i, trial);
 }
 
 /// As it acts from where it would carry `trial`; where it slides, as `slip` says.
@@ -65,19 +72,24 @@ double limit_of(const ContactActivity& activity, std::size_t i) {
   return activity.friction.empty() ? 0.0 : activity.friction[i].limit;
 }
 
-/// Would a point that slid in the last solve slide back?
-bool has_turned(const PointStiffness& contact, const Friction& friction, const Vec3& trial) {
-  return friction.slip == Slip::tangent && friction.across.cross(contact.normal).dot(trial) < 0.0;
+/// Would a point that slides where it would exert `trial` slide back in the last solve, whose solution is
+/// `solved`? One that was a secant there needs only begin to.
+bool turns_back(const PointStiffness& contact, const Friction& friction, const Vec3& trial,
+                const Vec3& solved) {
+  constexpr double kBegins = 0.9;
+  if (friction.slip == Slip::tangent) return friction.across.cross(contact.normal).dot(solved) < 0.0;
+  return friction.slip == Slip::secant && solved.dot(trial) < kBegins * trial.squaredNorm();
 }
 
-/// `of_turned`: how one slides that would slide back. Its force was as large however little it moved, so that
-/// tangents would go to and fro.
+/// As all would act from where they would exert `trial`. `of_turned`: how one slides that would slide back at
+/// the last solution. Its force was as large however little it moved, so that tangents would go to and fro.
 void choose(std::span<const PointStiffness> list, const std::vector<Vec3>& trial, Slip of_turned,
             ContactActivity& activity) {
   for (std::size_t i = 0; i < list.size(); ++i)
     if (list[i].friction > 0.0) {
       Friction& friction = activity.friction[i];
-      const Slip slip = has_turned(list[i], friction, trial[i]) ? of_turned : Slip::tangent;
+      const Slip slip =
+          turns_back(list[i], friction, trial[i], activity.trial[i]) ? of_turned : Slip::tangent;
       friction = make_friction(list[i], friction.limit, trial[i], slip);
     } else if (list[i].is_alone) {
       activity.acts[i] = list[i].normal.dot(trial[i]) > 0.0 ? 1 : 0;
@@ -176,15 +188,27 @@ void go_to_least(Body& body, const Part& part, std::span<const PointStiffness> l
     activity.search.trial[i] += t * (activity.trial[i] - activity.search.trial[i]);
 }
 
-/// Whether what would draw has been let go.
-bool let_go(std::span<const PointStiffness> list, ContactActivity& activity) {
-  bool has_changed = false;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    if (!list[i].is_alone || activity.acts[i] == 0 || list[i].normal.dot(activity.trial[i]) >= 0.0) continue;
-    activity.acts[i] = 0;
-    has_changed = true;
-  }
-  return has_changed;
+/// The step ends at the least found so far, with the forces that contacts exert there: what they are off
+/// Coulomb's law, or the body off its balance, is small beside them.
+bool take_least(Body& body, const Part& part, std::span<const PointStiffness> list) {
+  ContactActivity& activity = body.contacts;
+  activity.search.has_given_up = true;
+  body.system.delta = activity.search.delta;
+  set_iterate(body, part, 1.0);
+  activity.trial = activity.search.trial;
+  choose(list, activity.trial, Slip::tangent, activity);
+  return true;
+}
+
+/// The limits may follow what presses: what is off by those that there are is little beside what is off by
+/// those that there should be; the less the more often they have.
+bool is_least(const Misfit& misfit, const Misfit& of_cone, double pressing_tolerance, int num_updates) {
+  constexpr int kFewUpdates = 3;
+  const double little = num_updates < kFewUpdates ? 0.5 : 0.1;
+  constexpr double kFrictionTolerance = 0.1 * kConeTolerance;
+  const double of_cone_share = of_cone.friction_sum > 0.0 ? of_cone.friction / of_cone.friction_sum : 0.0;
+  return misfit.pressing <= std::max(pressing_tolerance, little * of_cone_share) * misfit.pressing_sum &&
+         misfit.friction <= std::max(kFrictionTolerance * misfit.friction_sum, little * of_cone.friction);
 }
 
 }  // namespace
@@ -194,20 +218,20 @@ void start_alone(std::span<const PointStiffness> contacts, const Points& v, doub
   std::vector<Vec3>& trial = activity.trial;
   trial.resize(contacts.size());
   bool has_friction = false;
-  const bool has_pressed =
-      std::any_of(contacts.begin(), contacts.end(), [](const PointStiffness& c) { return c.has_pressed; });
+  const bool has_pressed = std::any_of(contacts.begin(), contacts.end(),
+                                       [](const PointStiffness& c) { return c.begin_force > 0.0; });
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     trial[i] = contacts[i].force;
     has_friction = has_friction || contacts[i].friction > 0.0;
     if (contacts[i].is_alone)  // most of a body's way is that of the tool, so that few points come or go
-      activity.acts[i] = (has_pressed ? contacts[i].has_pressed : !contacts[i].is_near) ? 1 : 0;
+      activity.acts[i] = (has_pressed ? contacts[i].begin_force > 0.0 : !contacts[i].is_near) ? 1 : 0;
   }
   if (!has_friction) return;
   activity.friction.resize(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i)
     if (contacts[i].friction > 0.0)
       activity.friction[i] =
-          make_friction(contacts[i], find_limit(contacts, i, trial),
+          make_friction(contacts[i], find_first_limit(contacts, i, trial),
                         compute_trial(contacts[i], step_s * find_mean(contacts[i], v)), Slip::secant);
 }
 
@@ -243,35 +267,24 @@ bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffnes
   if (!activity.are_alone) return !update_active_contacts(contacts, body.trial.x, activity);
   find_trials(contacts, body.trial.x, activity.trial);
   const double pressing_tolerance = std::max(kRounding, tolerance);
-  if (activity.num_updates < kRoundsWithoutSearch) {
-    const Misfit misfit = find_misfit(list, activity, true);
-    if (misfit.pressing <= pressing_tolerance * misfit.pressing_sum &&
-        misfit.friction <= kConeTolerance * misfit.friction_sum)
-      return true;
-    ++activity.num_updates;
-    move_limits(list, 1.0, activity);
-    if (activity.num_updates == kRoundsWithoutSearch) stand_at_solution(body, activity);
-    choose(list, activity.trial, Slip::secant, activity);
-    return false;
+  const Misfit of_cone = find_misfit(list, activity, true);
+  if (of_cone.pressing <= pressing_tolerance * of_cone.pressing_sum &&
+      of_cone.friction <= kConeTolerance * of_cone.friction_sum)
+    return true;
+  ContactSearch& search = activity.search;
+  if (search.num_rounds++ >= kMostRounds) {
+    go_to_least(body, part, list);
+    return take_least(body, part, list);
   }
-  if (activity.search.num_rounds++ == kMostRounds) {
-    --activity.search.num_rounds;
-    return !let_go(list, activity);
-  }
-  constexpr double kFrictionTolerance = 0.1 * kConeTolerance;
-  const Misfit misfit = find_misfit(list, activity, false);
-  if (misfit.pressing <= pressing_tolerance * misfit.pressing_sum &&
-      misfit.friction <= kFrictionTolerance * misfit.friction_sum) {
-    const Misfit of_cone = find_misfit(list, activity, true);
-    if (of_cone.friction <= kConeTolerance * of_cone.friction_sum) return true;
-    ++activity.num_updates;
-    constexpr int kUpdatesInFull = 12;
-    move_limits(list, activity.num_updates < kUpdatesInFull ? 1.0 : 0.5, activity);
+  constexpr int kUpdatesInFull = 12;
+  if (search.num_rounds == 1 ||
+      is_least(find_misfit(list, activity, false), of_cone, pressing_tolerance, activity.num_updates)) {
+    move_limits(list, ++activity.num_updates < kUpdatesInFull ? 1.0 : 0.5, activity);
     stand_at_solution(body, activity);
   } else {
     go_to_least(body, part, list);
   }
-  choose(list, activity.search.trial, Slip::tangent, activity);
+  choose(list, search.trial, Slip::secant, activity);
   return false;
 }
 

@@ -13,8 +13,7 @@ namespace argil::solid {
 
 void ContactActivity::start(std::span<const PointStiffness> contacts, const Points& v, double step_s) {
   acts.assign(contacts.size(), 1);
-  num_updates = 0;
-  search.num_rounds = 0;
+  go_on();
   are_alone = std::all_of(contacts.begin(), contacts.end(),
                           [](const PointStiffness& c) { return c.group < 0 || c.is_alone; });
   friction.clear();

@@ -28,9 +28,10 @@ struct Friction {
 
 /// Where the search for the contacts that act stands, within a step.
 struct ContactSearch {
-  Points delta;             ///< δ there, a column a row [m/s]
-  std::vector<Vec3> trial;  ///< of each contact there: what it would exert without a limit [N]
-  int num_rounds = 0;       ///< since it began
+  Points delta;               ///< δ there, a column a row [m/s]
+  std::vector<Vec3> trial;    ///< of each contact there: what it would exert without a limit [N]
+  int num_rounds = 0;         ///< since it began
+  bool has_given_up = false;  ///< stands at the best that it has found
 };
 
 /// Which contacts act in the present step, and how.
@@ -47,7 +48,10 @@ struct ContactActivity {
   /// acts where it has pressed, or, if none has, where it is not near; all others act.
   void start(std::span<const PointStiffness> contacts, const Points& v, double step_s);
   /// They act as they do; the search for others begins anew.
-  void go_on() { num_updates = search.num_rounds = 0; }
+  void go_on() {
+    num_updates = search.num_rounds = 0;
+    search.has_given_up = false;
+  }
   bool is_acting(int group) const { return group < 0 || acts[static_cast<std::size_t>(group)] != 0; }
 };
 

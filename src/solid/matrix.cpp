@@ -279,7 +279,7 @@ void update_nodal_stiffness(Body& body) {
 
 void add_contacts(Body& body, std::span<const PointStiffness> contacts) {
   linear::BlockMatrix& matrix = body.system.matrix;
-  const double scale = find_contact_share(body) * body.prediction.tau * body.prediction.tau;
+  const double scale = find_contact_scale(body);
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const PointStiffness& contact = contacts[c];
     if (!body.contacts.is_acting(contact.group)) continue;
@@ -341,6 +341,10 @@ MatrixShares compute_shares(const Body& body) {
 double find_contact_share(const Body& body) {
   const bool is_mean = !body.prediction.is_static && body.model.params.integrator == Integrator::newmark;
   return is_mean ? 2.0 : 1.0;
+}
+
+double find_contact_scale(const Body& body) {
+  return find_contact_share(body) * body.prediction.tau * body.prediction.tau;
 }
 
 Mat3 kept_rotation(const Body& body, int point) {

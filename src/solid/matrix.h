@@ -20,6 +20,8 @@ MatrixShares compute_shares(const Body& body);
 /// clay takes the mean force of both ends, and contacts by that rule gain energy wherever they come and go;
 /// so theirs is the force at the end [Kane1999].
 double find_contact_share(const Body& body);
+/// How often the contacts' stiffness enters the matrix: that many times τ².
+double find_contact_scale(const Body& body);
 
 /// Frame of the stiffness whose rotation is kept: the present one, or that of the step's start.
 Mat3 kept_rotation(const Body& body, int point);

@@ -25,7 +25,7 @@ struct OfContacts {
 OfContacts add_up(const Body& body, std::span<const PointStiffness> list) {
   OfContacts sum;
   if (!body.model.params.implicit_contact) return sum;
-  const double scale = find_contact_share(body) * body.prediction.tau * body.prediction.tau;
+  const double scale = find_contact_scale(body);
   const StepContacts contacts = body.step_contacts(list);
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (!body.contacts.is_acting(list[i].group)) continue;

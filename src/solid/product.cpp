@@ -132,10 +132,9 @@ double Product::multiply_tets(const Points& x, Points& y) {
   clear_held(model, u);
   force.setZero(3, u.cols());
   compute_stiffness_product(m_body, m_part, u, share.kept, share.exact, force);
-  const double tau = m_body.prediction.tau;
   if (!m_body.prediction.is_static && model.params.implicit_contact)
-    add_contact_product(m_body.step_contacts(m_contacts), m_body.contacts, u,
-                        find_contact_share(m_body) * tau * tau, force);
+    add_contact_product(m_body.step_contacts(m_contacts), m_body.contacts, u, find_contact_scale(m_body),
+                        force);
   for (int row = 0; row < model.num_free(); ++row) {
     const int n = model.node_of_row[static_cast<std::size_t>(row)];
     y.col(row) = share.mass * m_body.materials.mass()(n) * x.col(row) + force.col(n);
@@ -161,10 +160,9 @@ void Product::multiply_present(const Points& x, Points& y) {
   });
   clear_held(model, u);
   compute_present_product(m_body, m_part, u, force);
-  const double tau = m_body.prediction.tau;
   if (model.params.implicit_contact)
     add_contact_product(m_body.step_contacts(m_contacts), m_body.contacts, u,
-                        find_contact_share(m_body) * tau * tau / share.kept, force);
+                        find_contact_scale(m_body) / share.kept, force);
   clear_held(model, force);
   m_part.rows.each(model.num_free(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t row = begin; row < end; ++row) {

@@ -24,7 +24,8 @@ struct PointStiffness {
   int group = -1;             ///< number of the group's first entry; −1: acts whatever its force
   bool counts = false;        ///< it is along this normal that its group must not draw
   bool is_alone = false;
-  bool has_pressed = false;  ///< it does where the step begins, which is the first guess of what acts
+  double begin_force =
+      0.0;               ///< [N] where the step begins: what presses there is the first guess of what acts
   bool is_near = false;  ///< n·f ≤ 0: it presses only where the body comes to it; f is no part of the loads
   /// > 0: this is the friction of the contact `partner`, with Coulomb's coefficient μ: a spring of
   /// `stiffness` in all directions across that one's normal, whose `force` without the body's motion is f; it

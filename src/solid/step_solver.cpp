@@ -120,7 +120,8 @@ StepStatus solve_one_step(Body& body, ActiveRegion& region, const StepLoads& loa
   const auto settle = [&] {
     return settle_contacts(body, region.part(), loads.contacts, std::min(kMostLeft, tolerance));
   };
-  solved = settle() && report.relative_residual * report.first <= enough;
+  solved =
+      settle() && (body.contacts.search.has_given_up || report.relative_residual * report.first <= enough);
   if (solved && loads.slack > 0.0 && correct_solution(body, region.part(), loads)) {
     if (balances) balance_momentum(body, region.part(), loads.contacts);
     set_iterate(body, region.part(), 1.0);

@@ -495,6 +495,62 @@ TEST(PressureStiffness, DoubledChangesNoTickByAHundredth) {
   EXPECT_LT(largest, 0.01);
 }
 
+/// A ball that comes fast, slides and leaves, in steps of fourteen ticks: what the hand feels between them
+/// hangs on the forces that press, not on the points that do (1 to 4 % of the range else).
+TEST(PressureStiffness, DoubledChangesNoFastPushByAHundredth) {
+  constexpr double kDepth = 3e-3, kSpeed = 0.06;
+  constexpr int kPeriod = 14;
+  for (const BetweenFrames method : {BetweenFrames::re_evaluate, BetweenFrames::compliant})
+    for (const double friction : {0.0, 0.6}) {
+      std::vector<std::vector<Vec3>> forces;
+      double automatic = 0.0;
+      for (const double factor : {0.0, 2.0}) {
+        Params params = make_pressure_params(kPeriod, method);
+        params.solid.solver = {};
+        params.contact.friction = friction;
+        params.contact.pressure_stiffness = factor * automatic;
+        Simulation simulation = make_pressed_block(params, ToolMode::push, 2);
+        if (factor == 0.0) automatic = simulation.body_side().find_surface_stiffness().per_area.mean();
+        const int ticks = static_cast<int>((kDepth + 1e-3) / kSpeed / params.rates.haptic_period);
+        std::vector<Vec3>& all = forces.emplace_back(lead(simulation, press_block(kDepth, 1e-3), ticks));
+        for (const std::vector<Vec3>& more : {lead(simulation, press_block(kDepth, 3e-3), ticks),
+                                              lead(simulation, press_block(-1e-3, 4e-3), ticks)})
+          all.insert(all.end(), more.begin(), more.end());
+      }
+      double range = 0.0, off = 0.0;
+      for (std::size_t i = 0; i < forces[0].size(); ++i) {
+        range = std::max(range, forces[0][i].norm());
+        off = std::max(off, (forces[1][i] - forces[0][i]).norm());
+      }
+      EXPECT_LT(off, 0.01 * range) << name_of(method) << ' ' << friction;
+    }
+}
+
+/// A fast slide with friction in long steps under a contact a hundred times as stiff as the clay asks for:
+/// its steps are solved as those of a softer one (fourteen times the force, and the body torn, else).
+TEST(PressureStiffness, FastSlideIsSolvedHoweverStiffItIs) {
+  constexpr double kDepth = 2e-3;
+  std::vector<std::vector<Vec3>> forces;
+  double automatic = 0.0;
+  for (const double factor : {0.0, 10.0, 100.0}) {
+    Params params = make_pressure_params(14);
+    params.solid.solver = {};
+    params.contact.friction = 0.6;
+    params.contact.pressure_stiffness = factor * automatic;
+    Simulation simulation = make_pressed_block(params, ToolMode::push, 2);
+    if (factor == 0.0) automatic = simulation.body_side().find_surface_stiffness().per_area.mean();
+    std::vector<Vec3>& all = forces.emplace_back(lead(simulation, press_block(kDepth, 1e-3), 42));
+    for (const std::vector<Vec3>& more :
+         {lead(simulation, press_block(kDepth, 4e-3), 98), lead(simulation, press_block(-2e-3, 6e-3), 70)})
+      all.insert(all.end(), more.begin(), more.end());
+  }
+  double range = 0.0;
+  for (const Vec3& force : forces[0]) range = std::max(range, force.norm());
+  for (std::size_t k = 1; k < forces.size(); ++k)
+    for (std::size_t i = 0; i < forces[0].size(); ++i)
+      EXPECT_LT((forces[k][i] - forces[0][i]).norm(), 0.03 * range) << k << ' ' << i;
+}
+
 /// A tool that stands still is felt as a constant, whatever κ, cells and step: what presses in one step
 /// presses in the next.
 class Rest : public testing::TestWithParam<std::tuple<int, double, int>> {};

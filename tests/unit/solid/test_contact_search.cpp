@@ -162,7 +162,7 @@ TEST(ContactSearch, BeginsWithWhatHasPressed) {
   };
   const std::vector<char> first = start();
   for (std::size_t i = 0; i < list.size(); ++i) EXPECT_EQ(first[i] != 0, !list[i].is_near) << i;
-  for (std::size_t i = 0; i < list.size(); ++i) list[i].has_pressed = i % 3 == 0;
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].begin_force = i % 3 == 0 ? 1.0 : 0.0;
   const std::vector<char> later = start();
   for (std::size_t i = 0; i < list.size(); ++i) EXPECT_EQ(later[i] != 0, i % 3 == 0) << i;
 }
