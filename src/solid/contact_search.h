@@ -35,9 +35,10 @@ double compute_potential_alone(const PointStiffness& contact, const Vec3& trial,
 /// ½ Σ max(0, n·f − k n·(x − x₀))²/k, and Huber's for friction [Huber1964]. Newton's method on it is to solve
 /// again with what acts where the search stands; on the way to each solution it goes to the least potential,
 /// so that no set comes back. A point that would slide back at a solution is a secant in the next. As soon as
-/// little is off by the limits that there are, they follow what presses, until friction carries what Coulomb's
-/// law says to a thousandth. After very many rounds the step ends at the least that was found. `tolerance`:
-/// share of what presses that may draw or be missing. Of other contacts see update_active_contacts().
+/// little is off by the limits that there are, they follow what presses, until friction carries what
+/// Coulomb's law says to a thousandth. After very many rounds the step ends at the least that was found.
+/// `tolerance`: share of what presses that may draw or be missing. Of other contacts see
+/// update_active_contacts().
 bool settle_contacts(Body& body, const Part& part, std::span<const PointStiffness> list, double tolerance);
 
 }  // namespace argil::solid
