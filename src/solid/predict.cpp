@@ -19,11 +19,6 @@ double compute_tau(Integrator integrator, double step_s) {
   return step_s;
 }
 
-double find_tau(const Model& model, const SolidState& state, double step_s) {
-  const bool has_past = model.params.integrator != Integrator::bdf2 || state.x_before.size() > 0;
-  return has_past ? compute_tau(model.params.integrator, step_s) : step_s;
-}
-
 void keep_damping_frame(Body& body) {
   if (body.is_newton() && body.model.params.rayleigh_stiffness > 0.0)
     body.prediction.kept_rotation = body.kinematics.rotation();
@@ -33,13 +28,16 @@ void keep_damping_frame(Body& body) {
 
 namespace {
 
-/// Average acceleration: v' = v + ½h(a + a'), x' = x + ½h(v + v').
+/// Average acceleration: v' = v + ½h(a + a'), x' = x + ½h(v + v'). Contacts act as at the end, whatever acts
+/// at the start: of those that fall, nothing falls here.
 void predict_newmark(Body& body, const Part& part, const StepLoads& loads) {
   const SolidState& start = body.committed;
   Prediction& step = body.prediction;
   body.trial.v = start.v;
   step.v_hat = start.v;
-  assemble_residual(body, part, loads);  // τ (f_ext − f_int − D v) at the start
+  StepLoads without_contacts = loads;
+  without_contacts.contacts = {};
+  assemble_residual(body, part, without_contacts);  // τ (f_ext − f_int − D v) at the start
   for (int row = 0; row < body.model.num_free(); ++row) {
     const int node = body.model.node_of_row[static_cast<std::size_t>(row)];
     step.v_hat.col(node) = start.v.col(node) + body.system.rhs.col(row) / body.materials.mass()(node);
@@ -47,20 +45,29 @@ void predict_newmark(Body& body, const Part& part, const StepLoads& loads) {
   step.x_hat = start.x + step.tau * start.v;
 }
 
-/// x̂, v̂ of each integrator; at first those of the committed state, which Euler's keep.
-void set_prediction(Body& body, const Part& part, const StepLoads& loads) {
+/// A body without a past has gone on evenly: x₋₁ = x − h v, v₋₁ = v. So the first step, too, keeps ½(3v −
+/// v₋₁), the momentum that this rule conserves.
+void predict_bdf2(Body& body) {
   const SolidState& start = body.committed;
   Prediction& step = body.prediction;
+  const bool has_past = start.x_before.size() > 0;
+  const double step_s = 1.5 * step.tau;
+  if (has_past)
+    step.x_hat = (4.0 * start.x - start.x_before) / 3.0;
+  else
+    step.x_hat = start.x + step_s / 3.0 * start.v;
+  step.v_hat = has_past ? Points((4.0 * start.v - start.v_before) / 3.0) : start.v;
+}
+
+/// x̂, v̂ of each integrator; at first those of the committed state, which Euler's keep.
+void set_prediction(Body& body, const Part& part, const StepLoads& loads) {
   start_from_committed(body, part);
   switch (body.model.params.integrator) {
     case Integrator::backward_euler:
     case Integrator::symplectic_euler:
       return;
     case Integrator::bdf2:
-      if (start.x_before.size() == 0) return;
-      step.x_hat = (4.0 * start.x - start.x_before) / 3.0;
-      step.v_hat = (4.0 * start.v - start.v_before) / 3.0;
-      return;
+      return predict_bdf2(body);
     case Integrator::newmark:
       predict_newmark(body, part, loads);
   }
@@ -105,7 +112,7 @@ bool predict(Body& body, const Part& part, const StepLoads& loads, double step_s
   body.newton.tolerance = body.model.params.newton_tolerance;
   body.contacts.start(loads.contacts, start.v, step_s);
   keep_damping_frame(body);
-  step.tau = find_tau(body.model, start, step_s);
+  step.tau = compute_tau(body.model.params.integrator, step_s);
   set_prediction(body, part, loads);
   const bool has_moved = place_supports(body, time, 1.0);
   if (!body.is_explicit())

@@ -23,10 +23,6 @@ struct Prediction {
   Eigen::Matrix3Xd kept_rotation;  ///< damping's R of each point where it is not the present one; or empty
 };
 
-/// τ of a step of step_s seconds from this state [s]. The first step of bdf2 has no past and is backward
-/// Euler's.
-double find_tau(const Model& model, const SolidState& state, double step_s);
-
 /// x̂, v̂ and τ of a step of step_s seconds from the committed state that ends at `time` [s], and the first
 /// iterate. True when a support moved: kinematics are then to be those of the iterate.
 bool predict(Body& body, const Part& part, const StepLoads& loads, double step_s, double time);

@@ -16,7 +16,7 @@ void prepare_response(Body& body, const Part& part, const SolidState& state, dou
   body.elastic.forget_all();
   store_nodal_stiffness(body.model, body.materials, body.system);  // its solves are exact ones
   body.prediction.is_static = false;
-  body.prediction.tau = find_tau(body.model, state, step_s);
+  body.prediction.tau = compute_tau(body.model.params.integrator, step_s);
   body.system.is_projected = true;
   keep_damping_frame(body);
   update_volume_change(body.strained(), body.forces.volume);
