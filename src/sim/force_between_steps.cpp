@@ -157,7 +157,11 @@ void ForceBetweenSteps::compare(double stiffness, const Vec3& force) {
 
 device::Wrench ForceBetweenSteps::forecast(const contact::Pose& tool, const Limits& limits) const {
   const Place& place = m_state.place;
-  if (!presses()) return {limits.at_least, Vec3::Zero()};
+  if (!presses()) {
+    // A long tool that goes through a thin part is nearer to the far side in the end.
+    const bool pushes_on = limits.at_least.dot(tool.position - place.tool.position) > 0.0;
+    return {pushes_on ? Vec3(Vec3::Zero()) : limits.at_least, Vec3::Zero()};
+  }
   const Vec3& n = place.outward;
   const Vec3 path = carry(place.centre, place.tool, tool) - place.centre;
   const Vec3 answered = m_state.answer.force - m_state.friction;

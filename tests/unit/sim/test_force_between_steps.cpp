@@ -64,5 +64,24 @@ TEST(ForceBetweenSteps, OfAPointThatWasOnlyNearIsTheAnswer) {
   }
 }
 
+/// A tool that comes on clay between two steps is held back by what it presses on, and is not pushed on by it
+/// where it has gone through.
+TEST(ForceBetweenSteps, OfClayThatIsMetBetweenStepsIsNeverAlongTheWay) {
+  RateParams rates;
+  rates.physics_period_ticks = 14;
+  ForceBetweenSteps between(rates, 0.0);
+  contact::Pose above;
+  above.position = Vec3(0.1, 0.2, 0.3);
+  between.tell({}, {}, above, above);
+  between.receive({}, Vec3::Zero());
+  contact::Pose through = above;
+  through.position.z() -= 0.02;
+  ForceBetweenSteps::Limits limits;
+  limits.at_least = Vec3(0.0, 0.1, 2.0);
+  EXPECT_EQ(between.forecast(through, limits).force, limits.at_least);
+  limits.at_least = Vec3(0.0, 0.1, -2.0);
+  EXPECT_EQ(between.forecast(through, limits).force, Vec3(0.0, 0.0, 0.0));
+}
+
 }  // namespace
 }  // namespace argil::sim
