@@ -30,8 +30,10 @@ void Economy::fall_asleep(BodyState& state) {
   state.is_at_rest = true;
   m_slow_steps = 0;
   state.solid.v.setZero();
-  state.solid.v_before.setZero();
-  if (state.solid.x_before.size() > 0) state.solid.x_before = state.solid.x;
+  if (m_params.solid.integrator == solid::Integrator::bdf2) {  // it has been here and at rest a step ago
+    state.solid.x_before = state.solid.x;
+    state.solid.v_before = state.solid.v;
+  }
   m_region.sleep_all();
   m_rest_strain = solid::summarise(m_solid.strained(state.solid.plastic_strain), m_solid.energies,
                                    m_solid.scratch.nodal.change);

@@ -45,29 +45,20 @@ void predict_newmark(Body& body, const Part& part, const StepLoads& loads) {
   step.x_hat = start.x + step.tau * start.v;
 }
 
-/// A body without a past has gone on evenly: x₋₁ = x − h v, v₋₁ = v. So the first step, too, keeps ½(3v −
-/// v₋₁), the momentum that this rule conserves.
-void predict_bdf2(Body& body) {
-  const SolidState& start = body.committed;
-  Prediction& step = body.prediction;
-  const bool has_past = start.x_before.size() > 0;
-  const double step_s = 1.5 * step.tau;
-  if (has_past)
-    step.x_hat = (4.0 * start.x - start.x_before) / 3.0;
-  else
-    step.x_hat = start.x + step_s / 3.0 * start.v;
-  step.v_hat = has_past ? Points((4.0 * start.v - start.v_before) / 3.0) : start.v;
-}
-
 /// x̂, v̂ of each integrator; at first those of the committed state, which Euler's keep.
 void set_prediction(Body& body, const Part& part, const StepLoads& loads) {
+  const SolidState& start = body.committed;
+  Prediction& step = body.prediction;
   start_from_committed(body, part);
   switch (body.model.params.integrator) {
     case Integrator::backward_euler:
     case Integrator::symplectic_euler:
       return;
     case Integrator::bdf2:
-      return predict_bdf2(body);
+      if (start.x_before.size() == 0) return;
+      step.x_hat = (4.0 * start.x - start.x_before) / 3.0;
+      step.v_hat = (4.0 * start.v - start.v_before) / 3.0;
+      return;
     case Integrator::newmark:
       predict_newmark(body, part, loads);
   }
@@ -112,7 +103,9 @@ bool predict(Body& body, const Part& part, const StepLoads& loads, double step_s
   body.newton.tolerance = body.model.params.newton_tolerance;
   body.contacts.start(loads.contacts, start.v, step_s);
   keep_damping_frame(body);
-  step.tau = compute_tau(body.model.params.integrator, step_s);
+  // The first step of bdf2 has no past and is backward Euler's.
+  const bool has_past = body.model.params.integrator != Integrator::bdf2 || start.x_before.size() > 0;
+  step.tau = has_past ? compute_tau(body.model.params.integrator, step_s) : step_s;
   set_prediction(body, part, loads);
   const bool has_moved = place_supports(body, time, 1.0);
   if (!body.is_explicit())
