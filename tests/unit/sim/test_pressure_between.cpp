@@ -520,7 +520,7 @@ TEST(PressureStiffness, DoubledChangesNoTickByAHundredth) {
 }
 
 /// A ball that comes fast, slides and leaves, in steps of fourteen ticks: what the hand feels between them
-/// hangs on the forces that press, not on the points that do (1 to 4 % of the range else).
+/// hangs on the forces that press, not on the points that do (on other blocks 1 to 4 % of the range else).
 TEST(PressureStiffness, DoubledChangesNoFastPushByAHundredth) {
   constexpr double kDepth = 3e-3, kSpeed = 0.06;
   constexpr int kPeriod = 14;
@@ -551,7 +551,8 @@ TEST(PressureStiffness, DoubledChangesNoFastPushByAHundredth) {
 }
 
 /// A fast slide with friction in long steps under a contact a hundred times as stiff as the clay asks for:
-/// its steps are solved as those of a softer one (fourteen times the force, and the body torn, else).
+/// its steps are solved as those of a softer one. A guard: what tore larger bodies, a search by tangents
+/// alone, comes through here.
 TEST(PressureStiffness, FastSlideIsSolvedHoweverStiffItIs) {
   constexpr double kDepth = 2e-3;
   std::vector<std::vector<Vec3>> forces;
