@@ -65,10 +65,10 @@ class SignalScope {
 void require_live(const scenario::Scenario& s) {
   if (s.mode == scenario::Mode::equilibrium)
     throw InputError(s.file, "/dynamics/mode", "\"static\" has no ticks", "run it with argil run");
-  if (s.params.rates.between_frames == sim::BetweenFrames::compliant)
+  if (s.params.deflects_between_steps())
     throw InputError(
         s.file, "/haptics/between_frames",
-        "\"compliant\" looks into the body between its steps, which a hand that does not wait cannot",
+        "\"compliant\" pairs look into the body between its steps, which a hand that does not wait cannot",
         "set re_evaluate or hold");
   const double step = s.params.rates.physics_period_ticks * s.params.rates.haptic_period;
   const double oldest = s.params.device.watchdog.max_physics_age;

@@ -36,7 +36,7 @@ void check_rates(const Scenario& s) {
 /// A surface that yields between frames needs the matrix of an implicit step, and a step that knows of it.
 void check_between_frames(const Scenario& s) {
   const solid::SolidParams& p = s.params.solid;
-  if (s.mode != Mode::dynamic || s.params.rates.between_frames != sim::BetweenFrames::compliant) return;
+  if (s.mode != Mode::dynamic || !s.params.deflects_between_steps()) return;
   const char* place = "/haptics/between_frames";
   if (p.integrator == solid::Integrator::symplectic_euler)
     throw InputError(s.file, place,

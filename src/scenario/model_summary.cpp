@@ -173,12 +173,16 @@ void describe_hand(Summary& s) {
   const double ticks = s.number("/haptics/physics_period_ticks");
   const std::string between = s.word("/haptics/between_frames");
   const std::string held = print(ticks) + " ticks";
+  const bool is_pressure = s.word("/contact/law") == "pressure";
   if (ticks == 1.0) s.keep("force: new in every tick");
   if (ticks > 1.0 && between == "hold")
     s.simplify("force: held for " + held + ", between physics steps (hold)");
-  if (ticks > 1.0 && between == "re_evaluate")
+  if (ticks > 1.0 && between != "hold" && is_pressure)
+    s.simplify("force: the last answer of the clay, carried on for up to " + held + " as it yields (" +
+               between + ")");
+  if (ticks > 1.0 && between == "re_evaluate" && !is_pressure)
     s.simplify("force: contact every tick, with the surface as it was up to " + held + " ago (re_evaluate)");
-  if (ticks > 1.0 && between == "compliant")
+  if (ticks > 1.0 && between == "compliant" && !is_pressure)
     s.simplify("force: contact every tick, with a surface that is predicted for up to " + held +
                " (compliant)");
   if (s.word("/hand/kind") == "prescribed")

@@ -239,13 +239,14 @@ void bind_haptics(Binder& b, Scenario& s, const std::string& folder) {
             "Water once in so many ticks; a multiple of the physics.");
   b.integer("/haptics/frame_period_ticks", r.frame_period_ticks, between(1, 1e9),
             "A picture of the body once in so many ticks.");
-  b.choice<sim::BetweenFrames>("/haptics/between_frames", r.between_frames,
-                               {{sim::BetweenFrames::hold, "hold"},
-                                {sim::BetweenFrames::re_evaluate, "re_evaluate"},
-                                {sim::BetweenFrames::compliant, "compliant"}},
-                               "Keep the force between physics steps (the paper), find contact every tick "
-                               "against the surface as it was, "
-                               "or against one that yields by the compliance of the touched nodes.");
+  b.choice<sim::BetweenFrames>(
+      "/haptics/between_frames", r.between_frames,
+      {{sim::BetweenFrames::hold, "hold"},
+       {sim::BetweenFrames::re_evaluate, "re_evaluate"},
+       {sim::BetweenFrames::compliant, "compliant"}},
+      "Keep the force between physics steps (the paper), or follow the tool: pairs find contact every "
+      "tick against the surface as it was (re_evaluate) or as it yields (compliant); a "
+      "pressure is carried on as the body yields, by either.");
   b.choice<device::Passivity>(
       "/haptics/passivity", s.params.passivity,
       {{device::Passivity::none, "none"}, {device::Passivity::time_domain, "time_domain"}},

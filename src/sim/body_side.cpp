@@ -21,6 +21,7 @@ solid::SolidParams make_solid_params(const Params& params) {
   solid::SolidParams solid = params.solid;
   solid.flows_in_solve = params.plasticity.enabled && params.plasticity.form == material::FlowForm::j2 &&
                          solid.iteration == solid::Iteration::one;
+  if (params.carries_force_on()) solid.response_tolerance = solid.solver.tolerance;
   return solid;
 }
 
@@ -163,7 +164,8 @@ BodyBetweenSteps BodySide::between_steps(Tick tick) {
 }
 
 StepStatus BodySide::step(const ContactLoad& load, StepResult& result) {
-  const StepStatus status = make_step(load, result);
+  StepStatus status = make_step(load, result);
+  if (status.is_ok()) status = find_compliance(load, result);
   result.error = m_error.rates(m_economy);
   result.is_limited = m_limit.num_tets > 0;
   if (status.is_ok() || m_params.is_strict) return status;
@@ -219,7 +221,7 @@ void BodySide::begin_step(const ContactLoad& load, StepResult& result) {
 void BodySide::add_pressed(const ContactLoad& load, std::size_t i, const Vec3& change,
                            PressedMoments& pressed) const {
   const solid::PointStiffness& entry = load.stiffness[i];
-  if (m_params.rates.between_frames == BetweenFrames::hold || !entry.is_alone) return;
+  if (!m_params.carries_force_on() || !entry.is_alone) return;
   const double force = entry.normal.dot((entry.is_near ? Vec3(Vec3::Zero()) : entry.force) + change);
   pressed.add(load.levers[i].point, force, entry.stiffness);
 }

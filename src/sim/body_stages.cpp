@@ -7,6 +7,7 @@
 #include "sim/body_side.h"
 #include "solid/material_changes.h"
 #include "solid/move.h"
+#include "solid/response.h"
 #include "solid/step_solver.h"
 
 namespace argil::sim {
@@ -78,6 +79,66 @@ void BodySide::apply_deflection(const ContactLoad& load, StepResult& result) {
     add_pressed(load, i, change, pressed);
   }
   result.pressed = pressed.find_patch();
+}
+
+/// Of the place that the contacts press on, or soon will.
+StepStatus BodySide::find_compliance(const ContactLoad& load, StepResult& result) {
+  const StageScope scope(m_observer, Stage::solve);
+  if (!m_params.carries_force_on() || !m_params.solid.solves_contact()) return StepStatus::ok();
+  const contact::Pose& tool = m_state.hand.tool;
+  const contact::Pose& before = m_committed.hand.tool;
+  const bool is_same = !result.has_moved && tool.position == before.position &&
+                       tool.orientation.coeffs() == before.orientation.coeffs();
+  const bool yields = !load.inward.isZero(0.0) && load.stiffness.size() > load.last_detection;
+  if (!yields) m_state.compliance = 0.0;
+  if (yields && !is_same) {
+    m_has_begun_solid = true;  // its solver may be taken back
+    share_force(load, result.pressed);
+    solid::prepare_response(m_solid, m_region.part(), m_state.solid, m_params.rates.step_seconds());
+    ARGIL_TRY(solid::find_response(m_solid, m_region.part(), m_shares, tick(), m_response));
+    m_state.compliance = m_shares.cwiseProduct(m_response).sum();
+    result.pressed.drift = find_drift();
+  }
+  result.pressed.compliance = m_state.compliance;
+  return StepStatus::ok();
+}
+
+/// With the speed that the forces give it if they stay, 2 v' − v, it goes τ A⁻¹ M (2 v' − v) on: of that, by
+/// symmetry, what the response u = τ² A⁻¹ f to the shares f sees.
+double BodySide::find_drift() const {
+  const Points& v = m_state.solid.v;
+  const Points& before = m_solid.committed.v;
+  const Field& mass = m_solid.materials.mass();
+  double sum = 0.0;
+  for (Eigen::Index n = 0; n < v.cols(); ++n)
+    sum += mass(n) * m_response.col(n).dot(2.0 * v.col(n) - before.col(n));
+  return sum / m_params.rates.step_seconds();
+}
+
+/// A unit of force into the clay, as the answer presses; of a grip, whose forces may cancel out, and of what
+/// only comes near as their springs share it.
+void BodySide::share_force(const ContactLoad& load, const PressedPatch& pressed) {
+  const Vec3& inward = load.inward;
+  m_shares.setZero(3, m_state.solid.x.cols());
+  double sum = 0.0;
+  if (pressed.springs > 0.0)
+    for (const int node : m_force.contacts().nodes()) {
+      const double force = inward.dot(m_force.contacts().at.col(node));
+      m_shares.col(node) = force * inward;
+      sum += force;
+    }
+  if (!(sum > 0.0)) {
+    m_shares.setZero();
+    sum = 0.0;
+    for (std::size_t i = load.last_detection; i < load.stiffness.size(); ++i) {
+      const solid::PointStiffness& entry = load.stiffness[i];
+      if (entry.friction > 0.0) continue;
+      for (std::size_t k = 0; k < entry.count(); ++k)
+        m_shares.col(entry.vertex[k]) += entry.weight[k] * entry.stiffness * inward;
+      sum += entry.stiffness;
+    }
+  }
+  if (sum > 0.0) m_shares /= sum;
 }
 
 /// v ← G_d^{h/h_ref}(r) v with r from the point of contact (eq. 9). A body that nothing presses is left free,

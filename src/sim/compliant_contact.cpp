@@ -55,9 +55,7 @@ void HandSide::release_springs() {
   m_touched.move_to(m_body.state().solid.x);
 }
 
-StepStatus HandSide::update_compliance(const StepResult& result) {
-  if (m_between && m_params.rates.between_frames == BetweenFrames::compliant)
-    return m_between->find_stiffness(m_body.between_steps(m_state.clock.tick), result.pressed);
+StepStatus HandSide::update_compliance() {
   if (!m_params.deflects_between_steps()) return StepStatus::ok();
   return m_compliance.begin_frame(m_body.between_steps(m_state.clock.tick + 1), m_body.x_before());
 }

@@ -3,6 +3,17 @@
 #include <cmath>
 
 namespace argil::sim {
+namespace {
+
+/// Where nothing reaches into the surface, points that the tool has left by little may press in the step.
+Vec3 find_inward(const contact::Contacts& contacts) {
+  Vec3 inward = Vec3::Zero();
+  for (const contact::Contact& c : contacts.contacts.empty() ? contacts.near : contacts.contacts)
+    inward += c.spring * c.normal;
+  return inward.normalized();
+}
+
+}  // namespace
 
 ContactLoad::ContactLoad() {
   constexpr std::size_t kContacts = 16384;  // more than a late step gathers
@@ -189,6 +200,7 @@ void LoadCollector::hand_over(const HandPose& hand, device::ToolMode mode, int n
   m_load.scale = once || num_ticks == planned ? 1.0 : static_cast<double>(planned) / num_ticks;
   m_load.detections = once ? 1 : num_ticks;
   m_load.mode = mode;
+  m_load.inward = find_inward(contacts);
   if (m_load.scale != 1.0) {
     for (solid::PointStiffness& entry : m_load.stiffness) {
       entry.stiffness *= m_load.scale;

@@ -48,7 +48,9 @@ struct ContactLoad {
   int detections = 1;           ///< whose mean the body gets
   double way_over_patch = 0.0;  ///< the tool's in the last detection, over the radius of what it presses on
   PatchResolution resolution;   ///< of what it presses on, where the error is estimated
-  double scale = 1.0;           ///< by which the sum of `forces` has yet to be multiplied for that
+  Vec3 inward =
+      Vec3::Zero();    ///< unit: from the tool into the clay that it touches; zero where it touches none
+  double scale = 1.0;  ///< by which the sum of `forces` has yet to be multiplied for that
   device::ToolMode mode = device::ToolMode::push;
   std::vector<int> touched_tet;      ///< by a tool that wets or dries in the tick that hands over
   std::vector<double> touched_area;  ///< [m²] of each, for the whole water period

@@ -32,7 +32,7 @@ std::optional<RegionObstacle> find_region_obstacle(const Params& params,
     return {{"is not taken unasked with friction", "set /contact/friction to 0"}};
   if (const auto obstacle = find_obstacle(params.solid, material::is_isotropic(params.moisture)))
     return obstacle;
-  if (params.rates.between_frames == BetweenFrames::compliant)
+  if (params.deflects_between_steps())
     return {{"does not go with a surface that yields between frames", "use re_evaluate"}};
   if (params.water.swelling != 0.0)
     return {{"does not go with clay that swells", "set /water/swelling to 0"}};

@@ -1,9 +1,9 @@
 #include "sim/force_between_steps.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "contact/nearest.h"
-#include "solid/response.h"
 
 namespace argil::sim {
 namespace {
@@ -28,6 +28,11 @@ double find_friction(double coefficient, const Vec3& along, double pressing) {
 ForceBetweenSteps::ForceBetweenSteps(const RateParams& rates, double lag)
     : m_period(rates.haptic_period), m_planned(rates.physics_period_ticks), m_lag(lag) {}
 
+void ForceBetweenSteps::begin_at(const contact::Pose& tool) {
+  m_state.told.tool = m_state.place.tool = tool;
+  commit();
+}
+
 void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::Patch& patch,
                              const contact::Pose& from, const contact::Pose& to) {
   Place& told = m_state.told;
@@ -35,8 +40,11 @@ void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::P
                to.orientation.slerp(m_lag, from.orientation)};
   told.centre = told.tool.position;
   told.outward.setZero();
+  told.has_passed = false;
   told.springs = 0.0;
   told.stiffness = -1.0;
+  told.give = 0.0;
+  told.drift = 0.0;
   told.share = -1.0;
   Vec3 centre = Vec3::Zero();
   Vec3 inward = Vec3::Zero();
@@ -52,6 +60,8 @@ void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::P
   told.cell = patch.cell;
   told.centre = carry(centre / told.springs, to, told.tool);
   told.outward = -inward.normalized();
+  told.has_passed = !contacts.contacts.empty() && (to.position - from.position).dot(inward) > 0.0 &&
+                    std::all_of(list.begin(), list.end(), [](const contact::Contact& c) { return c.passes; });
   m_state.shares.clear();
   for (const contact::Contact& c : list)
     m_state.shares.push_back({c.vertex, c.weight, Vec3::Constant(c.spring / told.springs)});
@@ -95,13 +105,23 @@ void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& fricti
   m_state.friction = friction;
   m_state.place = m_state.told;
   Place& place = m_state.place;
-  const double half_space = pressed.find_half_space_stiffness(place.modulus, place.cell);
-  if (place.stiffness < 0.0 && half_space > 0.0)
-    place.stiffness = 1.0 / (1.0 / half_space + 1.0 / pressed.springs);
+  find_stiffness(pressed);
   if (answer.force.isZero(0.0)) place.outward.setZero();
   const Vec3 pressure = answer.force - friction;
   if (presses() && pressure.dot(place.outward) > 0.0)
     place.outward = pressure.normalized();  // so that of pressure nothing is along the surface
+}
+
+void ForceBetweenSteps::find_stiffness(const PressedPatch& pressed) {
+  Place& place = m_state.place;
+  const double springs = pressed.springs > 0.0 ? pressed.springs : place.springs;
+  const double half_space = pressed.find_half_space_stiffness(place.modulus, place.cell);
+  const double compliance =
+      pressed.compliance > 0.0 || half_space == 0.0 ? pressed.compliance : 1.0 / half_space;
+  if (compliance > 0.0 && springs > 0.0) place.stiffness = 1.0 / (compliance + 1.0 / springs);
+  if (place.has_passed) place.stiffness = 0.0;
+  place.drift = pressed.drift;
+  place.give = half_space > 0.0 ? std::max(0.0, compliance - 1.0 / half_space) : compliance;
 }
 
 /// At the end of the step receive() takes this answer for what the body got in N ticks and what the hand felt
@@ -112,66 +132,62 @@ void ForceBetweenSteps::change_answer(const device::Wrench& answer, const Vec3& 
   m_state.friction = friction;
 }
 
-/// Of a grip, whose forces may cancel out: as they are shared by their springs.
-void ForceBetweenSteps::share_as_springs(const ContactSurface& surface) {
-  for (const SurfaceForce& share : m_state.shares)
-    for (std::size_t i = 0; i < 3 && share.vertex[i] >= 0; ++i) {
-      const std::span<const int> nodes = surface.nodes(share.vertex[i]);
-      const std::span<const double> weights = surface.weights(share.vertex[i]);
-      for (std::size_t k = 0; k < nodes.size(); ++k)
-        m_load.col(nodes[k]) += share.weight[i] * weights[k] * share.force.x() * m_state.told.outward;
-    }
+bool ForceBetweenSteps::may_be_unpressed(const contact::Pose& tool) const {
+  constexpr double kGrown = 4.0;
+  if (!presses() || !knows_stiffness()) return true;
+  const double answered = m_state.place.outward.dot(m_state.answer.force - m_state.friction);
+  return find_pressing(tool) > kGrown * answered;
 }
 
-StepStatus ForceBetweenSteps::find_stiffness(const BodyBetweenSteps& body, const PressedPatch& pressed) {
-  Place& told = m_state.told;
-  if (told.outward.isZero(0.0)) return StepStatus::ok();
-  m_load.setZero(3, body.state.x.cols());
-  double sum = 0.0;
-  if (pressed.springs > 0.0)
-    for (const int node : body.contacts.nodes()) {
-      const double force = -told.outward.dot(body.contacts.at.col(node));
-      m_load.col(node) = force * told.outward;
-      sum += force;
-    }
-  if (sum > 0.0) {
-    m_load /= sum;
-  } else {
-    m_load.setZero();
-    share_as_springs(body.surface);
+/// With the body's give c in series: where it would be f at the depth d, it is f ((d − c s f)/d)^{3/2} = s f,
+/// with d = 3/2 f/k.
+Vec3 ForceBetweenSteps::find_force(const Unpressed& unpressed) const {
+  constexpr double kExponent = 1.5;
+  constexpr double kClose = 1e-12;
+  const double give = unpressed.stiffness * m_state.place.give / kExponent;
+  double root = 1.0;  // s^{1/3}, from above: r² + give r³ = 1
+  for (double change = 1.0; change > kClose * root;) {
+    change = (root * root * (1.0 + give * root) - 1.0) / (root * (2.0 + 3.0 * give * root));
+    root -= change;
   }
-  solid::prepare_response(body.solid, body.part, body.state, body.step_s);
-  ARGIL_TRY(solid::find_response(body.solid, body.part, m_load, body.tick, m_response));
-  const double deflection = m_load.cwiseProduct(m_response).sum();
-  told.stiffness = 1.0 / (deflection + 1.0 / (sum > 0.0 ? pressed.springs : told.springs));
-  return StepStatus::ok();
+  return root * root * root * unpressed.force;
 }
 
-void ForceBetweenSteps::compare(double stiffness, const Vec3& force) {
+void ForceBetweenSteps::compare(const Unpressed& unpressed) {
   Place& place = m_state.place;
-  if (place.stiffness < 0.0) place.stiffness = stiffness;
+  if (!knows_stiffness()) place.stiffness = unpressed.stiffness;
   const double answered = std::max(0.0, place.outward.dot(m_state.answer.force - m_state.friction));
-  const double unpressed = place.outward.dot(force);
-  place.share = unpressed > answered ? answered / unpressed : 1.0;
+  const double force = place.outward.dot(find_force(unpressed));
+  place.share = force > answered ? answered / force : 1.0;
+}
+
+/// Along the patch's normal; negative where the tool would draw.
+double ForceBetweenSteps::find_pressing(const contact::Pose& tool) const {
+  const Place& place = m_state.place;
+  const Vec3 path = carry(place.centre, place.tool, tool) - place.centre;
+  const double drift = std::min(1.0, static_cast<double>(m_state.ticks) / m_planned) * place.drift;
+  return place.outward.dot(m_state.answer.force - m_state.friction) -
+         place.stiffness * (place.outward.dot(path) + drift);
 }
 
 device::Wrench ForceBetweenSteps::forecast(const contact::Pose& tool, const Limits& limits) const {
   const Place& place = m_state.place;
   if (!presses()) {
     // A long tool that goes through a thin part is nearer to the far side in the end.
-    const bool pushes_on = limits.at_least.dot(tool.position - place.tool.position) > 0.0;
-    return {pushes_on ? Vec3(Vec3::Zero()) : limits.at_least, Vec3::Zero()};
+    const Vec3 force = find_force(limits.unpressed);
+    const bool pushes_on = force.dot(tool.position - place.tool.position) > 0.0;
+    return {pushes_on ? Vec3(Vec3::Zero()) : force, Vec3::Zero()};
   }
   const Vec3& n = place.outward;
   const Vec3 path = carry(place.centre, place.tool, tool) - place.centre;
   const Vec3 answered = m_state.answer.force - m_state.friction;
-  double pressing = n.dot(answered) - place.stiffness * n.dot(path);
+  double pressing = find_pressing(tool);
   const Vec3 along_answered = m_state.answer.force - n.dot(answered) * n;
   Vec3 along = along_answered;
   if (limits.holds || limits.friction > 0.0)
     along -= kAlongSurface * place.stiffness * (path - n.dot(path) * n);
   if (!limits.holds) {
-    pressing = std::max({0.0, pressing, place.share * n.dot(limits.at_least)});
+    pressing = std::max({0.0, pressing, place.share * n.dot(find_force(limits.unpressed))});
     const double most = find_friction(limits.friction, along_answered, n.dot(answered)) * pressing;
     if (const double length = along.norm(); length > most) along *= most / length;
   }
@@ -190,10 +206,13 @@ void ForceBetweenSteps::serialize(Archive& archive) {
     archive.quaternion(name + "_orientation", p.tool.orientation);
     archive.array(name + "_centre", p.centre);
     archive.array(name + "_outward", p.outward);
+    archive.number(name + "_has_passed", p.has_passed);
     archive.number(name + "_springs", p.springs);
     archive.number(name + "_modulus", p.modulus);
     archive.number(name + "_cell", p.cell);
     archive.number(name + "_stiffness", p.stiffness);
+    archive.number(name + "_give", p.give);
+    archive.number(name + "_drift", p.drift);
     archive.number(name + "_share", p.share);
   };
   place("between/told", m_state.told);

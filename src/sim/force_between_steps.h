@@ -6,7 +6,6 @@
 #include "contact/contact.h"
 #include "contact/pressure.h"
 #include "device/gate.h"
-#include "sim/compliance.h"
 #include "sim/contact_load.h"
 #include "sim/params.h"
 #include "sim/pressed_patch.h"
@@ -17,8 +16,8 @@ namespace argil::sim {
 ///
 /// A step answers where the tool was with one force. As the tool goes on, that force grows like the one of an
 /// elastic body under a patch that keeps its size, whose stiffness is K along the patch's normal and
-/// less along the surface; friction keeps Coulomb's limit. Deep in a surface that has not been pressed yet,
-/// it is no less than Hertz's force there.
+/// less along the surface; friction keeps Coulomb's limit. Of clay that has hardly been pressed yet it is no
+/// less than Hertz's force there, while the body as a whole gives way.
 ///
 /// That is a forecast. What the hand felt more than the body got is owed to the body: a part of it is given
 /// with every step, and all of it once the tool has left. So both get the same impulse.
@@ -27,35 +26,42 @@ class ForceBetweenSteps {
   /// `lag`: how far before the end of its way the tool was that a step answers for, in steps.
   ForceBetweenSteps(const RateParams& rates, double lag);
 
+  /// Before the first tick: the tool is here.
+  void begin_at(const contact::Pose& tool);
   /// The body is told of these contacts, found while the tool went from `from` to `to`, on a patch of that
   /// modulus and of such cells.
   void tell(const contact::Contacts& contacts, const contact::Patch& patch, const contact::Pose& from,
             const contact::Pose& to);
   /// Gives the body its part of what is owed, as forces in `load`.
   void repay(bool has_left, LoadCollector& load);
-  /// The body has answered with this on the hand; `friction` is a part of its force [N]. K is that of a
-  /// half-space where the answer presses, unless find_stiffness() has found it.
+  /// The body has answered with this on the hand; `friction` is a part of its force [N]. K is by the body's
+  /// compliance where the answer presses; where that is not known, that of a half-space.
   void receive(const device::Wrench& answer, const Vec3& friction, const PressedPatch& pressed = {});
 
   /// Between two steps that force has become this for the hand, which the body has not got.
   void change_answer(const device::Wrench& answer, const Vec3& friction);
 
-  /// K of the answer that the body is about to give, from its own matrix: how it yields in a step to forces
-  /// that are shared as those that it bears.
-  StepStatus find_stiffness(const BodyBetweenSteps& body, const PressedPatch& pressed);
+  /// A surface that keeps its shape under a tool.
+  struct Unpressed {
+    Vec3 force = Vec3::Zero();  ///< on the hand [N]
+    double stiffness = 0.0;     ///< by which that grows with the depth [N/m]
+  };
+  /// With the tool here, may the force come up to that of a surface that has not been pressed? Under a ball
+  /// it does once the force is 4.4 times the answer, under a cone 5 times.
+  bool may_be_unpressed(const contact::Pose& tool) const;
+  bool knows_stiffness() const { return m_state.place.stiffness >= 0.0; }
   /// The last answer has not been compared yet.
-  bool wants_unpressed() const { return presses() && m_state.place.share < 0.0; }
-  /// What a surface as it is after the last answer would answer to the tool of it if it had not been pressed
-  /// yet: K where it is not known, and the force on the hand. What is more than the answer does not count as
-  /// missing.
-  void compare(double stiffness, const Vec3& force);
+  bool wants_compared() const { return presses() && m_state.place.share < 0.0; }
+  /// With a surface as it is after the last answer, for the tool of it. What is more than the answer does not
+  /// count as missing.
+  void compare(const Unpressed& unpressed);
   const contact::Pose& tool() const { return m_state.place.tool; }  ///< for which the body has answered
 
   /// How the force is limited as the tool goes on.
   struct Limits {
-    bool holds = false;            ///< a grip: it draws as it pushes, and does not slide
-    double friction = 0.0;         ///< μ
-    Vec3 at_least = Vec3::Zero();  ///< of clay that has not been pressed yet [N], on the hand
+    bool holds = false;     ///< a grip: it draws as it pushes, and does not slide
+    double friction = 0.0;  ///< μ
+    Unpressed unpressed;    ///< of clay that has not been pressed yet
   };
   /// On the hand, with the tool at `tool` now.
   device::Wrench forecast(const contact::Pose& tool, const Limits& limits) const;
@@ -76,10 +82,13 @@ class ForceBetweenSteps {
     contact::Pose tool;
     Vec3 centre = Vec3::Zero();   // of what is touched [m]
     Vec3 outward = Vec3::Zero();  // unit: from the clay to the tool; zero without contacts
+    bool has_passed = false;      // the tool has gone through what it touched, and leaves it behind
     double springs = 0.0;         // stiffness of the contacts themselves [N/m]
     double modulus = 0.0;         // E* [Pa] of the body there
     double cell = 0.0;            // edge of its cells there [m]
     double stiffness = -1.0;      // K [N/m]; negative: not known
+    double drift = 0.0;           // of the body in the next step [m], away from the tool
+    double give = 0.0;            // of the body beside that of a half-space [m/N]
     double share = -1.0;          // of an unpressed surface's force that counts; negative: not known
   };
   struct State {
@@ -95,7 +104,9 @@ class ForceBetweenSteps {
 
   bool presses() const { return !m_state.place.outward.isZero(0.0); }
 
-  void share_as_springs(const ContactSurface& surface);
+  void find_stiffness(const PressedPatch& pressed);
+  double find_pressing(const contact::Pose& tool) const;
+  Vec3 find_force(const Unpressed& unpressed) const;
 
   /// ½(N − 1) + N·lag: ticks by which the hand feels a steady growth before the body answers with it.
   double ticks_ahead() const;
@@ -104,7 +115,6 @@ class ForceBetweenSteps {
   int m_planned;    // ticks of a step
   double m_lag;     // [steps]
   State m_state, m_committed;
-  Points m_load, m_response;  // 3×nodes, of find_stiffness
 };
 
 }  // namespace argil::sim

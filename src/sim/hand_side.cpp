@@ -36,9 +36,7 @@ HandSide::HandSide(const mesh::TriangleMesh& tool, const Params& params, const C
   m_stiffness_before.reserve(static_cast<std::size_t>(surface.triangles().cols()));
   if (m_pressure && params.contact.friction > 0.0)
     m_friction.emplace(params.contact.friction, surface.num_vertices());
-  if (m_pressure && params.rates.between_frames != BetweenFrames::hold &&
-      params.rates.physics_period_ticks > 1)
-    m_between.emplace(params.rates, params.solid.solves_contact() ? 0.0 : 0.5);
+  if (params.carries_force_on()) m_between.emplace(params.rates, params.solid.solves_contact() ? 0.0 : 0.5);
   m_unpressed.with_touched = false;
   const Field& moduli = body.body().youngs_modulus;
   const double modulus = moduli.size() > 0 ? moduli.maxCoeff() : params.elastic.youngs_modulus;
@@ -50,6 +48,7 @@ void HandSide::begin_at(const device::DeviceSample& start) {
   m_state.tool = {start.position, start.orientation};
   m_state.mode = start.mode;
   m_state.contact_tool = m_state.tool;
+  if (m_between) m_between->begin_at(m_state.tool);
   if (m_touched.x_t0().size() > 0) prepare_detection(m_touched.x_t0());
   commit();
 }
@@ -277,8 +276,8 @@ void HandSide::gather_contact_forces() {
 
 void HandSide::hand_over(ContactLoad& load) {
   if (m_between) {
-    m_between->tell(keeps_shape() ? contact::Contacts{} : m_contacts, m_pressure->find_patch(), m_told_tool,
-                    m_state.tool);
+    const contact::Patch patch = m_grip.holds() ? contact::Patch{} : m_pressure->find_patch();
+    m_between->tell(keeps_shape() ? contact::Contacts{} : m_contacts, patch, m_told_tool, m_state.tool);
     const bool has_left = keeps_shape() || (m_contacts.contacts.empty() && m_contacts.near.empty());
     m_between->repay(has_left, m_collector);
   }

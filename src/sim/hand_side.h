@@ -27,7 +27,8 @@ class BodySide;
 
 /// The hand's side of the loop: the tool, its contacts with the surface that the body last had, and the force
 /// that the device renders. It knows the body by ContactLoad and StepResult alone, so that both sides may run
-/// at their own pace; only a surface that deflects between steps (`compliant`) looks at the body itself.
+/// at their own pace; only a surface that deflects between steps (pairs, `compliant`) looks at the body
+/// itself.
 class HandSide {
  public:
   /// All but `start` are kept by reference.
@@ -64,8 +65,8 @@ class HandSide {
   /// All is as after the last tick that was made. `load`: what this one has handed over; null: nothing.
   void roll_back(ContactLoad* load);
 
-  /// After a step of the body and before its result, for `compliant`.
-  StepStatus update_compliance(const StepResult& result);
+  /// After a step of the body and before its result, for pairs that are `compliant`.
+  StepStatus update_compliance();
   /// The surface stands at `x` (3×vertices), as if it had always.
   void place_surface(const Points& x);
   /// Goes on as the hand of a body whose surface, now at `x`, has other vertices besides those it had.
@@ -107,6 +108,7 @@ class HandSide {
   void update_grip();
   void find_pressure();
   void find_pressure_force(bool begins_step);
+  ForceBetweenSteps::Unpressed find_unpressed(const contact::Pose& tool);
   void feel_between_steps();
   void meet_surface();
   double find_way_over_patch() const;

@@ -15,8 +15,9 @@ namespace argil::sim {
 /// How the hand's force is found between two physics steps.
 enum class BetweenFrames {
   hold,  ///< the paper: one detection a physics step over the tool's whole motion, then the force is kept
-  re_evaluate,  ///< contact every tick against the last surface
-  compliant,    ///< the same, and the surface yields as the body's own matrix says (compliance.h)
+  re_evaluate,  ///< pairs: contact every tick against the last surface; a pressure: carried on as the body
+                ///< yields
+  compliant,    ///< pairs: the same, and the surface yields, too (compliance.h); a pressure: as re_evaluate
 };
 
 /// How much of a body a step solves for.
@@ -78,6 +79,11 @@ struct Params {
   /// The body gets the contacts of one detection a step, over the tool's whole motion since the last.
   bool detects_once_a_step() const {
     return rates.between_frames == BetweenFrames::hold || contact.law == contact::ContactLaw::pressure;
+  }
+  /// Between two steps the hand feels how the last answer to a pressure goes on.
+  bool carries_force_on() const {
+    return contact.law == contact::ContactLaw::pressure && rates.between_frames != BetweenFrames::hold &&
+           rates.physics_period_ticks > 1;
   }
   /// The surface that the tool meets deflects between two steps.
   bool deflects_between_steps() const {

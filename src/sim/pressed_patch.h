@@ -11,6 +11,10 @@ struct PressedPatch {
   double length =
       0.0;  ///< longer semi-axis of an ellipse on which Hertz's pressure would lie as far apart [m]
   double width = 0.0;  ///< shorter one [m]
+  /// By how much the body yields until the end of a step where a unit of force acts that is shared out like
+  /// those [m/N], by its own matrix; 0: not known.
+  double compliance = 0.0;
+  double drift = 0.0;  ///< how far the body goes there in the next step if the forces stay [m], into the clay
 
   /// dF/dd of an elastic half-space of modulus E* [Pa] under a flat tool of that outline [N/m]: π E* a / K(e)
   /// with the longer semi-axis a, the complete elliptic integral K of the first kind and the ellipse's

@@ -98,25 +98,23 @@ void HandSide::find_pressure_force(bool begins_step) {
   find_penalty_force(m_state.ticks_since_step);
 }
 
+ForceBetweenSteps::Unpressed HandSide::find_unpressed(const contact::Pose& tool) {
+  m_pressure->find_unpressed(m_touched.x_t1(), tool, m_unpressed);
+  ForceBetweenSteps::Unpressed unpressed{m_unpressed.force_on_tool, 0.0};
+  for (const contact::Contact& c : m_unpressed.contacts) unpressed.stiffness += c.end_stiffness;
+  return unpressed;
+}
+
 /// What the clay would add by now to its last answer.
 void HandSide::feel_between_steps() {
   const StageScope scope(m_observer, Stage::contact);
   if (keeps_shape()) return m_between->feel(Vec3::Zero());
   meet_surface();
-  const auto find_unpressed = [this](const contact::Pose& tool) {
-    m_pressure->find_unpressed(m_touched.x_t1(), tool, m_unpressed);
-  };
-  if (m_between->wants_unpressed()) {
-    find_unpressed(m_between->tool());
-    double stiffness = 0.0;
-    for (const contact::Contact& c : m_unpressed.contacts) stiffness += c.end_stiffness;
-    m_between->compare(stiffness, m_unpressed.force_on_tool);
-  }
-  ForceBetweenSteps::Limits limits{m_grip.holds(), m_params.contact.friction};
-  if (!limits.holds) {
-    find_unpressed(m_state.tool);
-    limits.at_least = m_unpressed.force_on_tool;
-  }
+  ForceBetweenSteps::Limits limits{m_grip.holds(), m_params.contact.friction, {}};
+  const bool may_be_unpressed = !limits.holds && m_between->may_be_unpressed(m_state.tool);
+  if (m_between->wants_compared() && (may_be_unpressed || !m_between->knows_stiffness()))
+    m_between->compare(find_unpressed(m_between->tool()));
+  if (may_be_unpressed) limits.unpressed = find_unpressed(m_state.tool);
   const device::Wrench felt = m_between->forecast(m_state.tool, limits);
   m_state.hand_force = felt.force;
   m_state.hand_torque = felt.torque;

@@ -77,15 +77,14 @@ StepStatus Simulation::tick(const device::DeviceSample& sample) {
 }
 
 StepStatus Simulation::tick(const device::DeviceSample& sample, const TickPlan& plan) {
-  ARGIL_ASSERT(plan.begins_step == plan.waits_for_result ||
-               m_params.rates.between_frames != BetweenFrames::compliant);
+  ARGIL_ASSERT(plan.begins_step == plan.waits_for_result || !m_params.deflects_between_steps());
   return sim::tick(hand(), *this, sample, plan, plan.waits_for_result ? &m_load : nullptr);
 }
 
 void Simulation::start_step(HandSide& hand) {
   hand.hand_over(m_load);
   m_step_status = body_side().step(m_load, m_result);
-  if (m_step_status.is_ok() && m_result.has_moved) m_step_status = hand.update_compliance(m_result);
+  if (m_step_status.is_ok() && m_result.has_moved) m_step_status = hand.update_compliance();
   if (m_step_status.is_ok())
     body_side().commit();
   else

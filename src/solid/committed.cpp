@@ -4,6 +4,7 @@
 
 #include "solid/frame_lag.h"
 #include "solid/move.h"
+#include "solid/response.h"
 #include "solid/solve.h"
 
 namespace argil::solid {
@@ -51,8 +52,7 @@ void serialize_solvers(Archive& archive, Body& body) {
   bool has_response_solver = history.response_solver != nullptr;
   archive.number("response/is_known", has_response_solver);
   if (!has_response_solver) return;
-  if (!history.response_solver)
-    history.response_solver = linear::make_solver(make_exact(body.model.params.solver), body.model.threads);
+  make_response_solver(body);
   history.response_solver->serialize(archive, "response/", system.matrix);
 }
 

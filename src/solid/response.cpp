@@ -1,5 +1,7 @@
 #include "solid/response.h"
 
+#include <algorithm>
+
 #include <Eigen/LU>
 
 #include "base/check.h"
@@ -10,11 +12,26 @@
 
 namespace argil::solid {
 
+namespace {
+
+linear::SolverParams find_response_params(const Body& body) {
+  linear::SolverParams params = body.model.params.solver;
+  params.tolerance = std::min(params.tolerance, body.model.params.response_tolerance);
+  return params;
+}
+
+}  // namespace
+
+void make_response_solver(Body& body) {
+  if (!body.history.response_solver)
+    body.history.response_solver = linear::make_solver(find_response_params(body), body.model.threads);
+}
+
 void prepare_response(Body& body, const Part& part, const SolidState& state, double step_s) {
   ARGIL_ASSERT(!body.is_explicit());
   body.plastic_strain = &state.plastic_strain;
   body.elastic.forget_all();
-  store_nodal_stiffness(body.model, body.materials, body.system);  // its solves are exact ones
+  store_nodal_stiffness(body.model, body.materials, body.system);  // its solves may be exact
   body.prediction.is_static = false;
   body.prediction.tau = compute_tau(body.model.params.integrator, step_s);
   body.system.is_projected = true;
@@ -29,10 +46,10 @@ void prepare_response(Body& body, const Part& part, const SolidState& state, dou
 StepStatus find_response(Body& body, const Part& part, const Points& force, Tick tick, Points& displacement) {
   const Model& model = body.model;
   System& system = body.system;
-  const linear::SolverParams exact = make_exact(model.params.solver);
+  make_response_solver(body);
+  body.history.response_solver->restrict_to(part.rows.list());
   displacement = force;
   clear_held(model, displacement);
-  if (!body.history.response_solver) body.history.response_solver = linear::make_solver(exact, model.threads);
   const double tau = body.prediction.tau;
   for (int r = 0; r < model.num_free(); ++r)
     system.rhs.col(r) = tau * tau * displacement.col(model.node_of_row[static_cast<std::size_t>(r)]);
@@ -44,7 +61,7 @@ StepStatus find_response(Body& body, const Part& part, const Points& force, Tick
       body.history.response_solver->solve(system.matrix, product, system.rhs, system.delta);
   if (!report.converged)
     return StepStatus::failed({tick, "solid", -1, "relative residual of the compliance's solve",
-                               report.relative_residual, exact.tolerance});
+                               report.relative_residual, find_response_params(body).tolerance});
   for (int r = 0; r < model.num_free(); ++r)
     displacement.col(model.node_of_row[static_cast<std::size_t>(r)]) = system.delta.col(r);
   clear_held(model, displacement);

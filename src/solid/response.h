@@ -8,6 +8,9 @@ namespace argil::solid {
 
 struct Body;
 
+/// Of find_response, where there is none yet.
+void make_response_solver(Body& body);
+
 /// Makes the matrix of a step of step_s seconds from the present kinematics, without contacts. It serves the
 /// functions below until the next step begins.
 void prepare_response(Body& body, const Part& part, const SolidState& state, double step_s);

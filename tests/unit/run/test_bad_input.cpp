@@ -191,9 +191,11 @@ TEST_F(BadInput, UsersTableIsRefusedWithTheValueAtFault) {
 }
 
 TEST_F(BadInput, SurfaceThatYieldsBetweenFramesIsRefusedWithoutAnImplicitStep) {
-  expect_refused(ball(), {"/haptics/between_frames=compliant", "/dynamics/integrator=symplectic_euler"},
-                 {"/haptics/between_frames", "symplectic_euler", "re_evaluate"});
-  expect_refused(ball(), {"/haptics/between_frames=compliant", "/dynamics/implicit_contact=false"},
+  expect_refused(
+      ball(), {"/preset=paper", "/haptics/between_frames=compliant", "/dynamics/integrator=symplectic_euler"},
+      {"/haptics/between_frames", "symplectic_euler", "re_evaluate"});
+  expect_refused(ball(),
+                 {"/preset=paper", "/haptics/between_frames=compliant", "/dynamics/implicit_contact=false"},
                  {"/haptics/between_frames", "implicit_contact"});
   expect_refused(ball(), {"/haptics/between_frames=compliance"}, {"/haptics/between_frames", "compliant"});
   expect_refused(ball(), {"/haptics/passivity=1"}, {"/haptics/passivity", "time_domain"});

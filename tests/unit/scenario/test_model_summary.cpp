@@ -78,6 +78,9 @@ TEST_F(ModelSummary, NamesWhatTheHandFeelsBetweenSteps) {
   expect_line({"/preset=paper", "/haptics/frame_period_ticks=28"}, "simplified  force: held for 14 ticks");
   expect_line({"/haptics/physics_period_ticks=2", "/haptics/between_frames=compliant"},
               "simplified  force: contact every tick, with a surface that is predicted for up to 2 ticks");
+  expect_line(
+      {"/contact/law=pressure", "/haptics/physics_period_ticks=2", "/haptics/between_frames=compliant"},
+      "simplified  force: the last answer of the clay, carried on for up to 2 ticks");
   expect_line({"/contact/vertex_face_stiffness_N_per_m=123"},
               "simplified  contact: a penalty of 123 N/m a pair");
 }

@@ -1,6 +1,8 @@
 // What hand and body get between two steps, where the force of the last one changes under the hand.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "sim/force_between_steps.h"
 
 namespace argil::sim {
@@ -56,7 +58,7 @@ TEST(ForceBetweenSteps, OfAPointThatWasOnlyNearIsTheAnswer) {
     ForceBetweenSteps between(rates, 0.0);
     between.tell(contacts, {}, tool, tool);
     between.receive({Vec3(0.0, 0.0, answer), Vec3::Zero()}, Vec3::Zero());
-    between.compare(1e3, Vec3::Zero());
+    between.compare({Vec3::Zero(), 1e3});
     EXPECT_EQ(between.forecast(tool, {}).force, Vec3(0.0, 0.0, answer));
     contact::Pose deeper = tool;
     deeper.position.z() = -1e-3;
@@ -77,10 +79,92 @@ TEST(ForceBetweenSteps, OfClayThatIsMetBetweenStepsIsNeverAlongTheWay) {
   contact::Pose through = above;
   through.position.z() -= 0.02;
   ForceBetweenSteps::Limits limits;
-  limits.at_least = Vec3(0.0, 0.1, 2.0);
-  EXPECT_EQ(between.forecast(through, limits).force, limits.at_least);
-  limits.at_least = Vec3(0.0, 0.1, -2.0);
+  limits.unpressed.force = Vec3(0.0, 0.1, 2.0);
+  EXPECT_EQ(between.forecast(through, limits).force, limits.unpressed.force);
+  limits.unpressed.force = Vec3(0.0, 0.1, -2.0);
   EXPECT_EQ(between.forecast(through, limits).force, Vec3(0.0, 0.0, 0.0));
+}
+
+/// The same before any step has answered: from below, far from where all coordinates are 0.
+TEST(ForceBetweenSteps, OfClayThatIsMetBeforeTheFirstAnswerIsNeverAlongTheWay) {
+  RateParams rates;
+  rates.physics_period_ticks = 14;
+  ForceBetweenSteps between(rates, 0.0);
+  contact::Pose below;
+  below.position = Vec3(0.0, 0.0, -0.03);
+  between.begin_at(below);
+  contact::Pose through = below;
+  through.position.z() = -0.003;
+  ForceBetweenSteps::Limits limits;
+  limits.unpressed.force = Vec3(0.0, 0.0, 2.0);
+  EXPECT_EQ(between.forecast(through, limits).force, Vec3(0.0, 0.0, 0.0));
+  limits.unpressed.force = Vec3(0.0, 0.0, -2.0);
+  EXPECT_EQ(between.forecast(through, limits).force, limits.unpressed.force);
+}
+
+/// What a tool has gone through does not hold it the more, the farther it goes; what it draws back from
+/// follows it.
+TEST(ForceBetweenSteps, OfAToolThatHasPassedStaysTheAnswer) {
+  RateParams rates;
+  rates.physics_period_ticks = 14;
+  contact::Contact met;
+  met.vertex = {0, -1, -1};
+  met.weight = {1.0, 0.0, 0.0};
+  met.normal = -Vec3::UnitZ();
+  met.spring = 1e3;
+  contact::Contacts contacts;
+  contact::Pose above, beneath, farther;
+  above.position.z() = 0.03;
+  beneath.position.z() = -0.03;
+  farther.position.z() = -0.04;
+  for (const bool passes : {true, false}) {
+    met.passes = passes;
+    contacts.contacts = {met};
+    ForceBetweenSteps between(rates, 0.0);
+    between.tell(contacts, {}, above, beneath);
+    PressedPatch pressed;
+    pressed.compliance = 1e-3;
+    between.receive({Vec3(0.0, 0.0, 0.5), Vec3::Zero()}, Vec3::Zero(), pressed);
+    EXPECT_NEAR(between.forecast(farther, {}).force.z(), passes ? 0.5 : 0.5 + 0.5 * 1e3 * 0.01, 1e-12);
+  }
+  met.passes = true;  // drawn back from where it pressed
+  contacts.contacts = {met};
+  ForceBetweenSteps between(rates, 0.0);
+  between.tell(contacts, {}, beneath, above);
+  PressedPatch pressed;
+  pressed.compliance = 1e-3;
+  between.receive({Vec3(0.0, 0.0, 0.5), Vec3::Zero()}, Vec3::Zero(), pressed);
+  contact::Pose higher = above;
+  higher.position.z() += 4e-4;
+  EXPECT_NEAR(between.forecast(higher, {}).force.z(), 0.5 - 0.5 * 1e3 * 4e-4, 1e-12);
+}
+
+/// Clay that is met between two steps on a body that gives way as a whole, as by a spring under it: Hertz's
+/// force f(d) with that spring in series is the f for which f = f(d − c f).
+TEST(ForceBetweenSteps, OfClayOnASoftBodyIsInSeriesWithIt) {
+  constexpr double kHertz = 3e4, kDepth = 2e-3, kGive = 2e-3;  // f(d) = 3e4 d^{3/2}
+  RateParams rates;
+  rates.physics_period_ticks = 14;
+  contact::Contact near;
+  near.vertex = {0, -1, -1};
+  near.weight = {1.0, 0.0, 0.0};
+  near.normal = -Vec3::UnitZ();
+  near.spring = 1e6;
+  contact::Contacts contacts;
+  contacts.near.push_back(near);
+  const contact::Pose tool;
+  ForceBetweenSteps between(rates, 0.0);
+  between.tell(contacts, {}, tool, tool);
+  PressedPatch pressed;
+  pressed.compliance = kGive;
+  between.receive({}, Vec3::Zero(), pressed);
+  ForceBetweenSteps::Limits limits;
+  limits.unpressed = {Vec3(0.0, 0.0, kHertz * std::pow(kDepth, 1.5)), 1.5 * kHertz * std::sqrt(kDepth)};
+  contact::Pose deeper = tool;
+  deeper.position.z() = -kDepth;
+  const double force = between.forecast(deeper, limits).force.z();
+  EXPECT_GT(force, 0.1);
+  EXPECT_NEAR(force, kHertz * std::pow(kDepth - kGive * force, 1.5), 1e-9);
 }
 
 }  // namespace
