@@ -19,13 +19,17 @@ def run_along(argil, folder, places, scene):
         return run["haptic/force"][:]
 
 
+BLOCK = {"shape": {"size_m": EDGE}, "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 1e-6}]}
+
+
 def find_force(argil, folder, places, *, radius, friction=0.0, ticks_of_step=1, between="hold", modulus=1e5, target_tets=8000,
-               cells="graded", iteration="one"):
-    """The same of the ball's middle over the block. `modulus` is E [Pa]."""
+               cells="graded", iteration="one", body=None):
+    """The same of the ball's middle over a block, or a box of another shape and support. `modulus` is E [Pa]."""
+    body = body or BLOCK
     scene = {
         "about": "A ball on a block.",
-        "body": {"cells": {"kind": cells}, "shape": {"kind": "box", "size_m": EDGE, "target_tets": target_tets, "skin_triangles": 0},
-                 "fixed": [{"kind": "half_space", "normal": [0, 0, 1], "offset_m": 1e-6}]},
+        "body": {"cells": {"kind": cells}, "shape": {"kind": "box", "target_tets": target_tets, "skin_triangles": 0, **body["shape"]},
+                 "fixed": body["fixed"]},
         "material": {"youngs_modulus_Pa": modulus, "poissons_ratio": 0.3, "plasticity": {"enabled": False},
                      "clay_kernel": {"form": "off"}},
         "tool": {"shape": {"kind": "sphere", "radius_m": radius}, "mode": "push"},

@@ -21,7 +21,7 @@ from table_file import write_table
 ROOT = Path(__file__).resolve().parent.parent
 RADIUS, DEPTH, GAP, OFF = 0.008, 0.002, 0.0002, 0.001  # of the ball, below the top, above it at first, off the middle [m]
 START, END = -0.006, 0.004  # of the slide [m]
-RATES = ((1, "hold"), (5, "hold"), (14, "hold"), (14, "re_evaluate"), (14, "compliant"))  # ticks of a step, between them
+RATES = ((1, "hold"), (5, "hold"), (14, "hold"), (14, "re_evaluate"))  # ticks of a step, between them
 DOWN, REST, SLIDE, SETTLED = 112, 56, 420, 182  # ticks; the last: of the slide before the first that counts
 
 

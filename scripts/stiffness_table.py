@@ -32,8 +32,7 @@ CHOSEN = 80  # κ is so many times E* over the cell
 TIMES = (2, 10, 100)
 CASES = ((1, "slow", "push", "curnier", "hold"), (1, "slow", "pull", "curnier", "hold"), (1, "slow", "pull", "linear", "hold"),
          (14, "slow", "push", "curnier", "hold"), (14, "slow", "pull", "curnier", "hold"), (7, "fast", "push", "curnier", "hold"),
-         (14, "fast", "push", "curnier", "hold"), (14, "fast", "push", "curnier", "re_evaluate"),
-         (14, "fast", "push", "curnier", "compliant"))
+         (14, "fast", "push", "curnier", "hold"), (14, "fast", "push", "curnier", "re_evaluate"))
 TETS = {"p1": 8000, "p2": 2000}  # about as many nodes
 CELLS = (2, 3)  # to the radius of contact, from which on a change is looked for
 

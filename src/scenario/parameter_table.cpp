@@ -171,7 +171,7 @@ void bind_dynamics(Binder& b, Scenario& s) {
       "/dynamics/solver/tolerance", d.solver.tolerance, inside(0, 1), "",
       "Residual at which a step's linear solve stops, over that of a body that goes on as before or, where "
       "that is less, over the contact's force. At 1e-3 the force at the hand is off by some 1e-4 of its "
-      "peak, by up to 1e-3 in steps of 5 ms and more, 6e-3 where clay flows, and 2e-2 as a fast pull turns "
+      "peak, by up to 1e-3 in steps of 5 ms and more, 6e-3 where clay flows, and 5e-3 as a fast pull turns "
       "in steps of 14 ms; at 1e-4 by a tenth of that. Newton's method and statics take at most 1e-8.");
   b.integer("/dynamics/solver/max_iterations", d.solver.max_iterations, between(1, 1e6),
             "Iterations after which the run stops.");
