@@ -211,10 +211,7 @@ void BodySide::begin_step(const ContactLoad& load, StepResult& result) {
   result.friction.setZero();
   for (const solid::PointStiffness& entry : load.stiffness)
     if (entry.friction > 0.0 && !entry.is_near) result.friction -= entry.force;
-  PressedMoments pressed;
-  for (std::size_t i = load.last_detection; i < load.stiffness.size(); ++i)
-    add_pressed(load, i, Vec3::Zero(), pressed);
-  result.pressed = pressed.find_patch();
+  result.pressed = {};
 }
 
 /// A contact of a pressure whose force on the body has changed by this in the step.

@@ -83,8 +83,15 @@ void BodySide::apply_deflection(const ContactLoad& load, StepResult& result) {
 
 /// Of the place that the contacts press on, or soon will.
 StepStatus BodySide::find_compliance(const ContactLoad& load, StepResult& result) {
+  if (!m_params.carries_force_on()) return StepStatus::ok();
   const StageScope scope(m_observer, Stage::solve);
-  if (!m_params.carries_force_on() || !m_params.solid.solves_contact()) return StepStatus::ok();
+  if (!result.has_moved) {
+    PressedMoments pressed;
+    for (std::size_t i = load.last_detection; i < load.stiffness.size(); ++i)
+      add_pressed(load, i, Vec3::Zero(), pressed);
+    result.pressed = pressed.find_patch();
+  }
+  if (!m_params.solid.solves_contact()) return StepStatus::ok();
   const contact::Pose& tool = m_state.hand.tool;
   const contact::Pose& before = m_committed.hand.tool;
   const bool is_same = !result.has_moved && tool.position == before.position &&

@@ -97,17 +97,20 @@ double ForceBetweenSteps::ticks_ahead() const {
 /// in N ticks than that: that the body gets with the next one.
 void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& friction,
                                 const PressedPatch& pressed) {
+  // A body that was told of nothing has got nothing: a tool under which it keeps its shape is felt all the
+  // same.
+  const device::Wrench given = m_state.told.springs > 0.0 ? answer : device::Wrench{};
   m_state.owed += m_period * (m_state.excess + (m_state.ticks - m_planned) * m_state.answer.force) +
-                  ticks_ahead() * m_period * (m_state.answer.force - answer.force);
+                  ticks_ahead() * m_period * (m_state.answer.force - given.force);
   m_state.excess.setZero();
   m_state.ticks = 0;
-  m_state.answer = answer;
+  m_state.answer = given;
   m_state.friction = friction;
   m_state.place = m_state.told;
   Place& place = m_state.place;
   find_stiffness(pressed);
-  if (answer.force.isZero(0.0)) place.outward.setZero();
-  const Vec3 pressure = answer.force - friction;
+  if (given.force.isZero(0.0)) place.outward.setZero();
+  const Vec3 pressure = given.force - friction;
   if (presses() && pressure.dot(place.outward) > 0.0)
     place.outward = pressure.normalized();  // so that of pressure nothing is along the surface
 }

@@ -14,7 +14,15 @@ TEST(ForceBetweenSteps, OwesWhatTheHandFeelsOfAChangedAnswer) {
   rates.haptic_period = 1e-3;
   rates.physics_period_ticks = 4;
   for (const double lag : {0.0, 0.5}) {
+    contact::Contact touched;
+    touched.vertex = {0, -1, -1};
+    touched.weight = {1.0, 0.0, 0.0};
+    touched.normal = -Vec3::UnitZ();
+    touched.spring = 1.0;
+    contact::Contacts contacts;
+    contacts.contacts.push_back(touched);
     ForceBetweenSteps between(rates, lag);
+    between.tell(contacts, {}, {}, {});
     Vec3 felt = Vec3::Zero(), got = Vec3::Zero();
     const auto feel = [&](const Vec3& force, int ticks) {
       for (int k = 0; k < ticks; ++k, felt += rates.haptic_period * force) between.feel(force);

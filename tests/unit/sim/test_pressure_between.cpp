@@ -170,6 +170,32 @@ TEST_P(Exchange, NoChangeOfModeKicks) {
   }
 }
 
+/// A body keeps its shape under a tool that wets it, gets nothing of what the hand feels then, and owes
+/// nothing for it: it stays at rest, and a push after that is felt as if there had been no wetting.
+TEST_P(Exchange, AToolThatWetsGivesTheBodyNothing) {
+  Params p = params();
+  p.water.wetting_flux = 0.0;
+  const auto push = [&](Simulation& simulation) {
+    lead(simulation, press_block(-1e-3, 2e-3), 4 * ticks());
+    lead(simulation, press_block(3e-4, 2e-3), 14 * ticks());
+    return lead(simulation, press_block(-1e-3, 2e-3), 14 * ticks());
+  };
+  Simulation simulation = make_pressed_block(p, ToolMode::push, 1, false);
+  lead(simulation, press_block(-1e-3), 2 * ticks());
+  for (const double depth : {1e-3, 1e-3, -1e-3}) {
+    const std::vector<Vec3> wet = lead(simulation, press_block(depth, 0.0, ToolMode::wet), 20 * ticks());
+    if (depth > 0.0) {
+      ASSERT_GT(wet.back().z(), 0.1);
+    }
+  }
+  EXPECT_EQ(simulation.body_state().solid.v.norm(), 0.0);
+  Simulation fresh = make_pressed_block(p, ToolMode::push, 1, false);
+  const std::vector<Vec3> expected = push(fresh), felt = push(simulation);
+  ASSERT_EQ(felt.size(), expected.size());
+  for (std::size_t i = 0; i < felt.size(); ++i) ASSERT_EQ(felt[i], expected[i]) << i;
+  EXPECT_GT(fresh.body_state().solid.v.norm(), 0.0);
+}
+
 /// Presses, slides, wets, pulls and tears off: a run that was restored at any step ends in the same bits.
 TEST_P(EveryMethod, IsRestoredToTheBit) {
   Params p = params();
