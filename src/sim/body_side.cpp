@@ -164,8 +164,8 @@ BodyBetweenSteps BodySide::between_steps(Tick tick) {
 }
 
 StepStatus BodySide::step(const ContactLoad& load, StepResult& result) {
-  StepStatus status = make_step(load, result);
-  if (status.is_ok()) status = find_compliance(load, result);
+  const StepStatus status = make_step(load, result);
+  if (status.is_ok()) find_pressed(load, result);
   result.error = m_error.rates(m_economy);
   result.is_limited = m_limit.num_tets > 0;
   if (status.is_ok() || m_params.is_strict) return status;

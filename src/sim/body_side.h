@@ -96,9 +96,10 @@ class BodySide {
   StepStatus solve(bool& is_solved);
   void apply_deflection(const ContactLoad& load, StepResult& result);
   void add_pressed(const ContactLoad& load, std::size_t i, const Vec3& change, PressedMoments& pressed) const;
-  StepStatus find_compliance(const ContactLoad& load, StepResult& result);
-  double find_drift() const;
-  void share_force(const ContactLoad& load, const PressedPatch& pressed);
+  void find_pressed(const ContactLoad& load, StepResult& result);
+  void find_compliance(const ContactLoad& load, PressedPatch& pressed);
+  bool share_force(const ContactLoad& load, const PressedPatch& pressed);
+  void find_drift();
   void scale_velocity(const ContactPatch& patch);
   StepStatus update_kinematics();
   void flow();
@@ -142,9 +143,10 @@ class BodySide {
   ForceErrorEstimate m_error;
   TensorField m_earlier_flow;  // what find_flow adds; empty: nothing
   solid::MotionLimiter m_limiter;
-  solid::MotionLimit m_limit;      // of the last step; all tets: of the whole body, or the step was not made
-  Points m_shares, m_response;     // 3×nodes, of find_compliance
-  bool m_has_moved_water = false;  // since the last commit, as is the next
+  solid::MotionLimit m_limit;   // of the last step; all tets: of the whole body, or the step was not made
+  Eigen::RowVectorXd m_shares;  // of each node, of find_compliance
+  Points m_push, m_response, m_drift;  // 3×nodes, likewise
+  bool m_has_moved_water = false;      // since the last commit, as is the next
   bool m_has_begun_solid = false;
   StageObserver* m_observer = nullptr;
 };

@@ -6,7 +6,9 @@
 #include "material/plasticity.h"
 #include "sim/body_side.h"
 #include "solid/material_changes.h"
+#include "solid/matrix.h"
 #include "solid/move.h"
+#include "solid/product.h"
 #include "solid/response.h"
 #include "solid/step_solver.h"
 
@@ -81,9 +83,9 @@ void BodySide::apply_deflection(const ContactLoad& load, StepResult& result) {
   result.pressed = pressed.find_patch();
 }
 
-/// Of the place that the contacts press on, or soon will.
-StepStatus BodySide::find_compliance(const ContactLoad& load, StepResult& result) {
-  if (!m_params.carries_force_on()) return StepStatus::ok();
+/// What the hand carries the answer on by.
+void BodySide::find_pressed(const ContactLoad& load, StepResult& result) {
+  if (!m_params.carries_force_on()) return;
   const StageScope scope(m_observer, Stage::solve);
   if (!result.has_moved) {
     PressedMoments pressed;
@@ -91,61 +93,78 @@ StepStatus BodySide::find_compliance(const ContactLoad& load, StepResult& result
       add_pressed(load, i, Vec3::Zero(), pressed);
     result.pressed = pressed.find_patch();
   }
-  if (!m_params.solid.solves_contact()) return StepStatus::ok();
   const contact::Pose& tool = m_state.hand.tool;
   const contact::Pose& before = m_committed.hand.tool;
   const bool is_same = !result.has_moved && tool.position == before.position &&
                        tool.orientation.coeffs() == before.orientation.coeffs();
-  const bool yields = !load.inward.isZero(0.0) && load.stiffness.size() > load.last_detection;
-  if (!yields) m_state.compliance = 0.0;
-  if (yields && !is_same) {
-    m_has_begun_solid = true;  // its solver may be taken back
-    share_force(load, result.pressed);
-    solid::prepare_response(m_solid, m_region.part(), m_state.solid, m_params.rates.step_seconds());
-    ARGIL_TRY(solid::find_response(m_solid, m_region.part(), m_shares, tick(), m_response));
-    m_state.compliance = m_shares.cwiseProduct(m_response).sum();
-    result.pressed.drift = find_drift();
-  }
+  if (!is_same) find_compliance(load, result.pressed);
   result.pressed.compliance = m_state.compliance;
-  return StepStatus::ok();
 }
 
-/// With the speed that the forces give it if they stay, 2 v' − v, it goes τ A⁻¹ M (2 v' − v) on: of that, by
-/// symmetry, what the response u = τ² A⁻¹ f to the shares f sees.
-double BodySide::find_drift() const {
+/// Of the place that the contacts press on, or soon will; zero where a solve does not come to its end.
+void BodySide::find_compliance(const ContactLoad& load, PressedPatch& pressed) {
+  m_state.compliance.setZero();
+  if (!m_params.solid.solves_contact() || !share_force(load, pressed)) return;
+  m_has_begun_solid = true;  // its solver may be taken back
+  const solid::Part& part = m_region.part();
+  solid::prepare_response(m_solid, part, m_state.solid, m_params.rates.step_seconds());
+  find_drift();
+  const double tau = solid::compute_tau(m_params.solid.integrator, m_params.rates.step_seconds());
+  const bool goes_aside = m_params.contact.friction > 0.0 || load.mode == device::ToolMode::pull;
+  for (int k = 0; k < (goes_aside ? 3 : 1); ++k) {
+    const Vec3 along = goes_aside ? Vec3(Vec3::Unit(k)) : load.inward;
+    m_push.noalias() = along * m_shares;
+    if (!solid::find_response(m_solid, part, m_push, tick(), m_response).is_ok()) {
+      m_state.compliance.setZero();
+      pressed.drift.setZero();
+      return;
+    }
+    const Vec3 way = solid::find_contact_share(m_solid) * m_response * m_shares.transpose();
+    m_state.compliance += way * along.transpose();
+    pressed.drift += m_drift.cwiseProduct(m_response).sum() / (tau * tau) * along;  // fᵀ A⁻¹ = uᵀ/τ²
+  }
+}
+
+/// A unit of force among the nodes, as the answer presses; of a grip, whose forces may cancel out, and of
+/// what only comes near, as their springs share it. False where nothing touches a body that yields.
+bool BodySide::share_force(const ContactLoad& load, const PressedPatch& pressed) {
+  if (load.inward.isZero(0.0)) return false;
+  m_shares.setZero(m_state.solid.x.cols());
+  if (pressed.springs > 0.0)
+    for (const int node : m_force.contacts().nodes())
+      m_shares(node) = load.inward.dot(m_force.contacts().at.col(node));
+  if (!(m_shares.sum() > 0.0)) {
+    m_shares.setZero();
+    for (std::size_t i = load.last_detection; i < load.stiffness.size(); ++i) {
+      const solid::PointStiffness& entry = load.stiffness[i];
+      for (std::size_t k = 0; k < entry.count() && entry.friction == 0.0; ++k)
+        m_shares(entry.vertex[k]) += entry.weight[k] * entry.stiffness;
+    }
+  }
+  const double sum = m_shares.sum();
+  if (!(sum > 0.0)) return false;
+  m_shares /= sum;
+  return true;
+}
+
+/// Momentum times time by which the body goes on in the next step if the forces stay as they are:
+/// with each integrator it goes A⁻¹ ((M + τ D) h v' + τ M (v' − v)), where v' − v is h times its acceleration
+/// and D the damping.
+void BodySide::find_drift() {
+  const solid::SolidParams& p = m_params.solid;
   const Points& v = m_state.solid.v;
   const Points& before = m_solid.committed.v;
   const Field& mass = m_solid.materials.mass();
-  double sum = 0.0;
-  for (Eigen::Index n = 0; n < v.cols(); ++n)
-    sum += mass(n) * m_response.col(n).dot(2.0 * v.col(n) - before.col(n));
-  return sum / m_params.rates.step_seconds();
-}
-
-/// A unit of force into the clay, as the answer presses; of a grip, whose forces may cancel out, and of what
-/// only comes near as their springs share it.
-void BodySide::share_force(const ContactLoad& load, const PressedPatch& pressed) {
-  const Vec3& inward = load.inward;
-  m_shares.setZero(3, m_state.solid.x.cols());
-  double sum = 0.0;
-  if (pressed.springs > 0.0)
-    for (const int node : m_force.contacts().nodes()) {
-      const double force = inward.dot(m_force.contacts().at.col(node));
-      m_shares.col(node) = force * inward;
-      sum += force;
-    }
-  if (!(sum > 0.0)) {
-    m_shares.setZero();
-    sum = 0.0;
-    for (std::size_t i = load.last_detection; i < load.stiffness.size(); ++i) {
-      const solid::PointStiffness& entry = load.stiffness[i];
-      if (entry.friction > 0.0) continue;
-      for (std::size_t k = 0; k < entry.count(); ++k)
-        m_shares.col(entry.vertex[k]) += entry.weight[k] * entry.stiffness * inward;
-      sum += entry.stiffness;
-    }
-  }
-  if (sum > 0.0) m_shares /= sum;
+  const double h = m_params.rates.step_seconds();
+  const double tau = solid::compute_tau(p.integrator, h);
+  m_drift.setZero(3, v.cols());
+  if (p.rayleigh_stiffness > 0.0)
+    solid::compute_stiffness_product(m_solid, m_region.part(), v, tau * h * p.rayleigh_stiffness, 0.0,
+                                     m_drift);
+  m_region.part().nodes.each(v.cols(), [&](std::ptrdiff_t n) {
+    const Vec3 way = (1.0 + tau * p.rayleigh_mass) * h * v.col(n) + tau * (v.col(n) - before.col(n));
+    m_drift.col(n) += mass(n) * way;
+  });
 }
 
 /// v ← G_d^{h/h_ref}(r) v with r from the point of contact (eq. 9). A body that nothing presses is left free,

@@ -3,17 +3,12 @@
 #include <cmath>
 
 namespace argil::sim {
-namespace {
 
-/// Where nothing reaches into the surface, points that the tool has left by little may press in the step.
 Vec3 find_inward(const contact::Contacts& contacts) {
   Vec3 inward = Vec3::Zero();
-  for (const contact::Contact& c : contacts.contacts.empty() ? contacts.near : contacts.contacts)
-    inward += c.spring * c.normal;
+  for (const contact::Contact& c : list_touching(contacts)) inward += c.spring * c.normal;
   return inward.normalized();
 }
-
-}  // namespace
 
 ContactLoad::ContactLoad() {
   constexpr std::size_t kContacts = 16384;  // more than a late step gathers

@@ -48,9 +48,8 @@ struct ContactLoad {
   int detections = 1;           ///< whose mean the body gets
   double way_over_patch = 0.0;  ///< the tool's in the last detection, over the radius of what it presses on
   PatchResolution resolution;   ///< of what it presses on, where the error is estimated
-  Vec3 inward =
-      Vec3::Zero();    ///< unit: from the tool into the clay that it touches; zero where it touches none
-  double scale = 1.0;  ///< by which the sum of `forces` has yet to be multiplied for that
+  Vec3 inward = Vec3::Zero();   ///< find_inward of the last detection
+  double scale = 1.0;           ///< by which the sum of `forces` has yet to be multiplied for that
   device::ToolMode mode = device::ToolMode::push;
   std::vector<int> touched_tet;      ///< by a tool that wets or dries in the tick that hands over
   std::vector<double> touched_area;  ///< [m²] of each, for the whole water period
@@ -77,6 +76,14 @@ struct ContactLoad {
   /// What the ticks have filled in.
   void serialize(Archive& archive);
 };
+
+/// The contacts; where nothing reaches into the surface, points that the tool has left by little, which may
+/// press in the step.
+inline const std::vector<contact::Contact>& list_touching(const contact::Contacts& contacts) {
+  return contacts.contacts.empty() ? contacts.near : contacts.contacts;
+}
+/// Unit: from the tool into the clay, mean of those by their springs; zero where there are none.
+Vec3 find_inward(const contact::Contacts& contacts);
 
 /// Makes the load of a step from the contacts of its ticks.
 class LoadCollector {

@@ -8,7 +8,8 @@
 namespace argil::sim {
 namespace {
 
-constexpr double kAlongSurface = 0.8;  // of K [Mindlin1949]: 2 (1 − ν)/(2 − ν), 0.82 for ν = 0.3
+/// Of K on a half-space along its surface [Mindlin1949]: 2 (1 − ν)/(2 − ν), 0.82 for ν = 0.3.
+constexpr double kAlongSurface = 0.8;
 
 /// Where a place that was `point` with the tool at `from` has gone with it.
 Vec3 carry(const Vec3& point, const contact::Pose& from, const contact::Pose& to) {
@@ -36,31 +37,22 @@ void ForceBetweenSteps::begin_at(const contact::Pose& tool) {
 void ForceBetweenSteps::tell(const contact::Contacts& contacts, const contact::Patch& patch,
                              const contact::Pose& from, const contact::Pose& to) {
   Place& told = m_state.told;
+  told = {};
   told.tool = {to.position + m_lag * (from.position - to.position),
                to.orientation.slerp(m_lag, from.orientation)};
   told.centre = told.tool.position;
-  told.outward.setZero();
-  told.has_passed = false;
-  told.springs = 0.0;
-  told.stiffness = -1.0;
-  told.give = 0.0;
-  told.drift = 0.0;
-  told.share = -1.0;
   Vec3 centre = Vec3::Zero();
-  Vec3 inward = Vec3::Zero();
-  // Where nothing reaches into the surface, points that it has left by little may press in the step.
-  const std::vector<contact::Contact>& list = contacts.contacts.empty() ? contacts.near : contacts.contacts;
+  const std::vector<contact::Contact>& list = list_touching(contacts);
   for (const contact::Contact& c : list) {
     told.springs += c.spring;
     centre += c.spring * c.point;
-    inward += c.spring * c.normal;
   }
   if (!(told.springs > 0.0)) return;
   told.modulus = patch.modulus;
   told.cell = patch.cell;
   told.centre = carry(centre / told.springs, to, told.tool);
-  told.outward = -inward.normalized();
-  told.has_passed = !contacts.contacts.empty() && (to.position - from.position).dot(inward) > 0.0 &&
+  told.outward = -find_inward(contacts);
+  told.has_passed = !contacts.contacts.empty() && (to.position - from.position).dot(told.outward) < 0.0 &&
                     std::all_of(list.begin(), list.end(), [](const contact::Contact& c) { return c.passes; });
   m_state.shares.clear();
   for (const contact::Contact& c : list)
@@ -117,14 +109,17 @@ void ForceBetweenSteps::receive(const device::Wrench& answer, const Vec3& fricti
 
 void ForceBetweenSteps::find_stiffness(const PressedPatch& pressed) {
   Place& place = m_state.place;
+  const Vec3& n = place.outward;
   const double springs = pressed.springs > 0.0 ? pressed.springs : place.springs;
   const double half_space = pressed.find_half_space_stiffness(place.modulus, place.cell);
-  const double compliance =
-      pressed.compliance > 0.0 || half_space == 0.0 ? pressed.compliance : 1.0 / half_space;
-  if (compliance > 0.0 && springs > 0.0) place.stiffness = 1.0 / (compliance + 1.0 / springs);
-  if (place.has_passed) place.stiffness = 0.0;
+  const double known = n.dot(pressed.compliance * n);
+  const double compliance = known > 0.0 || half_space == 0.0 ? known : 1.0 / half_space;
   place.drift = pressed.drift;
   place.give = half_space > 0.0 ? std::max(0.0, compliance - 1.0 / half_space) : compliance;
+  if (place.has_passed) place.stiffness = 0.0;
+  if (place.has_passed || !(compliance > 0.0) || !(springs > 0.0)) return;
+  place.stiffness = 1.0 / (compliance + 1.0 / springs);
+  if (known > 0.0) place.sideways = (pressed.compliance + Mat3::Identity() / springs).inverse();
 }
 
 /// At the end of the step receive() takes this answer for what the body got in N ticks and what the hand felt
@@ -143,7 +138,7 @@ bool ForceBetweenSteps::may_be_unpressed(const contact::Pose& tool) const {
 }
 
 /// With the body's give c in series: where it would be f at the depth d, it is f ((d − c s f)/d)^{3/2} = s f,
-/// with d = 3/2 f/k.
+/// with d = 3/2 f/k. Newton's method comes down to s, and ends where it does not.
 Vec3 ForceBetweenSteps::find_force(const Unpressed& unpressed) const {
   constexpr double kExponent = 1.5;
   constexpr double kClose = 1e-12;
@@ -164,13 +159,26 @@ void ForceBetweenSteps::compare(const Unpressed& unpressed) {
   place.share = force > answered ? answered / force : 1.0;
 }
 
+/// Of the tool's place on the body, less that of the body by itself [m].
+Vec3 ForceBetweenSteps::find_way(const contact::Pose& tool) const {
+  const Place& place = m_state.place;
+  const double share = std::min(1.0, static_cast<double>(m_state.ticks) / m_planned);
+  return carry(place.centre, place.tool, tool) - place.centre - share * place.drift;
+}
+
 /// Along the patch's normal; negative where the tool would draw.
 double ForceBetweenSteps::find_pressing(const contact::Pose& tool) const {
   const Place& place = m_state.place;
-  const Vec3 path = carry(place.centre, place.tool, tool) - place.centre;
-  const double drift = std::min(1.0, static_cast<double>(m_state.ticks) / m_planned) * place.drift;
-  return place.outward.dot(m_state.answer.force - m_state.friction) -
-         place.stiffness * (place.outward.dot(path) + drift);
+  return place.outward.dot(m_state.answer.force - m_state.friction - place.stiffness * find_way(tool));
+}
+
+/// By a way along the surface, while what presses keeps its force.
+Vec3 ForceBetweenSteps::find_growth_along(const Vec3& way) const {
+  const Place& place = m_state.place;
+  if (place.sideways.isZero(0.0)) return -kAlongSurface * place.stiffness * way;
+  const Vec3 normal = place.sideways * place.outward;
+  const Vec3 along = place.sideways * way;
+  return place.outward.dot(along) / place.outward.dot(normal) * normal - along;
 }
 
 device::Wrench ForceBetweenSteps::forecast(const contact::Pose& tool, const Limits& limits) const {
@@ -182,19 +190,21 @@ device::Wrench ForceBetweenSteps::forecast(const contact::Pose& tool, const Limi
     return {pushes_on ? Vec3(Vec3::Zero()) : force, Vec3::Zero()};
   }
   const Vec3& n = place.outward;
-  const Vec3 path = carry(place.centre, place.tool, tool) - place.centre;
+  const Vec3 way = find_way(tool);
   const Vec3 answered = m_state.answer.force - m_state.friction;
-  double pressing = find_pressing(tool);
-  const Vec3 along_answered = m_state.answer.force - n.dot(answered) * n;
-  Vec3 along = along_answered;
-  if (limits.holds || limits.friction > 0.0)
-    along -= kAlongSurface * place.stiffness * (path - n.dot(path) * n);
-  if (!limits.holds) {
-    pressing = std::max({0.0, pressing, place.share * n.dot(find_force(limits.unpressed))});
-    const double most = find_friction(limits.friction, along_answered, n.dot(answered)) * pressing;
-    if (const double length = along.norm(); length > most) along *= most / length;
+  Vec3 force = m_state.answer.force - place.sideways * way;
+  if (!limits.holds || place.sideways.isZero(0.0)) {
+    double pressing = find_pressing(tool);
+    const Vec3 along_answered = m_state.answer.force - n.dot(answered) * n;
+    Vec3 along = along_answered;
+    if (limits.holds || limits.friction > 0.0) along += find_growth_along(way - n.dot(way) * n);
+    if (!limits.holds) {
+      pressing = std::max({0.0, pressing, place.share * n.dot(find_force(limits.unpressed))});
+      const double most = find_friction(limits.friction, along_answered, n.dot(answered)) * pressing;
+      if (const double length = along.norm(); length > most) along *= most / length;
+    }
+    force = pressing * n + along;
   }
-  const Vec3 force = pressing * n + along;
   return {force, m_state.answer.torque + (place.centre - tool.position).cross(force - m_state.answer.force)};
 }
 
@@ -214,8 +224,9 @@ void ForceBetweenSteps::serialize(Archive& archive) {
     archive.number(name + "_modulus", p.modulus);
     archive.number(name + "_cell", p.cell);
     archive.number(name + "_stiffness", p.stiffness);
+    archive.array(name + "_sideways", p.sideways);
+    archive.array(name + "_drift", p.drift);
     archive.number(name + "_give", p.give);
-    archive.number(name + "_drift", p.drift);
     archive.number(name + "_share", p.share);
   };
   place("between/told", m_state.told);

@@ -15,8 +15,8 @@ namespace argil::sim {
 /// What the hand feels between two steps of a body that a pressure deforms, and what the body gets for it.
 ///
 /// A step answers where the tool was with one force. As the tool goes on, that force grows like the one of an
-/// elastic body under a patch that keeps its size, whose stiffness is K along the patch's normal and
-/// less along the surface; friction keeps Coulomb's limit. Of clay that has hardly been pressed yet it is no
+/// elastic body under a patch that keeps its size, as stiff as the body is there along the patch's normal and
+/// along the surface; friction keeps Coulomb's limit. Of clay that has hardly been pressed yet it is no
 /// less than Hertz's force there, while the body as a whole gives way.
 ///
 /// That is a forecast. What the hand felt more than the body got is owed to the body: a part of it is given
@@ -47,7 +47,7 @@ class ForceBetweenSteps {
     double stiffness = 0.0;     ///< by which that grows with the depth [N/m]
   };
   /// With the tool here, may the force come up to that of a surface that has not been pressed? Under a ball
-  /// it does once the force is 4.4 times the answer, under a cone 5 times.
+  /// it does once the force is 4.4 times the answer, under a cone 5 times, under a flat tool never.
   bool may_be_unpressed(const contact::Pose& tool) const;
   bool knows_stiffness() const { return m_state.place.stiffness >= 0.0; }
   /// The last answer has not been compared yet.
@@ -80,16 +80,17 @@ class ForceBetweenSteps {
   /// Where the body was told of the tool.
   struct Place {
     contact::Pose tool;
-    Vec3 centre = Vec3::Zero();   // of what is touched [m]
-    Vec3 outward = Vec3::Zero();  // unit: from the clay to the tool; zero without contacts
-    bool has_passed = false;      // the tool has gone through what it touched, and leaves it behind
-    double springs = 0.0;         // stiffness of the contacts themselves [N/m]
-    double modulus = 0.0;         // E* [Pa] of the body there
-    double cell = 0.0;            // edge of its cells there [m]
-    double stiffness = -1.0;      // K [N/m]; negative: not known
-    double drift = 0.0;           // of the body in the next step [m], away from the tool
-    double give = 0.0;            // of the body beside that of a half-space [m/N]
-    double share = -1.0;          // of an unpressed surface's force that counts; negative: not known
+    Vec3 centre = Vec3::Zero();    // of what is touched [m]
+    Vec3 outward = Vec3::Zero();   // unit: from the clay to the tool; zero without contacts
+    bool has_passed = false;       // the tool has gone through what it touched, and leaves it behind
+    double springs = 0.0;          // stiffness of the contacts themselves [N/m]
+    double modulus = 0.0;          // E* [Pa] of the body there
+    double cell = 0.0;             // edge of its cells there [m]
+    double stiffness = -1.0;       // K along `outward` [N/m]; negative: not known
+    Mat3 sideways = Mat3::Zero();  // of body and contacts in all directions [N/m]; zero: not known
+    Vec3 drift = Vec3::Zero();     // of the body in the next step [m]
+    double give = 0.0;             // of the body beside that of a half-space [m/N]
+    double share = -1.0;           // of an unpressed surface's force that counts; negative: not known
   };
   struct State {
     Place told;   // the body has not answered yet
@@ -105,7 +106,9 @@ class ForceBetweenSteps {
   bool presses() const { return !m_state.place.outward.isZero(0.0); }
 
   void find_stiffness(const PressedPatch& pressed);
+  Vec3 find_way(const contact::Pose& tool) const;
   double find_pressing(const contact::Pose& tool) const;
+  Vec3 find_growth_along(const Vec3& way) const;
   Vec3 find_force(const Unpressed& unpressed) const;
 
   /// ½(N − 1) + N·lag: ticks by which the hand feels a steady growth before the body answers with it.

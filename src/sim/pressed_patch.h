@@ -4,17 +4,16 @@
 
 namespace argil::sim {
 
-/// Where a pressure acts when a step of the body ends, by the moments of its forces: those hardly hang on κ,
-/// while the area that the tool covers does.
+/// Where the answer of a step presses, by the moments of its forces, and how the body goes on there. Those
+/// forces hardly hang on κ, while the area that the tool covers does.
 struct PressedPatch {
   double springs = 0.0;  ///< stiffness of the contacts that press [N/m]; 0: nothing presses
-  double length =
-      0.0;  ///< longer semi-axis of an ellipse on which Hertz's pressure would lie as far apart [m]
-  double width = 0.0;  ///< shorter one [m]
-  /// By how much the body yields until the end of a step where a unit of force acts that is shared out like
-  /// those [m/N], by its own matrix; 0: not known.
-  double compliance = 0.0;
-  double drift = 0.0;  ///< how far the body goes there in the next step if the forces stay [m], into the clay
+  double length = 0.0;   ///< longer semi-axis [m] of an ellipse on which Hertz's pressure lies as far apart
+  double width = 0.0;    ///< shorter one [m]
+  /// How far the body goes there until the end of the next step for a unit of force that is shared out like
+  /// those [m/N], by its own matrix. Without friction and grip of a force into the clay alone; 0: not known.
+  Mat3 compliance = Mat3::Zero();
+  Vec3 drift = Vec3::Zero();  ///< and how far if the forces stay as they are [m]
 
   /// dF/dd of an elastic half-space of modulus E* [Pa] under a flat tool of that outline [N/m]: π E* a / K(e)
   /// with the longer semi-axis a, the complete elliptic integral K of the first kind and the ellipse's

@@ -50,7 +50,7 @@ void HandSide::update_grip() {
   m_grip.test(m_state.last_answer, m_state.contact_tool, m_state.tool);
   if (m_grip.has_let_go() && m_state.num_contacts == 0) m_grip.release();
   const bool turns_back =
-      (m_state.tool.position - m_state.contact_tool.position).dot(m_state.hand_force) > 0.0;
+      (m_state.tool.position - m_state.contact_tool.position).dot(m_state.last_answer) > 0.0;
   if (m_grip.holds() || m_grip.has_let_go() || m_state.num_contacts == 0 || !turns_back) return;
   m_pressure->find_contacts(m_touched.x_t1(), m_state.contact_tool, m_state.contact_tool, m_state.yielding,
                             m_contacts);

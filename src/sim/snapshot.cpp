@@ -72,7 +72,7 @@ void BodySide::serialize(Archive& archive) {
   archive.number("ledger/contact_work", m_state.contact_work);
   archive.number("ledger/energy_given", m_state.energy_given);
   archive.number("solid/is_at_rest", m_state.is_at_rest);
-  if (m_params.carries_force_on()) archive.number("contact/compliance", m_state.compliance);
+  if (m_params.carries_force_on()) archive.array("contact/compliance", m_state.compliance);
   serialize_water(archive);
   m_materials.serialize(archive);
   solid::serialize(archive, m_solid, m_region, m_state.solid);

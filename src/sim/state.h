@@ -102,7 +102,7 @@ struct BodyProgress {
   double plastic_dissipation = 0.0;  ///< [J] since the start
   double contact_work = 0.0;         ///< [J] done on the body since the start
   double energy_given = 0.0;         ///< [J] to the body by hand, loads and supports, recoils not taken off
-  double compliance = 0.0;           ///< PressedPatch::compliance of the last step
+  Mat3 compliance = Mat3::Zero();    ///< PressedPatch::compliance of the last step
 };
 
 /// Positions, velocities and ledgers, which the body's side changes in a step. Water, materials, economy and

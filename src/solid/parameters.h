@@ -40,7 +40,8 @@ struct SolidParams {
   double rayleigh_stiffness = 0.0;  ///< b [s]
   Vec3 gravity = Vec3::Zero();      ///< [m/s²]
   linear::SolverParams solver;
-  double response_tolerance = 1e-8;  ///< of find_response's solves, where that of `solver` is larger
+  double response_tolerance =
+      1e-8;  ///< of find_response's solves; the smaller of this and that of `solver` counts
   double region_tolerance =
       1e-3;  ///< of an active region: speed over the fastest node's below which nodes stay where they are
   bool implicit_contact = true;  ///< contact stiffness enters the implicit solve

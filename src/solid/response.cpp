@@ -31,7 +31,7 @@ void prepare_response(Body& body, const Part& part, const SolidState& state, dou
   ARGIL_ASSERT(!body.is_explicit());
   body.plastic_strain = &state.plastic_strain;
   body.elastic.forget_all();
-  store_nodal_stiffness(body.model, body.materials, body.system);  // its solves may be exact
+  store_nodal_stiffness(body.model, body.materials, body.system);  // pairs solve exactly
   body.prediction.is_static = false;
   body.prediction.tau = compute_tau(body.model.params.integrator, step_s);
   body.system.is_projected = true;

@@ -131,7 +131,7 @@ TEST(ForceBetweenSteps, OfAToolThatHasPassedStaysTheAnswer) {
     ForceBetweenSteps between(rates, 0.0);
     between.tell(contacts, {}, above, beneath);
     PressedPatch pressed;
-    pressed.compliance = 1e-3;
+    pressed.compliance = 1e-3 * Mat3::Identity();
     between.receive({Vec3(0.0, 0.0, 0.5), Vec3::Zero()}, Vec3::Zero(), pressed);
     EXPECT_NEAR(between.forecast(farther, {}).force.z(), passes ? 0.5 : 0.5 + 0.5 * 1e3 * 0.01, 1e-12);
   }
@@ -140,11 +140,44 @@ TEST(ForceBetweenSteps, OfAToolThatHasPassedStaysTheAnswer) {
   ForceBetweenSteps between(rates, 0.0);
   between.tell(contacts, {}, beneath, above);
   PressedPatch pressed;
-  pressed.compliance = 1e-3;
+  pressed.compliance = 1e-3 * Mat3::Identity();
   between.receive({Vec3(0.0, 0.0, 0.5), Vec3::Zero()}, Vec3::Zero(), pressed);
   contact::Pose higher = above;
   higher.position.z() += 4e-4;
   EXPECT_NEAR(between.forecast(higher, {}).force.z(), 0.5 - 0.5 * 1e3 * 4e-4, 1e-12);
+}
+
+/// A body that is soft sideways, as a column is, and goes on by itself: what a grip holds, and friction that
+/// does not slide, follow its compliance C and the way that is left of the tool's: F − (C + 1/k)⁻¹ (way −
+/// drift).
+TEST(ForceBetweenSteps, GoesAsideAsTheBodyDoes) {
+  RateParams rates;
+  rates.physics_period_ticks = 2;
+  contact::Contact held;
+  held.vertex = {0, -1, -1};
+  held.weight = {1.0, 0.0, 0.0};
+  held.normal = -Vec3::UnitZ();
+  held.spring = 1e4;
+  contact::Contacts contacts;
+  contacts.contacts.push_back(held);
+  const Vec3 answer(0.0, 0.0, 1.0), way(3e-4, 0.0, -1e-4), drift(1e-4, 0.0, 0.0);
+  const Vec3 stiffness(1.0 / (1e-2 + 1e-4), 1.0 / (5e-3 + 1e-4), 1.0 / (4e-4 + 1e-4));
+  PressedPatch pressed;
+  pressed.compliance = Vec3(1e-2, 5e-3, 4e-4).asDiagonal();
+  pressed.drift = drift;
+  for (const bool holds : {true, false}) {
+    ForceBetweenSteps between(rates, 0.0);
+    between.tell(contacts, {}, {}, {});
+    between.receive({answer, Vec3::Zero()}, Vec3::Zero(), pressed);
+    between.feel(answer);
+    contact::Pose tool;
+    tool.position = way;
+    ForceBetweenSteps::Limits limits;
+    limits.holds = holds;
+    limits.friction = holds ? 0.0 : 0.5;
+    const Vec3 expected = answer - stiffness.cwiseProduct(way - 0.5 * drift);
+    EXPECT_LT((between.forecast(tool, limits).force - expected).norm(), 1e-12) << holds;
+  }
 }
 
 /// Clay that is met between two steps on a body that gives way as a whole, as by a spring under it: Hertz's
@@ -164,7 +197,7 @@ TEST(ForceBetweenSteps, OfClayOnASoftBodyIsInSeriesWithIt) {
   ForceBetweenSteps between(rates, 0.0);
   between.tell(contacts, {}, tool, tool);
   PressedPatch pressed;
-  pressed.compliance = kGive;
+  pressed.compliance = kGive * Mat3::Identity();
   between.receive({}, Vec3::Zero(), pressed);
   ForceBetweenSteps::Limits limits;
   limits.unpressed = {Vec3(0.0, 0.0, kHertz * std::pow(kDepth, 1.5)), 1.5 * kHertz * std::sqrt(kDepth)};

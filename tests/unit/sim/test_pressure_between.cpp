@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "unit/sim/pressure_scene.h"
@@ -677,6 +678,47 @@ TEST(ForceOfAThinBody, BetweenStepsIsNearTheOneOfAStepEveryTick) {
   }
 }
 
+/// A column on whose top a ball presses and goes aside and back, held by friction or by a grip: it bends far
+/// more easily than it is pressed together, and the hand feels that between the steps, too.
+TEST(ForceOfAThinBody, GoesAsideAsAColumnBends) {
+  constexpr double kHeight = 0.06, kSide = 0.01;
+  constexpr int kTicks = 560;
+  for (const ToolMode mode : {ToolMode::push, ToolMode::pull}) {
+    std::vector<std::vector<Vec3>> forces;
+    for (const auto& [ticks, between] :
+         {std::pair{1, BetweenFrames::hold}, std::pair{14, BetweenFrames::hold},
+          std::pair{14, BetweenFrames::re_evaluate}}) {
+      Params params = make_pressure_params(ticks, between);
+      params.solid.solver = {};
+      params.elastic.youngs_modulus = 2e6;  // its slowest swing is far faster than the tool
+      params.contact.friction = mode == ToolMode::push ? 0.8 : 0.0;
+      const auto at = [&](double depth, double aside) {
+        device::DeviceSample sample;
+        sample.position = {0.5 * kSide + aside, 0.5 * kSide + 3e-4, kHeight + kBallRadius - depth};
+        sample.mode = mode;
+        return sample;
+      };
+      Simulation simulation(argil::test::make_block_body(4, 4, 16, Vec3(kSide, kSide, kHeight)),
+                            contact::make_sphere_tool(kBallRadius, 2), params, at(-3e-4, 0.0));
+      lead(simulation, at(2e-4, 0.0), 140);
+      lead(simulation, at(1.5e-4, 0.0), 140);
+      std::vector<Vec3>& all = forces.emplace_back();
+      for (int tick = 1; tick <= kTicks; ++tick)
+        all.push_back(
+            lead(simulation, at(1.5e-4, 1.5e-3 * std::sin(2.0 * std::numbers::pi * tick / kTicks)), 1)
+                .back());
+    }
+    std::vector<double> off;  // sideways, root of the mean square
+    for (const std::size_t k : {1U, 2U}) {
+      double squares = 0.0;
+      for (std::size_t i = 0; i < forces[0].size(); ++i)
+        squares += std::pow(forces[k][i].x() - forces[0][i].x(), 2);
+      off.push_back(std::sqrt(squares / static_cast<double>(forces[0].size())));
+    }
+    EXPECT_LT(off[1], 0.9 * off[0]) << (mode == ToolMode::pull) << ' ' << off[0];
+  }
+}
+
 TEST(ForceOfAThinBody, CompliantIsReEvaluate) {
   std::vector<std::vector<Vec3>> forces;
   for (const BetweenFrames between : {BetweenFrames::re_evaluate, BetweenFrames::compliant}) {
@@ -783,6 +825,21 @@ TEST(GripInTheLoop, BeginsWithTheSameForceWhateverTheStiffness) {
 
 /// In long steps it lets go within one step of when it does in short ones, and pulls by no more or less than
 /// what the force changes by in a step.
+/// A tool that turns back so fast that the force has gone from the hand before the next step begins: what it
+/// pressed on is gripped all the same.
+TEST(GripInTheLoop, HoldsHoweverFastTheToolTurnsBack) {
+  std::vector<double> pulls;
+  for (const BetweenFrames between : kMethods) {
+    Simulation simulation = make_pressed_block(make_pressure_params(14, between), ToolMode::pull);
+    lead(simulation, press_block(1e-3, 0.0, ToolMode::pull), 42);
+    const std::vector<Vec3> up = lead(simulation, press_block(-1e-3, 0.0, ToolMode::pull), 28);  // 71 mm/s
+    const std::vector<Vec3> rest = lead(simulation, press_block(-1e-3, 0.0, ToolMode::pull), 42);
+    pulls.push_back(rest.back().z());
+  }
+  EXPECT_LT(pulls[0], -0.1);
+  EXPECT_NEAR(pulls[1] / pulls[0], 1.0, 0.05);
+}
+
 TEST(GripInTheLoop, LetsGoInLongStepsWhenItDoesInShortOnes) {
   constexpr int kPeriod = 14;
   for (const int ticks : {210, 560}) {
