@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What a hand feels between two steps of the body: a ball pressed into an elastic block or a thin plate and out again, with physics
+"""What a hand feels between two steps of the body: a ball pressed into an elastic block, plate or column and out again, with physics
 every 5 and 14 ticks by every method, against physics every tick.
 
 Usage: between_table.py ARGIL [-o FILE.csv]      writes results/contact/between.csv
@@ -21,8 +21,11 @@ SIDEWAYS = 0.005  # [m/s], of the motion that slides
 THICKNESS = 0.004  # of the plate, which is 40 mm square and is held along two sides [m]
 PLATE = {"shape": {"size_m": THICKNESS, "slenderness": 0.1},
          "fixed": [{"kind": "half_space", "normal": [side, 0, 0], "offset_m": -0.017} for side in (1, -1)]}
-BODIES = {"block": (BLOCK, EDGE), "plate": (PLATE, THICKNESS)}  # and the height of its top [m]
-CASES = (("block", 1, 0, 0), ("block", 5, 0, 0), ("block", 1, SIDEWAYS, 0.3), ("plate", 1, 0, 0), ("plate", 5, 0, 0))
+HEIGHT = 0.06  # of the column, which is 15 mm square [m]
+COLUMN = {"shape": {"size_m": HEIGHT, "slenderness": 4}, "fixed": BLOCK["fixed"]}
+BODIES = {"block": (BLOCK, EDGE, 1e5), "plate": (PLATE, THICKNESS, 1e5), "column": (COLUMN, HEIGHT, 1e6)}  # height of the top [m], E [Pa]
+CASES = (("block", 1, 0, 0), ("block", 5, 0, 0), ("block", 1, SIDEWAYS, 0.3), ("plate", 1, 0, 0), ("plate", 5, 0, 0),
+         ("column", 1, 0.002, 1.0))
 
 
 def make_motion(hertz, sideways, top=EDGE):
@@ -43,9 +46,9 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         for name, hertz, sideways, friction in CASES:
-            body, top = BODIES[name]
+            body, top, modulus = BODIES[name]
             places = make_motion(hertz, sideways, top)
-            scene = {"radius": RADIUS, "friction": friction, "body": body}
+            scene = {"radius": RADIUS, "friction": friction, "body": body, "modulus": modulus}
             fine = find_force(options.argil, folder, places, **scene)
             peak = np.linalg.norm(fine, axis=1).max()
             for period in (5, 14):
