@@ -8,17 +8,23 @@
 namespace argil::sim {
 namespace {
 
+/// A contact of that stiffness [N/m] on a surface whose outward side is up.
+contact::Contact touch(double spring) {
+  contact::Contact c;
+  c.vertex = {0, -1, -1};
+  c.weight = {1.0, 0.0, 0.0};
+  c.normal = -Vec3::UnitZ();
+  c.spring = spring;
+  return c;
+}
+
 /// What the body is owed once all is over is what the hand has felt and the body has not got [N s].
 TEST(ForceBetweenSteps, OwesWhatTheHandFeelsOfAChangedAnswer) {
   RateParams rates;
   rates.haptic_period = 1e-3;
   rates.physics_period_ticks = 4;
   for (const double lag : {0.0, 0.5}) {
-    contact::Contact touched;
-    touched.vertex = {0, -1, -1};
-    touched.weight = {1.0, 0.0, 0.0};
-    touched.normal = -Vec3::UnitZ();
-    touched.spring = 1.0;
+    const contact::Contact touched = touch(1.0);
     contact::Contacts contacts;
     contacts.contacts.push_back(touched);
     ForceBetweenSteps between(rates, lag);
@@ -54,11 +60,7 @@ TEST(ForceBetweenSteps, OwesWhatTheHandFeelsOfAChangedAnswer) {
 TEST(ForceBetweenSteps, OfAPointThatWasOnlyNearIsTheAnswer) {
   RateParams rates;
   rates.physics_period_ticks = 14;
-  contact::Contact near;
-  near.vertex = {0, -1, -1};
-  near.weight = {1.0, 0.0, 0.0};
-  near.normal = -Vec3::UnitZ();
-  near.spring = 1e6;
+  const contact::Contact near = touch(1e6);
   contact::Contacts contacts;
   contacts.near.push_back(near);
   const contact::Pose tool;
@@ -115,11 +117,7 @@ TEST(ForceBetweenSteps, OfClayThatIsMetBeforeTheFirstAnswerIsNeverAlongTheWay) {
 TEST(ForceBetweenSteps, OfAToolThatHasPassedStaysTheAnswer) {
   RateParams rates;
   rates.physics_period_ticks = 14;
-  contact::Contact met;
-  met.vertex = {0, -1, -1};
-  met.weight = {1.0, 0.0, 0.0};
-  met.normal = -Vec3::UnitZ();
-  met.spring = 1e3;
+  contact::Contact met = touch(1e3);
   contact::Contacts contacts;
   contact::Pose above, beneath, farther;
   above.position.z() = 0.03;
@@ -153,11 +151,7 @@ TEST(ForceBetweenSteps, OfAToolThatHasPassedStaysTheAnswer) {
 TEST(ForceBetweenSteps, GoesAsideAsTheBodyDoes) {
   RateParams rates;
   rates.physics_period_ticks = 2;
-  contact::Contact held;
-  held.vertex = {0, -1, -1};
-  held.weight = {1.0, 0.0, 0.0};
-  held.normal = -Vec3::UnitZ();
-  held.spring = 1e4;
+  const contact::Contact held = touch(1e4);
   contact::Contacts contacts;
   contacts.contacts.push_back(held);
   const Vec3 answer(0.0, 0.0, 1.0), way(3e-4, 0.0, -1e-4), drift(1e-4, 0.0, 0.0);
@@ -186,11 +180,7 @@ TEST(ForceBetweenSteps, OfClayOnASoftBodyIsInSeriesWithIt) {
   constexpr double kHertz = 3e4, kDepth = 2e-3, kGive = 2e-3;  // f(d) = 3e4 d^{3/2}
   RateParams rates;
   rates.physics_period_ticks = 14;
-  contact::Contact near;
-  near.vertex = {0, -1, -1};
-  near.weight = {1.0, 0.0, 0.0};
-  near.normal = -Vec3::UnitZ();
-  near.spring = 1e6;
+  const contact::Contact near = touch(1e6);
   contact::Contacts contacts;
   contacts.near.push_back(near);
   const contact::Pose tool;

@@ -823,8 +823,6 @@ TEST(GripInTheLoop, BeginsWithTheSameForceWhateverTheStiffness) {
   for (const double share : left) EXPECT_NEAR(share, left[0], 0.01);
 }
 
-/// In long steps it lets go within one step of when it does in short ones, and pulls by no more or less than
-/// what the force changes by in a step.
 /// A tool that turns back so fast that the force has gone from the hand before the next step begins: what it
 /// pressed on is gripped all the same.
 TEST(GripInTheLoop, HoldsHoweverFastTheToolTurnsBack) {
@@ -832,7 +830,7 @@ TEST(GripInTheLoop, HoldsHoweverFastTheToolTurnsBack) {
   for (const BetweenFrames between : kMethods) {
     Simulation simulation = make_pressed_block(make_pressure_params(14, between), ToolMode::pull);
     lead(simulation, press_block(1e-3, 0.0, ToolMode::pull), 42);
-    const std::vector<Vec3> up = lead(simulation, press_block(-1e-3, 0.0, ToolMode::pull), 28);  // 71 mm/s
+    lead(simulation, press_block(-1e-3, 0.0, ToolMode::pull), 28);  // 71 mm/s
     const std::vector<Vec3> rest = lead(simulation, press_block(-1e-3, 0.0, ToolMode::pull), 42);
     pulls.push_back(rest.back().z());
   }
@@ -840,6 +838,8 @@ TEST(GripInTheLoop, HoldsHoweverFastTheToolTurnsBack) {
   EXPECT_NEAR(pulls[1] / pulls[0], 1.0, 0.05);
 }
 
+/// In long steps it lets go within one step of when it does in short ones, and pulls by no more or less than
+/// what the force changes by in a step.
 TEST(GripInTheLoop, LetsGoInLongStepsWhenItDoesInShortOnes) {
   constexpr int kPeriod = 14;
   for (const int ticks : {210, 560}) {
