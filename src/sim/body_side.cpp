@@ -158,9 +158,7 @@ StepStatus BodySide::find_equilibrium() {
 }
 
 BodyBetweenSteps BodySide::between_steps(Tick tick) {
-  return {m_solid,       m_region.part(),    m_surface,
-          m_state.solid, m_force.contacts(), m_params.rates.step_seconds(),
-          tick};
+  return {m_solid, m_region.part(), m_surface, m_state.solid, m_params.rates.step_seconds(), tick};
 }
 
 StepStatus BodySide::step(const ContactLoad& load, StepResult& result) {

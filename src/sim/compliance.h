@@ -35,7 +35,6 @@ struct BodyBetweenSteps {
   const solid::Part& part;  ///< of it, that moves
   const ContactSurface& surface;
   const solid::SolidState& state;
-  const NodalForce& contacts;  ///< that it bore when the step ended
   double step_s = 0.0;
   Tick tick = 0;  ///< number of the tick under way
 };
